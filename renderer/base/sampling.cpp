@@ -4,24 +4,6 @@
 
 namespace lull {
 
-Vec2f SampleConcentricDisk(const Vec2f& u) {
-    const Vec2f o = 2 * u - Vec2f::Ones();
-    if (o.x() == 0 && o.y() == 0) return Vec2f::Zero();
-    if (std::abs(o.x()) > std::abs(o.y())) {
-        const float theta = kPi / 4 * (o.y() / o.x());
-        return o.x() * Vec2f(std::cos(theta), std::sin(theta));
-    }
-    const float theta = kPi / 2 - kPi / 4 * (o.x() / o.y());
-    return o.y() * Vec2f(std::cos(theta), std::sin(theta));
-}
-
-Vec3f SampleUniformSphere(const Vec2f& u) {
-    const float z = 1 - 2 * u.x();
-    const float r = SafeSqrt(1 - z * z);
-    const float phi = 2 * kPi * u.y();
-    return {r * std::cos(phi), r * std::sin(phi), z};
-}
-
 float RadicalInverse(int base, uint64_t index) {
     const double inverseBase = 1.0 / base;
     double digitWeight = inverseBase, result = 0;

@@ -8,8 +8,38 @@
 
 namespace lull {
 
+struct SineCosine {
+    float sine, cosine;
+};
+
+// Returns those of an angle in [-pi/4, pi/4], with errors below 1e-7 (the polynomials of Cephes,
+// Moshier 1989).
+inline SineCosine SineCosineOf(float angle) {
+    const float z = Sqr(angle);
+    const float s = (-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f;
+    const float c = (2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f;
+    return {angle + angle * z * s, 1 - 0.5f * z + Sqr(z) * c};
+}
+
+// Returns those of 2 pi u, u in [0, 1].
+inline SineCosine SineCosineOfTurn(float u) {
+    const int quarter = int(4 * u + 0.5f);
+    const SineCosine in = SineCosineOf((4 * u - float(quarter)) * (kPi / 2));
+    const bool isOdd = quarter & 1;
+    const float s = isOdd ? in.cosine : in.sine, c = isOdd ? in.sine : in.cosine;
+    return {quarter & 2 ? -s : s, (quarter + 1) & 2 ? -c : c};
+}
+
 // Maps the unit square to the unit disk, area-preserving (Shirley and Chiu 1997).
-Vec2f SampleConcentricDisk(const Vec2f& u);
+inline Vec2f SampleConcentricDisk(const Vec2f& u) {
+    const float x = 2 * u.x() - 1, y = 2 * u.y() - 1;
+    const bool isWide = std::abs(x) > std::abs(y);
+    const float r = isWide ? x : y, other = isWide ? y : x;
+    if (r == 0) [[unlikely]]
+        return Vec2f::Zero();
+    const auto [s, c] = SineCosineOf(kPi / 4 * (other / r));
+    return r * (isWide ? Vec2f(c, s) : Vec2f(s, c));
+}
 
 // Maps the unit square to the hemisphere around +z with density cos(theta) / pi.
 inline Vec3f SampleCosineHemisphere(const Vec2f& u) {
@@ -18,7 +48,12 @@ inline Vec3f SampleCosineHemisphere(const Vec2f& u) {
 }
 
 // Maps the unit square uniformly to the unit sphere.
-Vec3f SampleUniformSphere(const Vec2f& u);
+inline Vec3f SampleUniformSphere(const Vec2f& u) {
+    const float z = 1 - 2 * u.x();
+    const float r = SafeSqrt(1 - z * z);
+    const auto [s, c] = SineCosineOfTurn(u.y());
+    return {r * c, r * s, z};
+}
 
 // Maps the unit square uniformly to a triangle; returns the barycentrics (b0, b1).
 inline Vec2f SampleUniformTriangle(const Vec2f& u) {

@@ -43,6 +43,8 @@ bool Bsdf::Transmits() const {
 void Bsdf::ChooseByShare(const Vec3f& woWorld) {
     // No lobe gets less: the estimates know nothing of where light comes from.
     constexpr float kLeast = 0.1f;
+    if (lobeCount == 0 || (lobeCount == 1 && !std::holds_alternative<FresnelBlend>(lobes[0])))
+        return;
     const Vec3f wo = FrameTowards(woWorld).ToLocal(woWorld);
     if (wo.z() == 0) return;
     for (int i = 0; i < lobeCount; ++i) ChoosePartsByShare(wo, kLeast, &lobes[i]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cassert>
+#include <memory>
 #include <optional>
 
 #include "renderer/bsdf/lobes.h"
@@ -41,7 +42,7 @@ class Bsdf {
         assert(lobeCount < kMaxLobes && lobe.index() != 0);
         specularCount += IsSpecular(lobe);
         if (isTilted && alongNg < kUntilted) mayTurn |= Mirrors(lobe);
-        lobes[lobeCount++] = lobe;
+        std::construct_at(&lobes[lobeCount++], lobe);
     }
     // Multiplies f of lobes begin to end - 1.
     void Scale(int begin, int end, const Rgb& scale) {
@@ -129,7 +130,9 @@ class Bsdf {
     int lobeCount = 0, specularCount = 0;
     bool hasShares = false;
     std::array<float, kMaxLobes> shares;  // probabilities of lobes, where hasShares
-    std::array<Lobe, kMaxLobes> lobes;
+    union {
+        std::array<Lobe, kMaxLobes> lobes;  // not cleared, which would take longer than most use
+    };
 };
 
 }  // namespace lull

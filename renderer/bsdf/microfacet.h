@@ -1,7 +1,7 @@
 // Describes rough surfaces by the distribution of their microscopic normals.
 #pragma once
 
-#include "renderer/base/math.h"
+#include "renderer/base/sampling.h"
 
 namespace lull {
 
@@ -47,9 +47,8 @@ class TrowbridgeReitz {
         const float side = std::copysign(1.f, w.z());
         const Vec3f v = (side * Vec3f(alphaX * w.x(), alphaY * w.y(), w.z())).normalized();
         const float t = u.x() * (1 + v.z()), r = SafeSqrt(t * (2 - t));
-        const float phi = 2 * kPi * u.y();
-        const Vec3f h(r * std::cos(phi) + v.x(), r * std::sin(phi) + v.y(),
-                      (1 - u.x()) * (1 + v.z()));
+        const auto [s, c] = SineCosineOfTurn(u.y());
+        const Vec3f h(r * c + v.x(), r * s + v.y(), (1 - u.x()) * (1 + v.z()));
         return Vec3f(alphaX * h.x(), alphaY * h.y(), h.z()).normalized() * side;
     }
 

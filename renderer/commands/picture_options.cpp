@@ -9,6 +9,7 @@
 #include "renderer/base/say.h"
 #include "renderer/commands/choice_option.h"
 #include "renderer/commands/number_option.h"
+#include "renderer/image/color_view.h"
 
 namespace lull {
 
@@ -19,7 +20,7 @@ struct EnumNames<ToneMap> {
 };
 
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
-    AddChoiceOption(app, "--tone-map", &options->format.toneMap,
+    AddChoiceOption(app, "--tone-map", &options->format.grade.toneMap,
                     "Map the tones of the PNG; filmic keeps highlights up to 5.6 times white")
         ->group("Image");
     CLI::Option* toneMap = app.get_option("--tone-map");
@@ -32,6 +33,12 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
         ->group("Image")
         ->type_name("NAME")
         ->excludes(toneMap);
+    app.add_option("--view-exposure", options->format.grade.exposure,
+                   "Brighten the PNG by EV stops, and judge noise in it as it is shown")
+        ->group("Image")
+        ->check(Between(-100.f, 100.f))
+        ->type_name("EV")
+        ->capture_default_str();
     app.add_option("--png-bits", options->format.pngBits, "Set the bits per channel of the PNG")
         ->group("Output")
         ->check(OneOf(std::set{8, 16}))
@@ -59,7 +66,8 @@ void AddPictureOptions(CLI::App& app, PictureOptions* options) {
 
 void LoadView(PictureOptions* options) {
     if (options->ocio || options->view)
-        options->format.view = LoadView(options->ocio.value_or(""), options->view.value_or(""));
+        options->format.grade.view =
+            LoadView(options->ocio.value_or(""), options->view.value_or(""));
 }
 
 std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::string& name,

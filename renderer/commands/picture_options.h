@@ -19,7 +19,8 @@ struct PictureOptions {
     double preview = 0;   // seconds between pictures on the way; 0: none
 };
 
-// Adds --tone-map, --ocio, --view, --png-bits, --exr-half, --display and --preview.
+// Adds --tone-map, --ocio, --view, --view-exposure, --png-bits, --exr-half, --display and
+// --preview.
 void AddPictureOptions(CLI::App& app, PictureOptions* options);
 
 // Loads the view of the format, where one is asked for. Throws Error.

@@ -19,6 +19,7 @@
 #include "renderer/commands/render_talk.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
+#include "renderer/render/graded_criterion.h"
 #include "renderer/render/half_buffer.h"
 #include "renderer/results/denoiser_channels.h"
 #include "stopping/base/input_file.h"
@@ -57,6 +58,26 @@ int PassLengthFor(const Rule& rule, const PixelRect& region, const ScheduleOptio
     return std::max(1, length);
 }
 
+// Returns them for the denoiser.
+std::vector<Grading> GradingsOf(const std::vector<Grade>& grades) {
+    std::vector<Grading> gradings;
+    for (const Grade& grade : grades)
+        gradings.push_back(grade.IsPlain() ? Grading() : [grade](std::span<float> rgb) {
+            ApplyGrade(grade, rgb);
+        });
+    return gradings;
+}
+
+// Returns them in words.
+std::string NamesOf(const std::vector<Grade>& grades) {
+    std::string text;
+    for (const Grade& grade : grades) {
+        const std::string own = TextOf(grade);
+        text += (text.empty() ? "" : "; ") + (own.empty() ? "sRGB" : own);
+    }
+    return text;
+}
+
 // Reads the rule and lets the schedule suit it.
 void ReadRule(PreparedRender* p) {
     RenderSettings& settings = p->render.settings;
@@ -67,7 +88,10 @@ void ReadRule(PreparedRender* p) {
     if (settings.cap) schedule.cap = *settings.cap;
     if (const int spp = FixedSpp(rule))
         schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;
-    if (p->request.denoise) p->render.DenoiseBlocks();
+    if (p->request.denoise) {
+        p->render.DenoiseBlocks();
+        p->render.denoiser->Grade(GradingsOf(p->request.Grades()));
+    }
     p->rule = p->render.ReadRule("--stop", rule);
     schedule.smallestSide = p->rule.smallestSide;
     schedule.passLength = PassLengthFor(p->rule, region, schedule);
@@ -116,6 +140,7 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();
+    provenance->grades = NamesOf(p.request.Grades());
     provenance->logRatios = p.rule.logRatios;
     provenance->trend = p.rule.trend;
     provenance->guide = p.request.guide.mode;
@@ -141,8 +166,7 @@ std::string SettingsOf(const PreparedRender& p) {
     identity["denoise"] = request.denoise ? "yes" : "no";
     identity["denoise-layers"] = request.denoiseLayers ? "yes" : "no";
     identity["png-bits"] = std::to_string(format.pngBits);
-    identity["tone-map"] =
-        format.view ? std::string(format.view->Name()) : std::to_string(int(format.toneMap));
+    identity["tone-map"] = TextOf(format.grade);
     identity["transparent"] = format.isTransparent ? "yes" : "no";
     identity["exr-half"] = format.exrHalf ? "yes" : "no";
     return TextOf(identity);
@@ -207,11 +231,26 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     return p;
 }
 
+using MakeCriterion = std::function<std::unique_ptr<Criterion>(const BlockInfo&)>;
+
+// Makes the criteria of blocks as the grades show them, unless the rule sees to that itself, or
+// only counts.
+MakeCriterion MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& grades) {
+    MakeCriterion criteriaOf = CriteriaOf(rule);
+    if (grades.empty() || rule.stopAt || rule.need == ViewNeed::Measured) return criteriaOf;
+    return [criteriaOf, grades](const BlockInfo& info) {
+        std::vector<GradedJudge> judges;
+        for (const Grade& grade : grades) judges.push_back({grade, criteriaOf(info)});
+        return std::make_unique<GradedCriterion>(std::move(judges));
+    };
+}
+
 // Makes the criteria; for a page, they also keep the curves of each block.
-std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeCriteria(
-    const Rule& rule, bool withCurves, std::vector<BlockHistory>* histories) {
-    if (!withCurves) return CriteriaOf(rule);
-    return [criteriaOf = CriteriaOf(rule), histories](const BlockInfo& info) {
+MakeCriterion MakeCriteria(const Rule& rule, const std::vector<Grade>& grades, bool withCurves,
+                           std::vector<BlockHistory>* histories) {
+    MakeCriterion criteriaOf = MakeGradedCriteria(rule, grades);
+    if (!withCurves) return criteriaOf;
+    return [criteriaOf, histories](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;
         rules.push_back(criteriaOf(info));
         return std::make_unique<BlockObserver>(std::move(rules), ObserverOptions{.curves = true},
@@ -236,7 +275,8 @@ void AddListeners(const PreparedRender& p, RenderEvents* events) {
 SessionOptions MakeOptions(PreparedRender* p) {
     const RenderJob& render = p->render;
     SessionOptions how = render.MakeSessionOptions(FixedSpp(p->request.Rule()) == 0);
-    how.render.makeCriterion = MakeCriteria(p->rule, p->request.HasPage(), &p->histories);
+    how.render.makeCriterion =
+        MakeCriteria(p->rule, p->request.Grades(), p->request.HasPage(), &p->histories);
     how.render.trend = p->rule.trend;
     how.render.display = p->display.get();
     AddListeners(*p, &how.render.events);
@@ -315,8 +355,9 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const Talk talk = TalkOf(settings);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Block> blocks = MakeBlocks(region, settings.schedule);
-    made.image = hasGroups ? DenoiseImage(std::move(lights), region, blocks)
-                           : DenoiseImage(std::move(picture), region, blocks);
+    const DenoiserOptions how{.gradings = GradingsOf(p.request.Grades())};
+    made.image = hasGroups ? DenoiseImage(std::move(lights), region, blocks, how)
+                           : DenoiseImage(std::move(picture), region, blocks, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
         talk.Warn(fmt::format(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "renderer/commands/aov_options.h"
 #include "renderer/commands/command.h"
@@ -68,6 +69,15 @@ std::string RenderRequest::Rule() const {
     return stop.value_or(denoise ? kDenoisedRuleName : kDefaultRule);
 }
 
+std::vector<Grade> RenderRequest::Grades() const {
+    std::vector<Grade> grades = {pictures.format.grade};
+    if (gradedBy != 0) {
+        grades.push_back(grades.front());
+        grades.back().exposure += gradedBy;
+    }
+    return std::ranges::all_of(grades, &Grade::IsPlain) ? std::vector<Grade>() : grades;
+}
+
 void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     AddRenderSettings(app, &o->render);
     app.add_option("-o,--output", o->output, "Write OUT.exr and OUT.png [the name in the scene]")
@@ -82,6 +92,12 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
             ->group(kCommonOptions)
             ->type_name("RULE");
     AddCautionOption(app, &o->render.caution)->group("Stopping");
+    app.add_option("--graded-by", o->gradedBy,
+                   "Judge the image brightened by EV stops as well; the noisier counts")
+        ->group("Stopping")
+        ->check(Between(-100.f, 100.f))
+        ->type_name("EV")
+        ->capture_default_str();
     app.add_option("--spp", o->spp, "Render all blocks with N spp, as --stop fixed:N")
         ->group(kCommonOptions)
         ->check(Between(1, 1 << 24))

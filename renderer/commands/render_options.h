@@ -20,12 +20,15 @@ struct RenderRequest {
     std::vector<std::string> lightGroups;  // their names; empty: none
     bool denoise = false, denoiseLayers = false;
     PictureOptions pictures;
-    PathOfSample path;  // to print, instead
+    float gradedBy = 0;  // stops by which brightened pictures are judged as well; 0: are not
+    PathOfSample path;   // to print, instead
     std::optional<Sequence> sequence;
     int frameNumber = 0;  // in the sequence, from 1; 0: there is none
 
     // Returns the rule of --stop, --spp and --denoise.
     std::string Rule() const;
+    // Returns how pictures are graded when noise is judged; none: they are not.
+    std::vector<Grade> Grades() const;
     // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
     // Returns the layers, with no light groups yet.

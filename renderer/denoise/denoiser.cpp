@@ -10,26 +10,6 @@ namespace {
 
 using Blocks = std::vector<std::optional<VisibleError>>;
 
-// Measures the error of a denoised picture, whose memory it uses.
-DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> blocks,
-                        const DenoiserOptions& options) {
-    DenoiserResult result;
-    const EstimatedError error = MeasureError(denoised);
-    if (options.withDeviation) result.deviation = StandardError(denoised, error.structure).values;
-    denoised.noisy = {};  // a large picture needs the memory
-    result.blocks.resize(blocks.size());
-    tbb::this_task_arena::isolate([&] {
-        ForEachIndex(int(blocks.size()), [&](int i) {
-            const PixelRect& block = blocks[size_t(i)];
-            if (std::min(block.Width(), block.Height()) >= kSmallestMeasuredSide)
-                result.blocks[size_t(i)] = MeasureVisibleError(denoised, error, block);
-        });
-    });
-    denoised.halves = {};
-    result.rgb = Interleaved(denoised.picture);
-    return result;
-}
-
 int RowsPerFit(const DenoiserOptions& options) { return options.isQuick ? 2 : 1; }
 
 void Add(const Planes& image, Planes* sum) {
@@ -50,6 +30,47 @@ void Raise(const Blocks& errors, Blocks* blocks) {
         error.estimate = std::max(error.estimate, errors[i]->estimate);
         error.upper = std::max(error.upper, errors[i]->upper);
     }
+}
+
+// Measures the error of a picture as it is shown, without `noisy` in the end: a large one needs the
+// memory. Returns the standard errors of pixels, where they are wanted.
+std::vector<float> MeasureShown(DenoisedPicture* shown, std::span<const PixelRect> places,
+                                bool withDeviation, Blocks* blocks) {
+    std::vector<float> deviation;
+    const EstimatedError error = MeasureError(*shown);
+    if (withDeviation) deviation = StandardError(*shown, error.structure).values;
+    shown->noisy = {};
+    blocks->resize(places.size());
+    tbb::this_task_arena::isolate([&] {
+        ForEachIndex(int(places.size()), [&](int i) {
+            const PixelRect& place = places[size_t(i)];
+            if (std::min(place.Width(), place.Height()) >= kSmallestMeasuredSide)
+                (*blocks)[size_t(i)] = MeasureVisibleError(*shown, error, place);
+        });
+    });
+    return deviation;
+}
+
+// Measures the error of a denoised picture, whose memory it uses.
+DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> places,
+                        const DenoiserOptions& options) {
+    DenoiserResult result;
+    const bool isPlain = options.gradings.empty();
+    if (isPlain)
+        result.deviation = MeasureShown(&denoised, places, options.withDeviation, &result.blocks);
+    for (size_t i = 0; i < options.gradings.size(); ++i) {
+        DenoisedPicture shown = Graded(denoised, options.gradings[i]);
+        if (i == 0) {
+            result.deviation = MeasureShown(&shown, places, options.withDeviation, &result.blocks);
+            continue;
+        }
+        Blocks errors;
+        MeasureShown(&shown, places, false, &errors);
+        Raise(errors, &result.blocks);
+    }
+    denoised.noisy = denoised.halves = {};
+    result.rgb = Interleaved(denoised.picture);
+    return result;
 }
 
 }  // namespace
@@ -75,7 +96,8 @@ GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blo
         Add(denoised.halves, &sum.halves);
         Add(denoised.noisy, &sum.noisy);
         Add(denoised.returned, &sum.returned);
-        DenoiserResult own = Measured(std::move(denoised), blocks, {.withDeviation = false});
+        DenoiserResult own = Measured(std::move(denoised), blocks,
+                                      {.withDeviation = false, .gradings = options.gradings});
         result.groups.push_back(std::move(own.rgb));
         errors.push_back(std::move(own.blocks));
     }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "renderer/denoise/grading.h"
 #include "renderer/denoise/visible_error.h"
 
 namespace lull {
@@ -16,6 +17,9 @@ inline constexpr int kSmallestMeasuredSide = 10;  // pixels of a block whose err
 struct DenoiserOptions {
     bool isQuick = false;  // a little worse, in 60 % of the time: for a look at how far a render is
     bool withDeviation = true;  // measure the standard error of pixels, too
+    // How the picture is shown when its error is measured: of a block the largest counts, of pixels
+    // that of the first. None: the picture is shown as it is.
+    std::vector<Grading> gradings = {};
 };
 
 struct DenoiserResult {

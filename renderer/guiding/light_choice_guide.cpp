@@ -37,7 +37,8 @@ class LightChoiceLearner {
     // Returns the choice without a guide.
     LightChoice ChoiceAt(size_t table) const {
         const Bounds3f box = made.grid.BoundsOf(table / kSides);
-        return lights.Choice(0.5f * (box.lower + box.upper));
+        const Vec3f middle = 0.5f * (box.lower + box.upper);
+        return lights.Choice(middle, lights.PlaceOf(middle));
     }
 
     void FindRatios() {

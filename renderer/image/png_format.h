@@ -1,18 +1,15 @@
 // Writes PNGs with other bits, tones and colours than 8-bit sRGB.
 #pragma once
 
-#include "renderer/image/color_view.h"
+#include "renderer/image/grade.h"
 #include "renderer/image/image_io.h"
-#include "renderer/image/tone_map.h"
 
 namespace lull {
 
 // How a PNG shows linear RGB.
 struct PngFormat {
     int bits = 8;  // a component, or 16
-    ToneMap toneMap = ToneMap::None;
-    // Encodes the colours instead of sRGB and the tone map; null: none.
-    std::shared_ptr<const ViewTransform> view = {};
+    Grade grade = {};
     // Rows have alpha as a fourth value, by which the colours are multiplied; in the file, as PNG
     // has it, they are not.
     bool hasAlpha = false;

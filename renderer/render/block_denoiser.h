@@ -21,6 +21,9 @@ class BlockDenoiser {
     // light groups, each is denoised, and the largest error counts (RunDenoiser()).
     void Show(const Film* pixels) { film = pixels; }
 
+    // Sets how the denoised picture is shown (DenoiserOptions::gradings).
+    void Grade(std::vector<Grading> shown) { gradings = std::move(shown); }
+
     // Shows denoised blocks to a callback: their pixels, and R, G, B of each, row by row.
     void ShowPictures(std::function<void(const PixelRect&, std::span<const float> rgb)> show) {
         showPicture = std::move(show);
@@ -34,6 +37,7 @@ class BlockDenoiser {
 
     std::vector<Block> blocks;
     const Film* film = nullptr;
+    std::vector<Grading> gradings;
     std::function<void(const PixelRect&, std::span<const float> rgb)> showPicture;
 };
 

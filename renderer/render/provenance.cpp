@@ -39,6 +39,7 @@ std::vector<NamedProvenance> PartsOf(const Provenance& p) {
         {"crop", nullptr, "crop", p.crop}};
     if (!p.integrator.empty())
         parts.push_back({"integrator", "integrator", "integrator", p.integrator});
+    if (!p.grades.empty()) parts.push_back({"grades", "judgedGrades", "judgedGrades", p.grades});
     if (!p.clock.empty()) parts.push_back({nullptr, "clock", "clock", p.clock});
     if (p.filtering != TextureFiltering::Bilinear)
         parts.push_back({"filtering", "filtering", "filtering", NameOf(p.filtering)});

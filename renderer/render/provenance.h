@@ -32,7 +32,8 @@ struct Provenance {
     TextureFiltering filtering = TextureFiltering::Bilinear;
     Vec2i resolution = {0, 0};
     PixelRect crop;
-    std::string clock = {};  // that ends the render, in words; empty: none
+    std::string grades = {};  // how pictures are graded when noise is judged; empty: not
+    std::string clock = {};   // that ends the render, in words; empty: none
     GuideMode guide = GuideMode::Off;
     int guideMegabytes = 0;
     GuideFigures guideFigures = {};  // of learning; not part of the identity

@@ -30,8 +30,8 @@ DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
 }
 
 DenoisedImage DenoiseImage(GroupedPicture picture, const PixelRect& region,
-                           const std::vector<Block>& blocks) {
-    GroupedResult result = RunDenoiser(std::move(picture), PlacesOf(blocks, region));
+                           const std::vector<Block>& blocks, const DenoiserOptions& options) {
+    GroupedResult result = RunDenoiser(std::move(picture), PlacesOf(blocks, region), options);
     DenoisedImage image = ImageOf(std::move(result.sum), region);
     image.lights = std::move(result.groups);
     return image;

@@ -20,7 +20,8 @@ struct DenoisedImage {
 // have had.
 DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&,
                            const DenoiserOptions& = {});
-DenoisedImage DenoiseImage(GroupedPicture, const PixelRect& region, const std::vector<Block>&);
+DenoisedImage DenoiseImage(GroupedPicture, const PixelRect& region, const std::vector<Block>&,
+                           const DenoiserOptions& = {});
 
 // Returns how large the visible errors of blocks probably are at most.
 std::string TextOf(const std::vector<std::optional<VisibleError>>&);

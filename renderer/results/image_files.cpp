@@ -11,8 +11,6 @@ namespace lull {
 
 namespace {
 
-constexpr const char* kFilmic = "filmic (Hable 2010)";
-
 // Returns whether a channel is a colour or a direction, to which 11 bits do no harm.
 bool MayBeHalf(const std::string& name) {
     return name == "R" || name == "G" || name == "B" || name.starts_with("albedo.") ||
@@ -65,15 +63,9 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
     return exr;
 }
 
-// Returns the name of the tones of the PNG; empty for those of sRGB.
-std::string TonesOf(const PictureFormat& wanted) {
-    if (wanted.view) return fmt::format("OpenColorIO {}", wanted.view->Name());
-    return wanted.toneMap == ToneMap::Filmic ? kFilmic : "";
-}
-
 // Adds a word on the tones of the PNG, and sets which channels take 16 bits.
 void ApplyTo(ExrImage* exr, const PictureFormat& wanted) {
-    if (const std::string tones = TonesOf(wanted); !tones.empty())
+    if (const std::string tones = TextOf(wanted.grade); !tones.empty())
         exr->attributes["pngToneMap"] = tones;
     if (!wanted.exrHalf) return;
     for (ExrChannel& channel : exr->channels) channel.isHalf |= MayBeHalf(channel.name);
@@ -81,9 +73,9 @@ void ApplyTo(ExrImage* exr, const PictureFormat& wanted) {
 
 // Its header tells of a tone map and of the scene's exposure, in stops.
 PngFormat MakePngFormat(const PictureFormat& wanted, double exposure) {
-    PngFormat format{
-        .bits = wanted.pngBits, .toneMap = wanted.toneMap, .view = wanted.view, .text = {}};
-    if (const std::string tones = TonesOf(wanted); !tones.empty()) format.text["ToneMap"] = tones;
+    PngFormat format{.bits = wanted.pngBits, .grade = wanted.grade, .text = {}};
+    if (const std::string tones = TextOf(wanted.grade); !tones.empty())
+        format.text["ToneMap"] = tones;
     format.hasAlpha = wanted.isTransparent;
     if (exposure != 0) format.text["Exposure"] = fmt::format("{:+g} stops", exposure);
     return format;
@@ -133,6 +125,15 @@ RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& 
     };
 }
 
+// Returns R, G, B of each pixel of an image.
+std::vector<float> ValuesOf(const RowSource& rows, const ExrImage& exr) {
+    const size_t stride = 3 * size_t(exr.width);
+    std::vector<float> values(stride * size_t(exr.height));
+    for (int y = 0; y < exr.height; ++y)
+        rows(y, std::span(values).subspan(size_t(y) * stride, stride));
+    return values;
+}
+
 // Adds alpha to rows of R, G, B, which are moved apart for it from the last pixel on.
 RowSource WithAlpha(const RowSource& rows, const Film& film) {
     return [&film, &mattes = *film.layers.Find<MatteLayer>(), rows](int y, std::span<float> row) {
@@ -177,7 +178,9 @@ int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Pictu
     const auto& [film, denoised, result, layers, format] = picture;
     ExrImage exr = MakeExr(origin, film, result);
     if (denoised) {
-        std::ranges::move(MakeDenoisedChannels(*denoised, film.MeanImage()),
+        const RowSource noisy =
+            format.isTransparent ? WithoutBackground(MeansOf(film), false, film) : MeansOf(film);
+        std::ranges::move(MakeDenoisedChannels(*denoised, ValuesOf(noisy, exr)),
                           std::back_inserter(exr.channels));
         exr.attributes["denoised"] = kDenoisedNote;
     }

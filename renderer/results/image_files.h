@@ -11,8 +11,7 @@ namespace lull {
 
 // How pictures are stored.
 struct PictureFormat {
-    ToneMap toneMap = ToneMap::None;                 // of the PNG
-    std::shared_ptr<const ViewTransform> view = {};  // of the PNG, instead; null: none
+    Grade grade = {};  // of the PNG
     int pngBits = 8;
     // Colours and normals of the EXR take 16 bits; depths, positions, numbers and counts 32.
     bool exrHalf = false;

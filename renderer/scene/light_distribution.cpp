@@ -40,9 +40,7 @@ LightDistribution::LightDistribution(int count, const Bounds3f& bounds) : lightC
         grid = VoxelGrid(bounds, most);
         if (double(grid.Count()) * count <= kMaxEntries) break;
     }
-    for (int i = 0; i < kSamples; ++i)
-        points.push_back({{RadicalInverse(2, i), RadicalInverse(3, i), RadicalInverse(5, i)},
-                          {RadicalInverse(7, i), RadicalInverse(11, i)}});
+    probes = std::make_unique<const LightProbes>();
     AllocateTables();
 }
 
@@ -54,7 +52,7 @@ void LightDistribution::AllocateTables() {
 std::vector<float> LightDistribution::RunningSums(std::vector<float> contributions) const {
     // Leave every light some probability: the points may all have missed where it shines.
     const float sum = std::accumulate(contributions.begin(), contributions.end(), 0.f);
-    const float average = sum / (float(kSamples) * lightCount);
+    const float average = sum / (float(LightProbes::kCount) * lightCount);
     const float least = average > 0 ? 0.001f * average : 1.f;
     for (float& c : contributions) c = std::max(c, least);
     return Normalized(std::move(contributions));

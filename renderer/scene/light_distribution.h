@@ -9,6 +9,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"
 #include "renderer/scene/light_hierarchy.h"
+#include "renderer/scene/light_probes.h"
 #include "renderer/scene/voxel_grid.h"
 
 namespace lull {
@@ -59,13 +60,11 @@ class LightDistribution {
     // Chooses among `count` lights by the voxel of p within the scene's bounds.
     LightDistribution(int count, const Bounds3f& bounds);
 
-    // Returns the choice for p, which stays valid as long as this object. The table of a voxel is
-    // made when first needed; it depends on the voxel alone, so that the order of threads cannot
-    // change it. contribution(light, p, u) estimates the contribution of a light at p: luminance
-    // over density of its sample u, without visibility.
+    // Returns the choice for a voxel, which stays valid as long as this object. The table of a
+    // voxel is made when first needed; it depends on the voxel alone, so that the order of threads
+    // cannot change it. contribution(light, probes, places) returns what Contribution() does.
     template <typename Contribution>
-    LightChoice Lookup(const Vec3f& p, const Contribution& contribution) const {
-        const size_t voxel = grid.VoxelOf(p);
+    LightChoice Lookup(size_t voxel, const Contribution& contribution) const {
         const std::span<float> sums(tables + voxel * lightCount, lightCount);
         // A table that has not been made is all zeros; its last sum is written last, and shows it.
         std::atomic_ref<float> last(sums.back());
@@ -74,26 +73,22 @@ class LightDistribution {
         return LightChoice(sums);
     }
 
-    // Starts to load the table of p, which is usually far away in memory: its first sums and the
-    // last one, which Lookup() looks at.
-    void Prefetch(const Vec3f& p) const {
-        const float* table = tables + grid.VoxelOf(p) * lightCount;
+    // Starts to load the table of a voxel, which is usually far away in memory: its first sums and
+    // the last one, which Lookup() looks at.
+    void Prefetch(size_t voxel) const {
+        const float* table = tables + voxel * lightCount;
         lull::Prefetch(table);
         lull::Prefetch(table + lightCount - 1);
     }
 
+    // Returns the probes of tables of places; there are none of fixed weights.
+    const LightProbes& Probes() const { return *probes; }
     // Returns the voxels that the tables are for; of fixed weights it is one.
     const VoxelGrid& Grid() const { return grid; }
 
   private:
     static constexpr int kMaxVoxels = 64;  // along the longest axis
-    static constexpr int kSamples = 128;   // a voxel
     static constexpr int kLocks = 64;
-
-    struct HaltonPoint {
-        Vec3f p;
-        Vec2f u;
-    };
 
     // Makes the table of the voxel, unless another thread has by now. Separate, as Lookup() would
     // be too long to be inlined with it.
@@ -108,15 +103,11 @@ class LightDistribution {
         last.store(made.back(), std::memory_order_release);
     }
 
-    // Averages over a Halton set of points in the voxel and on the lights.
     template <typename Contribution>
     std::vector<float> Compute(size_t voxel, const Contribution& contribution) const {
-        const Bounds3f box = grid.BoundsOf(voxel);
-        const Vec3f size = box.Diagonal();
-        std::vector<float> sums(lightCount, 0.f);
-        for (const HaltonPoint& h : points)
-            for (int k = 0; k < lightCount; ++k)
-                sums[k] += contribution(k, box.lower + size.cwiseProduct(h.p), h.u);
+        const LightProbes::Places places = probes->PlacesIn(grid.BoundsOf(voxel));
+        std::vector<float> sums(lightCount);
+        for (int k = 0; k < lightCount; ++k) sums[k] = contribution(k, *probes, places);
         return RunningSums(std::move(sums));
     }
     std::vector<float> RunningSums(std::vector<float> contributions) const;
@@ -124,7 +115,7 @@ class LightDistribution {
 
     int lightCount = 0;
     VoxelGrid grid;
-    std::vector<HaltonPoint> points;
+    std::unique_ptr<const LightProbes> probes;  // null: fixed weights
     // One table after another, voxels in x, y, z order. Only pages of voxels that paths visit take
     // memory.
     LazyZeros memory;

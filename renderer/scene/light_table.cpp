@@ -153,6 +153,16 @@ std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const S
 
 }  // namespace
 
+void LightTable::ChooseByPlace(const Bounds3f& bounds) {
+    distribution = std::make_unique<LightDistribution>(Count(), bounds);
+    evenContributions.assign(lights.size(), -1);
+    const LightProbes& probes = distribution->Probes();
+    for (int i = 0; i < Count(); ++i)
+        if (const LightType type = TypeOf(lights[i]);
+            type == LightType::Infinite || type == LightType::DeltaDirection)
+            evenContributions[i] = Contribution(lights[i], probes, probes.unit);
+}
+
 LightTable::LightTable(const Description& description, ShapeTable& shapes,
                        const TextureTable& textures, bool asPbrtV3, Warnings& warnings) {
     const WorldSphere world = BoundingSphere(shapes.bounds);
@@ -216,7 +226,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
     if (strategy != "spatial" || lights.size() == 1 || shapes.bounds.IsEmpty())
         distribution = std::make_unique<LightDistribution>(weights);
     else
-        distribution = std::make_unique<LightDistribution>(Count(), shapes.bounds);
+        ChooseByPlace(shapes.bounds);
 }
 
 std::optional<LightSample> LightTable::Sample(int i, const Vec3f& from, const Vec2f& u) const {

@@ -53,29 +53,41 @@ class LightTable {
         return std::get_if<InfiniteLight>(&lights[i])->Radiance(sample);
     }
 
-    // Returns how lights are chosen at a hit, as the scene's strategy says.
-    LightChoice Choice(const SurfaceInteraction& hit, const Bsdf& bsdf) const {
+    // Returns the place of p among those for which lights are chosen alike, and prefetches its
+    // data, so that the wait overlaps with other work.
+    size_t PlaceOf(const Vec3f& p) const {
+        if (!distribution) return 0;
+        const size_t voxel = distribution->Grid().VoxelOf(p);
+        distribution->Prefetch(voxel);
+        return voxel;
+    }
+    // Returns how lights are chosen at a hit, as the scene's strategy says. `place`: PlaceOf() of
+    // it, or of a point as close as rounding.
+    LightChoice Choice(const SurfaceInteraction& hit, const Bsdf& bsdf, size_t place) const {
         if (hierarchy) [[unlikely]]
             return {*hierarchy, {hit.p, FaceForward(hit.n, hit.wo), bsdf.Transmits()}};
-        return Choice(hit.p);
+        return ChoiceIn(place);
     }
     // The same for a point whose surface, if any, does not matter.
-    LightChoice Choice(const Vec3f& p) const {
+    LightChoice Choice(const Vec3f& p, size_t place) const {
         if (hierarchy) [[unlikely]]
             return {*hierarchy, {p, Vec3f::Zero(), true}};
-        return distribution->Lookup(p, [&](int i, const Vec3f& q, const Vec2f& u) {
-            const auto sample = Sample(i, q, u);
-            return sample ? Luminance(Radiance(i, *sample)) / sample->pdf : 0.f;
-        });
-    }
-
-    // Prefetches the data of Choice(p), so that the wait overlaps with other work.
-    void Prefetch(const Vec3f& p) const {
-        if (distribution) distribution->Prefetch(p);
+        return ChoiceIn(place);
     }
 
   private:
+    void ChooseByPlace(const Bounds3f& bounds);
+    LightChoice ChoiceIn(size_t place) const {
+        return distribution->Lookup(
+            place, [&](int i, const LightProbes& probes, const LightProbes::Places& places) {
+                const float even = evenContributions[i];
+                return even >= 0 ? even : Contribution(lights[i], probes, places);
+            });
+    }
+
     std::vector<Light> lights;
+    std::vector<float>
+        evenContributions;  // by light: Contribution(), or -1 where it depends on the place
     std::vector<int> entities;
     std::vector<std::unique_ptr<const EmissionMap>> emissionMaps;
     std::vector<int> infinite;

@@ -55,7 +55,8 @@ class Vertices {
 // over the density with which the light starts paths there.
 double DirectOverEmitted(const Scene& scene, const SubpathVertex& v, const EmittedRay& ray) {
     const Light& light = scene.lights[ray.light];
-    const float pmf = SurfaceVertex{v.hit, v.bsdf, 0}.Choice(scene.lights).Pmf(ray.light);
+    const float pmf =
+        scene.lights.Choice(v.hit, v.bsdf, scene.lights.PlaceOf(v.hit.p)).Pmf(ray.light);
     const LightType type = TypeOf(light);
     double density = pmf;
     if (type == LightType::Area) {
@@ -313,7 +314,7 @@ template <typename Recorder>
         }
         if (isLast) break;
         if (v.Connects() && scene.lights.Count() > 0) {
-            choice = SurfaceVertex{v.hit, v.bsdf, found.shape}.Choice(scene.lights);
+            choice = scene.lights.Choice(v.hit, v.bsdf, scene.lights.PlaceOf(v.hit.p));
             int chosen;
             const Rgb sampled = SampledLight(context, v, choice, &chosen);
             find(chosen, sampled);

@@ -17,12 +17,14 @@ struct TiledSample {
 
 // Returns how lights are chosen at the vertex.
 template <typename Media, typename Vertex>
-LightChoice ChoiceAt(const PathContext<Media>& context, const Vertex& v, LearnedPlace place) {
+[[gnu::always_inline]] inline LightChoice ChoiceAt(const PathContext<Media>& context,
+                                                   const Vertex& v, size_t lightPlace,
+                                                   LearnedPlace learned) {
     if (context.learned && context.learned->lights) [[unlikely]] {
-        const std::span<const float> sums = context.learned->lights->At(place.lightCell);
+        const std::span<const float> sums = context.learned->lights->At(learned.lightCell);
         if (sums.back() > 0) return LightChoice(sums);
     }
-    return v.Choice(context.scene.lights);
+    return v.Choice(context.scene.lights, lightPlace);
 }
 
 // Tells the records what a sample of light `index` has brought: luminance, had the light been
@@ -48,11 +50,9 @@ template <typename Media>
                                                       const TileShares* tiles) {
     const LightTable& lights = context.scene.lights;
     const Vec2f u = context.sampler.Get2D();
+    if (!tiles || index != lights.Environment()) [[likely]]  // made in place: copies take long
+        return {.index = index, .light = lights.Sample(index, p, u)};
     TiledSample sample{.index = index, .light = {}};
-    if (!tiles || index != lights.Environment()) {
-        sample.light = lights.Sample(index, p, u);
-        return sample;
-    }
     const auto& environment = std::get<InfiniteLight>(lights[index]);
     sample.light = environment.Sample(*tiles, u, &sample.tile);
     if (context.learned->environmentRecord)
@@ -143,13 +143,13 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 
-// Samples direct light as the estimator says, after FindLearned(): chooses one light of those at
-// the vertex, tells the path how likely each was, and the recorder of its light.
+// Samples direct light as the estimator says, after FindLearned() and PlaceOf(): chooses one light
+// of those at the vertex, tells the path how likely each was, and the recorder of its light.
 template <typename Media, typename Vertex, typename Guiding, typename Recorder>
 [[gnu::always_inline]] inline Rgb SampleDirectLight(const PathContext<Media>& context,
                                                     const Vertex& v, const Guiding& guiding,
                                                     Recorder& recorder, Path* path) {
-    path->choice = ChoiceAt(context, v, path->learned);
+    path->choice = ChoiceAt(context, v, path->lightPlace, path->learned);
     float pmf;
     const int index = path->choice.Sample(context.sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();

@@ -54,7 +54,9 @@ struct Path {
     float pdf = 0;                 // 1/sr
     Vec3f origin = Vec3f::Zero();  // the vertex
     LightChoice choice{};          // of lights there
+    // Of the vertex that the path has come to:
     LearnedPlace learned{};
+    size_t lightPlace = 0;     // LightTable::PlaceOf() it
     bool wentThrough = false;  // an interface, where the ray continues unscattered
 };
 

@@ -25,7 +25,7 @@ template <typename Media, typename Guiding, typename Recorder>
     const Vec3f p = path->ray.o + *inMedium.t * path->ray.d;
     if (!(p.squaredNorm() <= Sqr(scene.shapes.reach))) return Fate::Ends;  // no ray starts there
     const MediumVertex v{p, -path->ray.d.normalized(), context.media.PhaseParameter()};
-    scene.lights.Prefetch(v.p);
+    path->lightPlace = scene.lights.PlaceOf(v.p);
     recorder.MeetMedium(*path, *inMedium.t, v.p);
     if (isLast) return Fate::Ends;
     guiding.Enter(v);
@@ -56,6 +56,7 @@ template <typename Media, typename Guiding, typename Recorder>
     path->beta *= exit->weight;
     const Bsdf out = ExitBsdf(*exit, profile->eta);
     const SurfaceVertex last{exit->hit, out, exit->shape};
+    path->lightPlace = scene.lights.PlaceOf(last.hit.p);
     guiding.Enter(last, true);
     if (context->learned) [[unlikely]]
         path->learned = FindLearned(*context->learned, last.hit.p,
@@ -130,7 +131,7 @@ template <typename Media, typename Guiding, typename Recorder>
         }
 
         // Compute the interaction with the surface, unless all that could come of it is known.
-        scene.lights.Prefetch(path.ray.o + found.t * path.ray.d);
+        path.lightPlace = scene.lights.PlaceOf(path.ray.o + found.t * path.ray.d);
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         const bool endsHere = onlyEmits && !Media::LooksBehind(needs);

@@ -13,7 +13,9 @@ struct SurfaceVertex {
     int shape;
 
     const Vec3f& Position() const { return hit.p; }
-    LightChoice Choice(const LightTable& lights) const { return lights.Choice(hit, bsdf); }
+    LightChoice Choice(const LightTable& lights, size_t place) const {
+        return lights.Choice(hit, bsdf, place);
+    }
 
     BsdfValue Evaluate(const Vec3f& wi, LobeSet set) const {
         return bsdf.Evaluate(hit.wo, wi, set);
@@ -50,7 +52,9 @@ struct MediumVertex {
     float g;
 
     const Vec3f& Position() const { return p; }
-    LightChoice Choice(const LightTable& lights) const { return lights.Choice(p); }
+    LightChoice Choice(const LightTable& lights, size_t place) const {
+        return lights.Choice(p, place);
+    }
 
     BsdfValue Evaluate(const Vec3f& wi, LobeSet) const {
         const float phase = PhaseHenyeyGreenstein(wo.dot(wi), g);

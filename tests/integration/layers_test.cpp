@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
 #include "tests/renderer/film/viewer_server.h"
@@ -308,6 +309,15 @@ TEST_F(LayersTest, LetTheBackgroundOut) {
     EXPECT_EQ(ReadImage(directory.File("without.png")).channels, 4);
 }
 
+// The samples' own picture is the same one as the denoised, noisy.
+TEST_F(LayersTest, LetTheBackgroundOutOfTheSamplesToo) {
+    Render("--spp 16 --sampler sobol --denoise --transparent -o denoised.exr");
+    Render("--spp 16 --sampler sobol --transparent -o noisy.exr");
+    OpenExr denoised(directory.File("denoised.exr")), noisy(directory.File("noisy.exr"));
+    for (const std::string c : {"R", "G", "B"})
+        EXPECT_EQ(denoised.Channel("noisy." + c), noisy.Channel(c));
+}
+
 // What is seen first does not depend on where paths are sent afterwards.
 TEST_F(LayersTest, GuidesLeaveThemAsTheyAre) {
     const std::string options = std::string(kAll) + "--spp 64 ";
@@ -362,6 +372,39 @@ TEST_F(LayersTest, PicturesSayHowTheyAreMade) {
     // The image itself knows of the exposure, but not of the tone map.
     Render("--spp 4 --exposure 1.5 -o b.exr");
     EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
+}
+
+TEST_F(LayersTest, RulesSeeThePictureAsItIsShown) {
+    const auto stops = [&](const std::string& options) {
+        Render("--cap 400 " + options + " -o a.exr");
+        return ReadExr(directory.File("a.exr"));
+    };
+    const auto sppOf = [](const ExrImage& exr) { return exr.Find("spp")->values[0]; };
+    // Dark noise, which hardly anybody sees.
+    for (const std::string rule : {"--stop entropy ", "--denoise "}) {
+        const std::string dark = rule + "--exposure -5 ";
+        const ExrImage plain = stops(dark), lifted = stops(dark + "--graded-by 4"),
+                       shown = stops(dark + "--view-exposure 4");
+        EXPECT_GT(sppOf(lifted), sppOf(plain)) << rule;
+        EXPECT_EQ(sppOf(lifted), sppOf(shown)) << rule;
+        EXPECT_EQ(plain.attributes.count("judgedGrades"), 0u);
+        EXPECT_EQ(std::get<std::string>(lifted.attributes.at("judgedGrades")), "sRGB; +4 stops");
+        EXPECT_EQ(std::get<std::string>(shown.attributes.at("judgedGrades")), "+4 stops");
+    }
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --graded-by nan").exitCode, 2);
+    EXPECT_EQ(RunLull(directory, "render scene.pbrt --view-exposure 101").exitCode, 2);
+}
+
+TEST_F(LayersTest, PicturesAreBrightenedForTheView) {
+    Render("--spp 4 -o a.exr");
+    Render("--spp 4 --view-exposure -1 -o b.exr");
+    EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
+    const Image png = ReadImage(directory.File("b.png"));
+    const auto& shown = std::get<std::vector<uint8_t>>(png.texels);
+    const ExrImage exr = ReadExr(directory.File("a.exr"));
+    const std::vector<float>& green = exr.Find("G")->values;
+    for (size_t i = 0; i < green.size(); ++i)
+        ASSERT_NEAR(shown[3 * i + 1], 255 * SrgbFromLinear(std::min(1.f, green[i] / 2)), 0.51f);
 }
 
 // The view of this test halves all colours.

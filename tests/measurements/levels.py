@@ -1,5 +1,6 @@
 """Prints the noise of recorded blocks at the thresholds of observers, by viewpoint: geometric means over blocks, and the
-standard deviation of their logarithms. Needs h5py and NumPy.
+standard deviation of their logarithms; then the masked noise by kinds of blocks, its sub-blocks pooled in several ways, with the
+standard deviations within viewpoints. Needs h5py and NumPy.
 
     python3 levels.py HUMAN.csv DATASET.h5...
 """
@@ -33,21 +34,52 @@ def measures(block, human):
     return masked.mean(), np.sqrt((masked ** 2).mean()), (peak ** 4).mean() ** 0.25
 
 
+# Kinds of blocks, by the means over sub-blocks of lightness and texture in L*; a block can be of two.
+KINDS = {'all': lambda lightness, texture: True, 'dark (L* below 30)': lambda lightness, texture: lightness < 30,
+         'bright (L* above 80)': lambda lightness, texture: lightness > 80, 'smooth (texture below 2)': lambda lightness, texture: texture < 2,
+         'between': lambda lightness, texture: 2 <= texture < 5, 'textured (texture above 5)': lambda lightness, texture: texture >= 5}
+POOLS = {'mean': np.mean, 'RMS': lambda x: (x ** 2).mean() ** 0.5, '4th power': lambda x: (x ** 4).mean() ** 0.25,
+         '75 %': lambda x: np.quantile(x, 0.75), '95 %': lambda x: np.quantile(x, 0.95), 'largest': np.max}
+
+
+def within(values, groups):
+    """Standard deviation from the means of groups, each block as one degree of freedom less."""
+    means = {g: np.mean([v for v, h in zip(values, groups) if h == g]) for g in set(groups)}
+    freedom = len(values) - len(means)
+    return np.sqrt(sum((v - means[g]) ** 2 for v, g in zip(values, groups)) / freedom) if freedom > 0 else 0
+
+
+def print_kinds(blocks):
+    """Blocks are tuples of viewpoint, lightness, texture and the masked noise of sub-blocks."""
+    print('\n| kind | blocks | ' + ' | '.join(POOLS) + ' |\n|---|---|' + '---|' * len(POOLS))
+    for kind, is_one in KINDS.items():
+        found = [b for b in blocks if is_one(b[1], b[2])]
+        views = [b[0] for b in found]
+        cells = []
+        for pool in POOLS.values():
+            values = [np.log(pool(b[3])) for b in found]
+            cells.append(f'{np.exp(np.mean(values)):.2f} ({within(values, views):.2f})')
+        print(f'| {kind} | {len(found)} | ' + ' | '.join(cells) + ' |')
+
+
 def main():
     human = read_thresholds(sys.argv[1])
-    views = {}
+    views, blocks = {}, []
     for path in sys.argv[2:]:
         with h5py.File(path, 'r') as file:
             for view in file:
                 for name in file[view]:
                     threshold = human[view][int(name[len('block_'):])]
                     views.setdefault(view, []).append(np.log(measures(file[view][name], threshold)))
+                    now = at(file[view][name], threshold)
+                    blocks.append((view, now('lightness').mean(), now('texture').mean(), now('masked_noise')))
     print('| viewpoint | blocks | mean of masked noise | RMS | peak noise |\n|---|---|---|---|---|')
     cell = lambda values: f'{np.exp(np.mean(values)):.2f} ({np.std(values):.2f})'
     for view, rows in sorted(views.items()):
         print(f'| {view} | {len(rows)} | ' + ' | '.join(cell(c) for c in np.array(rows).T) + ' |')
     means = np.array([np.mean(rows, axis=0) for rows in views.values()])
     print(f'| between viewpoints | {len(means)} | ' + ' | '.join(cell(c) for c in means.T) + ' |')
+    print_kinds(blocks)
 
 
 if __name__ == '__main__':

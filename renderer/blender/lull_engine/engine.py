@@ -1,5 +1,6 @@
 """The render engine: exports the scene, runs lull, and fills Blender's render result."""
 import json
+import math
 import os
 import tempfile
 import time
@@ -108,6 +109,10 @@ class _Job:
                    *self.settings.arguments()]
         if self.is_transparent:
             command += ["--transparent"]
+        if self.scene.cycles.film_exposure not in (0, 1):
+            command += ["--exposure", "%.9g" % math.log2(self.scene.cycles.film_exposure)]
+        if self.scene.view_settings.exposure:
+            command += ["--view-exposure", "%.9g" % self.scene.view_settings.exposure]
         if self.crop:
             command += ["--crop", self.crop]
         if exported["environment"]:
@@ -133,11 +138,13 @@ class _Job:
         Returns: the result of export.py; None if the user has cancelled.
         """
         blend = os.path.join(self.folder, "scene.blend")
-        bpy.data.libraries.write(blend, {self.scene}, path_remap='ABSOLUTE')
+        override = self.scene.view_layers[self.layer].material_override
+        bpy.data.libraries.write(blend, {self.scene, override} - {None}, path_remap='ABSOLUTE')
         said = os.path.join(self.folder, "export.json")
-        what = {"blend": blend, "scene": self.scene.name, "layer": self.layer, "folder": self.folder,
+        what = {"blend": blend, "scene": self.scene.name, "layer": self.layer,
+                "material": override.name if override else None, "folder": self.folder,
                 "frame": self.scene.frame_current, "subframe": self.scene.frame_subframe,
-                "said": said}
+                "texture": self.settings.texture, "said": said}
         scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
         code, output, ended = run(
             [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",

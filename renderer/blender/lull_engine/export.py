@@ -1,31 +1,36 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
-The last argument is a JSON object: the file, the names of scene and view layer, the frame, the output
-folder, and the file of the result, with `gltf`, `environment` (or null) and `warnings`.
+The last argument is a JSON object: the file, the names of scene, view layer and its material override (or null), the frame, the size of
+baked images, the output folder, and the file of the result, with `gltf`, `environment` (or null) and
+`warnings`.
 
-Blender's own exporter writes the file. Area lights become emitting meshes, the world becomes an image.
+Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
+modifiers, instances and particles. Area lights become emitting meshes, the world becomes an image.
 Shift, depth of field and the radius of point lights are `extras`, which only lull reads.
 """
 import json
+import math
 import os
 import sys
 
 import bpy
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import bake  # noqa: E402
+import flatten  # noqa: E402
 import lights  # noqa: E402
+import notes as notes_  # noqa: E402
 import surfaces  # noqa: E402
 import world  # noqa: E402
-
-_MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
-_UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE'}
-
 
 def load(what):
     """Opens the scene, alone, so that everything keeps its name."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     with bpy.data.libraries.load(what["blend"]) as (_, wanted):
         wanted.scenes = [what["scene"]]
+        wanted.materials = [what["material"]] if what["material"] else []
     scene = wanted.scenes[0]
     window = bpy.context.window
     window.scene = scene
@@ -57,42 +62,59 @@ def show_as_rendered(scene, layer):
         o.hide_viewport = False  # dependencies are evaluated, too
         if o.name in layer.objects:
             o.hide_set(o.hide_render)
+        o.show_instancer_for_viewport = o.show_instancer_for_render
+        for system in o.particle_systems:
+            system.settings.display_percentage = 100
         for modifier in o.modifiers:
             modifier.show_viewport = modifier.show_render
             if hasattr(modifier, "render_levels"):
                 modifier.levels = modifier.render_levels
-    scene.render.use_simplify = False
+    r = scene.render
+    r.simplify_subdivision, r.simplify_child_particles = r.simplify_subdivision_render, r.simplify_child_particles_render
     return wanted
 
 
-def warn_of_objects(objects, warn):
-    for o in objects:
-        if o.type not in _MESHES | _UNSEEN:
-            warn(f"object '{o.name}' is left out: glTF has nothing like {o.type.lower()}")
-        for system in o.particle_systems:
-            warn(f"particles '{system.name}' of object '{o.name}' are left out")
-        if o.type in _MESHES and (o.is_shadow_catcher or o.is_holdout):
-            warn(f"object '{o.name}' is shown as any other, not as shadow catcher or holdout")
-
-
-def warn_of_film(scene, warn):
+def note_film(scene, notes):
     if scene.render.use_motion_blur:
-        warn("there is no motion blur")
+        notes.say("there is no motion blur")
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
-        warn("pixels are square, whatever their aspect")
+        notes.say("pixels are square, whatever their aspect")
+    if any(c.indirect_only or c.holdout for c in _collections(bpy.context.view_layer.layer_collection)):
+        notes.say("collections that are indirect only or holdouts are shown as any others")
 
 
-def set_camera(scene, warn):
-    """Adds the properties that glTF lacks to the camera, as `extras`. Raises: SystemExit without a camera."""
-    camera = scene.camera
-    if camera is None:
+def _collections(collection):
+    return [collection] + [c for child in collection.children for c in _collections(child)]
+
+
+def note_clipping(camera, made, notes):
+    """Notes objects before the distance at which a camera begins to see."""
+    inverse, start = camera.matrix_world.inverted(), camera.data.clip_start
+    for o in made:
+        depths = [-(inverse @ (o.matrix_world @ Vector(corner))).z for corner in o.bound_box]
+        if max(depths) > 0 and min(depths) < start and _may_be_seen(camera, o):
+            notes.add("seen before the camera's clip start", o["lull_source"])
+
+
+def _may_be_seen(camera, o):
+    corners = [world_to_camera_view(bpy.context.scene, camera, o.matrix_world @ Vector(c)) for c in o.bound_box]
+    return min(c.x for c in corners) < 1 and max(c.x for c in corners) > 0 and \
+        min(c.y for c in corners) < 1 and max(c.y for c in corners) > 0
+
+
+def camera_of(scene):
+    """Returns the scene's camera. Raises: SystemExit without one that glTF has."""
+    if scene.camera is None:
         raise SystemExit("the scene has no camera")
+    if scene.camera.data.type == 'PANO':
+        raise SystemExit(f"camera '{scene.camera.name}' is panoramic, which glTF does not support")
+    return scene.camera
+
+
+def add_camera(scene, flat, notes):
+    """Copies the camera, with the properties that glTF lacks as `extras`."""
+    camera = scene.camera
     data = camera.data
-    if data.type == 'PANO':
-        raise SystemExit(f"camera '{camera.name}' is panoramic, which glTF does not support")
-    for o in scene.objects:
-        o.hide_render = o.hide_render or (o.type == 'CAMERA' and o != camera)
-    camera.hide_render = False
     lens = {}
     width, height = scene.render.resolution_x, scene.render.resolution_y
     fits_width = data.sensor_fit == 'HORIZONTAL' or data.sensor_fit == 'AUTO' and width >= height
@@ -109,9 +131,15 @@ def set_camera(scene, warn):
         lens["lensRadius"] = length / (2 * data.dof.aperture_fstop)
         lens["focusDistance"] = max(focus, 1e-5)
         if data.dof.aperture_blades or data.dof.aperture_ratio != 1:
-            warn(f"the aperture of camera '{camera.name}' is round")
+            notes.say(f"the aperture of camera '{camera.name}' is round")
+    made = bpy.data.objects.new(camera.name, data.copy())
     if lens:
-        data["lull"] = lens
+        made.data["lull"] = lens
+    made.matrix_world = camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+    flat.collection.objects.link(made)
+    flat.camera = made
+    for name in "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y":
+        setattr(flat.render, name, getattr(scene.render, name))
 
 
 def patch(path):
@@ -123,6 +151,13 @@ def patch(path):
         # Without this, glass would be a thin sheet; Blender's is solid.
         if "KHR_materials_transmission" in extensions:
             extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
+        if material.get("extras", {}).pop("lull_adds", None):
+            material["extras"]["lull"] = {"addedInterface": True}
+        absorbs = material.get("extras", {}).pop("lull_absorbs", None)
+        if absorbs and max(absorbs) > 0 and "KHR_materials_volume" in extensions:
+            distance = 1 / max(absorbs)
+            extensions["KHR_materials_volume"].update(
+                attenuationDistance=distance, attenuationColor=[math.exp(-a * distance) for a in absorbs])
         # Without this, surfaces without specular reflection would reflect at grazing angles.
         specular = extensions.get("KHR_materials_specular", {})
         if specular.get("specularColorFactor") == [0, 0, 0]:
@@ -134,33 +169,36 @@ def patch(path):
 def export(path):
     bpy.ops.export_scene.gltf(
         filepath=path, export_format='GLTF_SEPARATE', use_active_scene=True, use_renderable=True,
-        export_cameras=True, export_lights=True, export_extras=True, export_apply=True,
+        export_cameras=True, export_lights=True, export_extras=True, export_apply=False,
         export_animations=False, export_current_frame=True, export_skins=False, export_morph=False)
 
 
 def main():
     what = json.loads(sys.argv[-1])
-    warnings = []
-
-    def warn(text):
-        if text not in warnings:
-            warnings.append(text)
-
+    notes = notes_.Notes()
     scene = load(what)
     layer = bpy.context.window.view_layer
-    objects = show_as_rendered(scene, layer)
+    wanted = show_as_rendered(scene, layer)
     scene.frame_set(what["frame"], subframe=what["subframe"])
-    warn_of_film(scene, warn)
-    warn_of_objects(objects, warn)
-    set_camera(scene, warn)
-    surfaces.prepare(objects, warn)
-    lights.prepare(scene, warn)
-    environment = world.write(scene, os.path.join(what["folder"], "world.exr"), warn)
+    camera = camera_of(scene)
+    note_film(scene, notes)
+    flat, made = flatten.flatten(wanted, what["material"] and bpy.data.materials[what["material"]], notes)
+    lamps = lights.find(scene, wanted)
+    add_camera(scene, flat, notes)
+    note_clipping(camera, made, notes)
+    baker = bake.Baker(what["texture"])
+    for o in surfaces.prepare(made, baker, notes):
+        notes.add("left out, being nothing but a volume", o["lull_source"])
+        flat.collection.objects.unlink(o)
+    baker.end()
+    lights.add(lamps, scene, flat, notes)
+    environment = world.write(scene, os.path.join(what["folder"], "world.exr"), notes)
+    bpy.context.window.scene = flat
     path = os.path.join(what["folder"], "scene.gltf")
     export(path)
     patch(path)
     with open(what["said"], "w", encoding="utf-8") as f:
-        json.dump({"gltf": path, "environment": environment, "warnings": warnings}, f)
+        json.dump({"gltf": path, "environment": environment, "warnings": notes.lines()}, f)
 
 
 main()

@@ -5,31 +5,47 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 
 
-def prepare(scene, warn):
-    """Gives point lights a radius, suns an angle, and makes meshes of area lights: glTF lacks these."""
+def find(scene, wanted):
+    """Returns the lights of the objects `wanted` and where they are, instances too."""
     graph = bpy.context.evaluated_depsgraph_get()
-    lamps = [(i.object.original, i.matrix_world.copy()) for i in graph.object_instances
-             if i.object.type == 'LIGHT' and not i.object.original.hide_render
-             and not _is_portal(i.object.original.data)]
-    for light in {o.data for o, _ in lamps}:
-        if light.use_nodes:
-            _fold_nodes(light, warn)
-        if light.type == 'POINT' and light.shadow_soft_size > 0:
-            light["lull"] = {"radius": light.shadow_soft_size}
-        if light.type == 'SUN' and light.angle > 0:
-            light["lull"] = {"angle": light.angle}
-        if light.type == 'SPOT':
-            light.spot_blend = _blend_of(light)
-        light.use_nodes = False  # would be taken for all of its strength
+    return [(i.object.original, i.matrix_world.copy()) for i in graph.object_instances
+            if i.object.type == 'LIGHT' and not _is_portal(i.object.original.data)
+            and (i.parent.original if i.is_instance else i.object.original) in wanted]
+
+
+def add(lamps, scene, flat, notes):
+    """Adds lights to a scene, point lights with a radius, suns with an angle, and meshes for area lights: glTF lacks these."""
+    folded = {}
     for o, matrix in lamps:
-        light = o.data
+        light = folded.get(o.data)
+        if light is None:
+            light = folded[o.data] = _folded(o.data.copy(), notes)
         if light.type == 'SPOT' and light.shadow_soft_size > 0:
-            warn(f"spot light '{o.name}' has no radius: its shadows are sharp")
+            notes.add("without a radius, with sharp shadows", o.name, "lights")
         elif not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
-                warn(f"light '{o.name}' is seen by the camera")
+                notes.add("seen by the camera", o.name, "lights")
+        if not light.use_shadow or not getattr(light.cycles, "cast_shadow", True):
+            notes.add("casting shadows all the same", o.name, "lights")
         if light.type == 'AREA':
-            _add_area(scene, o, matrix, warn)
+            _add_area(flat, o, light, matrix, notes)
+            continue
+        made = bpy.data.objects.new(o.name, light)
+        made.matrix_world = matrix
+        flat.collection.objects.link(made)
+
+
+def _folded(light, notes):
+    if light.use_nodes:
+        _fold_nodes(light, notes)
+    if light.type == 'POINT' and light.shadow_soft_size > 0:
+        light["lull"] = {"radius": light.shadow_soft_size}
+    if light.type == 'SUN' and light.angle > 0:
+        light["lull"] = {"angle": light.angle}
+    if light.type == 'SPOT':
+        light.spot_blend = _blend_of(light)
+    light.use_nodes = False  # would be taken for all of its strength
+    return light
 
 
 def _is_portal(light):
@@ -48,16 +64,49 @@ def _blend_of(light):
     return 1 - math.acos(min(1, edge + way)) / half
 
 
-def _fold_nodes(light, warn):
+def _fold_nodes(light, notes):
     """Applies strength and colour of simple nodes to the light."""
     output = next((n for n in light.node_tree.nodes if n.type == 'OUTPUT_LIGHT'), None)
     links = output.inputs['Surface'].links if output else ()
     emission = links[0].from_node if links else None
-    if emission is None or emission.type != 'EMISSION' or any(i.links for i in emission.inputs):
-        warn(f"light '{light.name}' shines without its nodes")
+    if emission is None or emission.type != 'EMISSION':
+        notes.add("shining without nodes", light.name, "lights")
         return
-    light.energy *= emission.inputs['Strength'].default_value
-    light.color = [a * b for a, b in zip(light.color, emission.inputs['Color'].default_value)]
+    strength, colour = emission.inputs['Strength'], emission.inputs['Color']
+    source = colour.links[0].from_node if colour.links else None
+    if source is not None and source.type == 'BLACKBODY' and not source.inputs[0].links:
+        shown = _blackbody(source.inputs[0].default_value)
+    elif source is not None and source.type == 'RGB':
+        shown = source.outputs[0].default_value
+    else:
+        shown = colour.default_value
+        if source is not None:
+            notes.add("shining in the plain colour, without nodes", light.name, "lights")
+    if strength.links and strength.links[0].from_node.type == 'VALUE':
+        light.energy *= strength.links[0].from_socket.default_value
+    elif strength.links:
+        notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
+    else:
+        light.energy *= strength.default_value
+    light.color = [a * b for a, b in zip(light.color, shown)]
+
+
+def _blackbody(kelvin):
+    """Returns the R, G, B of a luminance of 1 of a black body: its spectrum in 10 nm, by the fit of Wyman et al. (2013) to the
+    functions of the CIE."""
+    def lobe(x, mean, below, above):
+        return math.exp(-0.5 * ((x - mean) / (below if x < mean else above)) ** 2)
+
+    total = [0, 0, 0]
+    for nm in range(380, 781, 10):
+        radiance = (nm / 560) ** -5 / (math.exp(14387768.8 / (nm * kelvin)) - 1)
+        total[0] += radiance * (1.056 * lobe(nm, 599.8, 37.9, 31) + 0.362 * lobe(nm, 442, 16, 26.7)
+                                - 0.065 * lobe(nm, 501.1, 20.4, 26.2))
+        total[1] += radiance * (0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1))
+        total[2] += radiance * (1.217 * lobe(nm, 437, 11.8, 36) + 0.681 * lobe(nm, 459, 26, 13.8))
+    x, y, z = (t / total[1] for t in total)
+    return [max(0, v) for v in (3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z,
+                                0.0557 * x - 0.2040 * y + 1.0570 * z)]
 
 
 def _is_in_view(scene, point):
@@ -65,11 +114,10 @@ def _is_in_view(scene, point):
     return depth > 0 and 0 < x < 1 and 0 < y < 1
 
 
-def _add_area(scene, o, matrix, warn):
+def _add_area(flat, o, light, matrix, notes):
     """Adds a mesh that emits downwards, like the light."""
-    light = o.data
     if light.spread < math.pi - 1e-4:
-        warn(f"area light '{o.name}' shines to all sides: its spread is left out")
+        notes.add("shining to all sides, without spread", o.name, "lights")
     width = light.size
     height = light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else width
     if light.shape in ('SQUARE', 'RECTANGLE'):
@@ -94,7 +142,7 @@ def _add_area(scene, o, matrix, warn):
     mesh.materials.append(_shining(o.name, light.color, light.energy / (4 * area)))
     made = bpy.data.objects.new(o.name, mesh)
     made.matrix_world = matrix
-    scene.collection.objects.link(made)
+    flat.collection.objects.link(made)
 
 
 def _shining(name, color, radiance):

@@ -46,6 +46,7 @@ class LULL_RENDER_PT_stopping(_Panel, bpy.types.Panel):
             if settings.stop_by == 'RULE':
                 layout.prop(settings, "rule")
             layout.prop(settings, "caution")
+            layout.prop(settings, "graded_by")
         layout.prop(settings, "cap")
         layout.prop(settings, "time")
         layout.prop(settings, "denoise")
@@ -58,5 +59,5 @@ class LULL_RENDER_PT_sampling(_Panel, bpy.types.Panel):
     def draw(self, context):
         settings, layout = context.scene.lull, self.layout
         layout.use_property_split = True
-        for name in "guide", "max_depth", "seed":
+        for name in "guide", "max_depth", "seed", "texture":
             layout.prop(settings, name)

@@ -54,6 +54,10 @@ class LullSettings(bpy.types.PropertyGroup):
                ('on', "On", "Guide paths by learned incident light")))
     max_depth: IntProperty(name="Bounces", default=12, min=0, max=1000000,
                            description="Maximum number of bounces")
+    texture: IntProperty(name="Texture Size", default=1024, min=16, max=8192, subtype='PIXEL',
+                         description="Size of the images that replace nodes which glTF does not have")
+    graded_by: FloatProperty(name="Graded By", default=0, min=-10, max=10,
+                             description="Judge noise in the image brightened by this many stops as well")
     seed: IntProperty(name="Seed", min=0, description="Seed of the random numbers")
 
     def arguments(self):
@@ -64,6 +68,8 @@ class LullSettings(bpy.types.PropertyGroup):
             said += ["--spp", str(self.spp)]
         else:
             said += ["--caution", "%g" % self.caution]
+            if self.graded_by:
+                said += ["--graded-by", "%g" % self.graded_by]
             if self.stop_by == 'RULE':
                 said += ["--stop", self.rule]
         if self.time:

@@ -1,145 +1,605 @@
-"""Converts materials to nodes that Blender's exporter supports."""
+"""Converts materials to ones that Blender's exporter writes: a Principled BSDF of plain values and images.
+
+A surface is a set of parameters. Those of mixed surfaces are mixed, with the same factor. Parameters that the exporter knows are
+left as they are, all others are baked.
+"""
 import bpy
+import numpy as np
 
-# Nodes through which the exporter finds a Principled BSDF.
-_KNOWN = {'OUTPUT_MATERIAL', 'BSDF_PRINCIPLED', 'EMISSION', 'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP',
-          'SEPRGB', 'SEPARATE_COLOR', 'COMBRGB', 'COMBINE_COLOR', 'VERTEX_COLOR', 'RGB', 'VALUE',
-          'REROUTE', 'TEX_COORD', 'ATTRIBUTE'}
-# With a plain value or a texture glTF knows; with others it does not.
-_UNSAID = ('Subsurface', 'Subsurface Weight', 'Anisotropic', 'Sheen', 'Sheen Weight', 'Specular Tint',
-           'Transmission Roughness', 'Coat Normal', 'Thin Film Thickness')
+import groups
+
+# Nodes that the exporter follows from an input of a Principled BSDF to an image.
+_KNOWN = {'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP', 'SEPRGB', 'SEPARATE_COLOR', 'VERTEX_COLOR', 'REROUTE', 'TEX_COORD'}
+# What depends on the direction from which a surface is seen, or on who asks.
+_BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA'}
+_BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT_INFO', 'TANGENT', 'AMBIENT_OCCLUSION', 'BEVEL',
+             'WIREFRAME', 'VERTEX_COLOR', 'ATTRIBUTE', 'TEX_NOISE', 'TEX_MUSGRAVE', 'TEX_VORONOI', 'TEX_WAVE', 'TEX_MAGIC',
+             'TEX_CHECKER', 'TEX_BRICK', 'TEX_GRADIENT', 'TEX_WHITE_NOISE', 'TEX_ENVIRONMENT', 'TEX_SKY', 'TEX_POINTDENSITY',
+             'BUMP', 'NORMAL', 'VECT_TRANSFORM', 'SCRIPT'}
+
+# Parameters, and the inputs of a Principled BSDF, until and from Blender 4.
+_INPUTS = {'Base Color': ('Base Color',), 'Metallic': ('Metallic',), 'Roughness': ('Roughness',),
+           'Specular': ('Specular', 'Specular IOR Level'), 'Transmission': ('Transmission', 'Transmission Weight'),
+           'IOR': ('IOR',), 'Alpha': ('Alpha',), 'Clearcoat': ('Clearcoat', 'Coat Weight'),
+           'Clearcoat Roughness': ('Clearcoat Roughness', 'Coat Roughness')}
+_EMISSION = ('Emission', 'Emission Color')
+_DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specular': 0, 'Transmission': 0, 'IOR': 1.45,
+             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0)}
+# Of one number for a whole material.
+_EVEN = ('IOR', 'Specular', 'Clearcoat', 'Clearcoat Roughness', 'Transmission')
+# Plain values of these are left out by glTF, or by its exporter.
+_UNSAID = ('Subsurface', 'Subsurface Weight', 'Anisotropic', 'Sheen', 'Sheen Weight', 'Specular Tint', 'Transmission Roughness',
+           'Thin Film Thickness')
 
 
-def prepare(objects, warn):
-    """Rewrites materials for the exporter, with a warning for each unsupported node."""
-    _fill_slots(objects)
-    materials = {slot.material for o in objects for slot in o.material_slots if slot.material}
-    for material in sorted(materials, key=lambda m: m.name):
-        if not material.use_nodes:
+def prepare(made, baker, notes):
+    """Converts the materials of flattened objects. Returns those objects that have no surface, with their volume alone."""
+    users, empty = {}, []
+    for o in made:
+        for i, material in enumerate(o.data.materials):
+            users.setdefault(material, {}).setdefault(o.data, (o, i))
+    converted = {}
+    for material, meshes in users.items():
+        converted[material] = _convert(material, meshes, baker, notes)
+    done = set()
+    for o in made:
+        if all(_is_empty(m) for m in o.data.materials):
+            empty.append(o)
+        if o.data in done:
             continue
-        output = material.node_tree.get_output_node('CYCLES')
-        if output is None:
-            continue
-        _rewrite(material.node_tree, output)
-        _warn_of(material, output, warn)
-        # The exporter asks the blend mode of EEVEE, Cycles does not.
-        if hasattr(material, "blend_method"):
-            material.blend_method = 'BLEND' if _has_alpha(output) else 'OPAQUE'
-        # The exporter takes the first output that it finds.
-        for node in list(material.node_tree.nodes):
-            if node.type == 'OUTPUT_MATERIAL' and node != output:
-                material.node_tree.nodes.remove(node)
+        done.add(o.data)
+        for i, material in enumerate(o.data.materials):
+            found = converted[material]
+            o.data.materials[i] = found if not isinstance(found, dict) else found[o.data]
+        _keep_used_colours(o.data)
+    return empty
 
 
-def _plain():
-    """Returns Blender's default material; that of glTF is a metal."""
-    material = bpy.data.materials.new("plain")
+def _is_empty(material):
+    """Returns whether a material has nothing on its surface, as fog has."""
+    if material is None or not material.use_nodes:
+        return False
+    output = material.node_tree.get_output_node('CYCLES')
+    return output is not None and not output.inputs['Surface'].links
+
+
+def _convert(material, meshes, baker, notes):
+    """Returns a new material, or one for each mesh."""
+    if material is None:
+        return _of_colour('plain', (0.8, 0.8, 0.8))
+    if not material.use_nodes:
+        return _of_viewport(material)
+    if _is_empty(material):
+        return material
+    surface = _Surface(material, notes)
+    if surface.parameters is None:
+        return _of_viewport(material)
+    if surface.place != 'mesh':
+        return surface.write(baker, None)
+    return {mesh: _Surface(material, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
+
+
+def _of_colour(name, colour, alpha=1):
+    material = bpy.data.materials.new(name)
     material.use_nodes = True
-    tree = material.node_tree
-    output = tree.get_output_node('CYCLES')
-    tree.links.new(tree.nodes.new('ShaderNodeBsdfDiffuse').outputs[0], output.inputs['Surface'])
+    node = next(n for n in material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED')
+    _input(node, 'Base Color').default_value = (*colour, 1)
+    _input(node, 'Roughness').default_value = 1
+    _input(node, 'Specular').default_value = 0
     return material
 
 
-def _fill_slots(objects):
-    plain = None
-    for o in objects:
-        if not hasattr(o.data, "materials"):
-            continue
-        empty = [slot for slot in o.material_slots if not slot.material]
-        if o.material_slots and not empty:
-            continue
-        plain = plain or _plain()
-        if not o.material_slots:
-            o.data.materials.append(plain)
-        for slot in empty:
-            slot.material = plain
+def _of_viewport(material):
+    return _of_colour(material.name, material.diffuse_color[:3])
+
+
+def _input(node, parameter):
+    return next(node.inputs[name] for name in _INPUTS[parameter] if name in node.inputs)
 
 
 def _source(socket):
+    """Returns the output that an input comes from, None for none."""
     while socket.links:
-        node = socket.links[0].from_node
-        if node.type != 'REROUTE':
-            return node
-        socket = node.inputs[0]
+        link = socket.links[0]
+        node = link.from_node
+        if node.type == 'REROUTE':
+            socket = node.inputs[0]
+        elif node.mute:
+            inner = next((l for l in node.internal_links if l.to_socket == link.from_socket), None)
+            if inner is None:
+                return None
+            socket = inner.from_socket
+        else:
+            return link.from_socket
     return None
 
 
-def _rewrite(tree, output):
-    """Puts a Principled BSDF in place of a surface of one simpler node."""
-    old = _source(output.inputs['Surface'])
-    made = {'BSDF_DIFFUSE': {'Roughness': 1.0, 'Specular': 0.0, 'Specular IOR Level': 0.0},
-            'BSDF_GLOSSY': {'Metallic': 1.0},
-            'BSDF_GLASS': {'Transmission': 1.0, 'Transmission Weight': 1.0}}.get(old and old.type)
-    if made is None:
-        return
-    new = tree.nodes.new('ShaderNodeBsdfPrincipled')
-    taken = {'Color': 'Base Color', 'IOR': 'IOR', 'Normal': 'Normal'}
-    if old.type != 'BSDF_DIFFUSE':
-        taken['Roughness'] = 'Roughness'
-    for name, value in made.items():
-        if name in new.inputs:
-            new.inputs[name].default_value = value
-    for name, target in taken.items():
-        if name not in old.inputs:
-            continue
-        for link in old.inputs[name].links:
-            tree.links.new(link.from_socket, new.inputs[target])
-        if name != 'Normal':
-            new.inputs[target].default_value = old.inputs[name].default_value
-    if getattr(old, "distribution", '') == 'SHARP':
-        new.inputs['Roughness'].default_value = 0
-    tree.links.new(new.outputs[0], output.inputs['Surface'])
-
-
-def _upstream(node):
-    """Returns a node and all that it depends on."""
-    found, todo = [], [node]
+def _upstream(socket):
+    """Returns the nodes that an output depends on."""
+    found, todo = [], [socket.node]
     while todo:
         node = todo.pop()
         if node not in found:
             found.append(node)
-            todo += [link.from_node for socket in node.inputs for link in socket.links]
+            todo += [link.from_node for s in node.inputs for link in s.links]
     return found
 
 
-def _has_alpha(output):
-    for node in _upstream(output):
-        alpha = node.inputs.get('Alpha') if node.type == 'BSDF_PRINCIPLED' else None
-        if node.type == 'BSDF_TRANSPARENT' or (alpha and (alpha.links or alpha.default_value < 1)):
-            return True
-    return False
+def _is_whole(value):
+    return abs(value - round(value)) < 1e-6
 
 
-def _warn_of(material, output, warn):
-    for socket in 'Volume', 'Displacement':
-        if output.inputs[socket].links:
-            warn(f"material '{material.name}': its {socket.lower()} is left out")
-            for link in list(output.inputs[socket].links):
-                material.node_tree.links.remove(link)
-    nodes = _upstream(output)
-    transparent = any(n.type == 'BSDF_TRANSPARENT' for n in nodes)
-    for node in nodes:
-        # A mix with a transparent surface is how the exporter knows alpha, a product with vertex
-        # colours is how it knows factors.
-        if node.type in ('MIX_SHADER', 'BSDF_TRANSPARENT') and transparent:
-            continue
-        if node.type in ('MIX', 'MIX_RGB') and getattr(node, "blend_type", '') == 'MULTIPLY':
-            continue
-        if node.type == 'GROUP' and node.node_tree and node.node_tree.name.startswith('glTF'):
-            continue
-        if node.type == 'BSDF_PRINCIPLED':
-            _warn_of_inputs(material, node, warn)
-        elif node.type not in _KNOWN:
-            warn(f"material '{material.name}': glTF cannot express its node '{node.name}'")
-        if node.type == 'TEX_IMAGE' and node.projection != 'FLAT':
-            warn(f"material '{material.name}': its image '{node.name}' is mapped by UVs")
+def _place_of(socket):
+    """Returns 'all' for a value that is the same everywhere, 'uv' for one that the UVs decide, which repeats, else 'mesh'."""
+    place = 'all'
+    for node in _upstream(socket):
+        if node.type in _BY_PLACE:
+            return 'mesh'
+        if node.type == 'TEX_COORD':
+            used = [o.name for o in node.outputs if o.links]
+            if used != ['UV']:
+                return 'mesh'
+        if node.type == 'TEX_IMAGE':
+            if node.projection != 'FLAT' or node.extension != 'REPEAT':
+                return 'mesh'
+            place = 'uv'
+        if node.type == 'MAPPING':
+            scale, turn = node.inputs['Scale'], node.inputs['Rotation']
+            if scale.links or turn.links or max(abs(v) for v in turn.default_value) > 1e-6 or \
+                    not all(_is_whole(v) for v in scale.default_value[:2]):
+                return 'mesh'
+        if node.type == 'UVMAP':
+            place = 'uv'
+    return place
 
 
-def _warn_of_inputs(material, node, warn):
-    for name in _UNSAID:
-        socket = node.inputs.get(name)
-        if socket is None or socket.type != 'VALUE':
+class _Surface:
+    """A material as parameters: plain values, or outputs of nodes of a copy of its tree."""
+
+    def __init__(self, material, notes):
+        self.name, self.notes = material.name, notes
+        self.viewport = material.diffuse_color[:3]
+        self.copy = material.copy()
+        self.tree = self.copy.node_tree
+        groups.inline(self.tree)
+        output = self.tree.get_output_node('CYCLES')
+        self.absorbs = self._absorption(output)
+        if output.inputs['Displacement'].links:
+            notes.add("without displacement", self.name, "materials")
+        self.parameters = self._closure(output.inputs['Surface'])
+        self.place = 'all'
+        if self.parameters is None:
+            notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
+            return
+        for name, value in self.parameters.items():
+            if name == 'Normal':
+                places = ['uv' if self._is_known_normal(value) else 'mesh']
+            else:
+                places = [_place_of(value)] if self._is_output(value) and not self._is_known(name, value) else []
+            if 'mesh' in places:
+                self.place = 'mesh'
+
+    # Surfaces
+
+    def _closure(self, socket):
+        """Returns the parameters of a surface; None where nothing is known of it."""
+        source = _source(socket)
+        if source is None:
+            return None
+        node = source.node
+        read = getattr(self, "_" + node.type.lower(), None)
+        return read(node) if read else None
+
+    def _value(self, socket):
+        """Returns an input's source, or its plain value: a number, or three."""
+        source = _source(socket)
+        if source is not None:
+            if source.node.type in ('RGB', 'VALUE'):
+                plain = source.default_value
+                return plain if source.node.type == 'VALUE' else tuple(plain)[:3]
+            return source
+        value = socket.default_value
+        return value if isinstance(value, (int, float)) else tuple(value)[:3]
+
+    def _made(self, node, **parameters):
+        found = dict(_DEFAULTS, **{k.replace('_', ' '): v for k, v in parameters.items()})
+        normal = node.inputs.get('Normal')
+        if normal is not None and _source(normal) is not None:
+            found['Normal'] = _source(normal)
+        return found
+
+    def _bsdf_principled(self, node):
+        found = self._made(node)
+        for name in _INPUTS:
+            found[name] = self._value(_input(node, name))
+        if bpy.app.version < (4, 0):  # until then a coat had a quarter of its weight, and took no light from the base
+            found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
+            self.copy["lull_adds"] = True
+        emission = next(node.inputs[n] for n in _EMISSION if n in node.inputs)
+        found['Radiance'] = self._times(self._value(emission), self._value(node.inputs['Emission Strength']))
+        for name in _UNSAID:
+            unsaid = node.inputs.get(name)
+            if unsaid is not None and unsaid.type == 'VALUE' and (unsaid.links or unsaid.default_value > 0):
+                self.notes.add(f"without {name.lower()}", self.name, "materials")
+        return found
+
+    def _bsdf_diffuse(self, node):
+        return self._made(node, Base_Color=self._value(node.inputs['Color']))
+
+    def _bsdf_translucent(self, node):
+        self.notes.add("lit from the front alone, not translucent", self.name, "materials")
+        return self._bsdf_diffuse(node)
+
+    def _as_diffuse(self, node):
+        self.notes.add("shown as diffuse ones", self.name, "materials")
+        return self._bsdf_diffuse(node)
+
+    _bsdf_velvet = _bsdf_sheen = _bsdf_toon = _subsurface_scattering = _bsdf_hair = _as_diffuse
+
+    def _bsdf_glossy(self, node):
+        return self._made(node, Base_Color=self._value(node.inputs['Color']), Metallic=1, Roughness=self._roughness(node))
+
+    _bsdf_anisotropic = _bsdf_glossy
+
+    def _bsdf_glass(self, node):
+        return self._made(node, Base_Color=self._value(node.inputs['Color']), Transmission=1, Specular=0.5,
+                          Roughness=self._roughness(node), IOR=self._value(node.inputs['IOR']))
+
+    def _bsdf_refraction(self, node):
+        self.notes.add("reflecting as glass does", self.name, "materials")
+        return self._bsdf_glass(node)
+
+    def _roughness(self, node):
+        return 0 if getattr(node, "distribution", '') == 'SHARP' else self._value(node.inputs['Roughness'])
+
+    def _bsdf_transparent(self, node):
+        return dict(_DEFAULTS, Alpha=0)
+
+    def _emission(self, node):
+        light = self._times(self._value(node.inputs['Color']), self._value(node.inputs['Strength']))
+        return self._made(node, Base_Color=(0, 0, 0), Radiance=light)
+
+    def _mix_shader(self, node):
+        a, b = self._closure(node.inputs[1]), self._closure(node.inputs[2])
+        factor = self._value(node.inputs[0])
+        if a is None or b is None:
+            return a or b
+        if self._is_output(factor) and any(n.type in _BY_VIEW for n in _upstream(factor)):
+            return self._mix_by_view(a, b, factor)
+        if not self._is_output(factor) and factor in (0, 1):
+            return b if factor else a
+        for clear, other, share in (a, b, factor), (b, a, self._minus(factor)):
+            if clear['Alpha'] == 0:
+                return dict(other, Alpha=self._times(other['Alpha'], share))
+        mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
+        if 'Normal' in a or 'Normal' in b:
+            mixed['Normal'] = a.get('Normal', b.get('Normal'))
+        return mixed
+
+    def _mix_by_view(self, a, b, factor):
+        """A coat that a Fresnel factor adds is glTF's own; of tricks with kinds of rays the first holds."""
+        is_ray = any(n.type == 'LIGHT_PATH' for n in _upstream(factor))
+        if not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
+            return dict(a, Specular=0.5, Roughness=b['Roughness'])
+        self.notes.add("the same from all sides and for all rays", self.name, "materials")
+        return a if a['Alpha'] != 0 or is_ray else b
+
+    def _add_shader(self, node):
+        a, b = self._closure(node.inputs[0]), self._closure(node.inputs[1])
+        if a is None or b is None:
+            return a or b
+        shines = a['Base Color'] == (0, 0, 0) and a['Radiance'] != (0, 0, 0)
+        first, other = (b, a) if shines else (a, b)
+        if other['Base Color'] != (0, 0, 0):
+            self.notes.add("without the second of added surfaces", self.name, "materials")
+        return dict(first, Radiance=self._plus(first['Radiance'], other['Radiance']))
+
+    def _absorption(self, output):
+        """Returns what a homogeneous absorbing volume takes of light, per metre; None for none."""
+        source = _source(output.inputs['Volume'])
+        if source is None:
+            return None
+        node = source.node
+        inputs = [s for s in node.inputs if s.links]
+        if node.type != 'VOLUME_ABSORPTION' or inputs:
+            self.notes.add("without volume", self.name, "materials")
+            return None
+        density = node.inputs['Density'].default_value
+        return [density * max(0, 1 - c) for c in node.inputs['Color'].default_value[:3]]
+
+    # Values
+
+    @staticmethod
+    def _is_output(value):
+        return isinstance(value, bpy.types.NodeSocket)
+
+    def _blend(self, kind, factor, a, b):
+        node = self.tree.nodes.new('ShaderNodeMixRGB')
+        node.blend_type = kind
+        for socket, value in zip(node.inputs, (factor, a, b)):
+            if self._is_output(value):
+                self.tree.links.new(value, socket)
+            elif socket.type == 'VALUE':
+                socket.default_value = value
+            else:
+                socket.default_value = (*_triple(value), 1)
+        return node.outputs[0]
+
+    def _operate(self, kind, plain, a, b):
+        if self._is_output(a) or self._is_output(b):
+            return self._blend(kind, 1, a, b)
+        if isinstance(a, tuple) or isinstance(b, tuple):
+            return tuple(plain(x, y) for x, y in zip(_triple(a), _triple(b)))
+        return plain(a, b)
+
+    def _times(self, a, b):
+        if not self._is_output(a) and _triple(a) == (1, 1, 1):
+            return b
+        if not self._is_output(b) and _triple(b) == (1, 1, 1):
+            return a
+        if not self._is_output(a) and not any(_triple(a)):
+            return a
+        return self._operate('MULTIPLY', lambda x, y: x * y, a, b)
+
+    def _plus(self, a, b):
+        return self._operate('ADD', lambda x, y: x + y, a, b)
+
+    def _minus(self, factor):
+        return self._operate('SUBTRACT', lambda x, y: x - y, 1, factor)
+
+    def _mix(self, factor, a, b):
+        if a == b:
+            return a
+        if any(self._is_output(v) for v in (factor, a, b)):
+            return self._blend('MIX', factor, a, b)
+        mixed = tuple(x + factor * (y - x) for x, y in zip(_triple(a), _triple(b)))
+        return mixed if isinstance(a, tuple) else mixed[0]
+
+    # What the exporter writes as it is
+
+    def _is_known(self, name, value):
+        """Returns whether the exporter finds the image of a parameter, and nothing else changes it."""
+        nodes = _upstream(value)
+        if name == 'Base Color' and value.node.type == 'MIX' and self._is_product(value.node):
+            nodes = [n for n in nodes if n != value.node]
+        if any(n.type not in _KNOWN for n in nodes):
+            return False
+        images = [n for n in nodes if n.type == 'TEX_IMAGE']
+        if not images:
+            return name == 'Base Color' and value.node.type == 'VERTEX_COLOR'
+        if len(images) > 1 or any(not _is_plain(n) for n in images):
+            return False
+        if name == 'Radiance' and images[0].image.is_float or name in _EVEN:
+            return False
+        if name == 'Alpha':
+            return value.node.type == 'TEX_IMAGE' and value.name == 'Alpha'
+        return all(_is_known_mapping(n) for n in nodes)
+
+    @staticmethod
+    def _is_product(node):
+        """Returns whether a node multiplies an image by a colour, as glTF's factors do."""
+        if node.data_type != 'RGBA' or node.blend_type != 'MULTIPLY' or node.inputs[0].links or \
+                abs(node.inputs[0].default_value - 1) > 1e-6:
+            return False
+        sides = node.inputs[6:8]
+        linked = [s for s in sides if s.links]
+        return len(linked) == 1 and max(next(s for s in sides if not s.links).default_value[:3]) <= 1
+
+    def _is_known_normal(self, value):
+        node = value.node
+        if node.type != 'NORMAL_MAP' or node.space != 'TANGENT' or node.inputs['Strength'].links:
+            return False
+        source = _source(node.inputs['Color'])
+        return source is not None and source.node.type == 'TEX_IMAGE' and self._is_known('Normal', source)
+
+    # Writing
+
+    def write(self, baker, o):
+        """Returns the new material. `o` is the object on whose mesh is baked what depends on it."""
+        self.baker, self.object = baker, o
+        new = self.tree.nodes.new('ShaderNodeBsdfPrincipled')
+        self._write_normal(new)
+        p = self.parameters
+        for name in _EVEN:
+            self._set(_input(new, name), self._even(name))
+        self._write_radiance(new)
+        if self._are_known(('Metallic', 'Roughness')):
+            self._link(new, 'Metallic'), self._link(new, 'Roughness')
+        else:
+            metallic, roughness = self._pixels('Metallic'), self._pixels('Roughness')
+            packed = _packed(np.zeros(3, np.float32), roughness, metallic)
+            image = self._image(packed, 'metal', False)
+            channels = self.tree.nodes.new('ShaderNodeSeparateColor')
+            self.tree.links.new(image.outputs['Color'], channels.inputs[0])
+            self.tree.links.new(channels.outputs[1], _input(new, 'Roughness'))
+            self.tree.links.new(channels.outputs[2], _input(new, 'Metallic'))
+        if self._are_known(('Base Color', 'Alpha')) and not (
+                self._is_output(p['Alpha']) and self._is_output(p['Base Color']) and
+                p['Alpha'].node != p['Base Color'].node):
+            self._link(new, 'Base Color'), self._link(new, 'Alpha')
+        else:
+            self._write_colour(new)
+        is_clear = bool(_input(new, 'Alpha').links) or _input(new, 'Alpha').default_value < 1
+        self.copy.blend_method = 'BLEND' if is_clear else 'OPAQUE'
+        output = self.tree.get_output_node('CYCLES')
+        for node in [n for n in self.tree.nodes if n.type == 'OUTPUT_MATERIAL' and n != output]:
+            self.tree.nodes.remove(node)
+        for name in 'Volume', 'Displacement':
+            for link in list(output.inputs[name].links):
+                self.tree.links.remove(link)
+        self.tree.links.new(new.outputs[0], output.inputs['Surface'])
+        for node in [n for n in self.tree.nodes if n.type == 'BSDF_PRINCIPLED' and n != new]:
+            self.tree.nodes.remove(node)
+        if self.absorbs:
+            self.copy["lull_absorbs"] = self.absorbs
+        return self.copy
+
+    def _are_known(self, names):
+        return all(not self._is_output(self.parameters[n]) or self._is_known(n, self.parameters[n]) for n in names)
+
+    def _link(self, node, name):
+        self._set(_input(node, name), self.parameters[name])
+
+    def _set(self, socket, value):
+        if self._is_output(value):
+            self.tree.links.new(value, socket)
+        elif socket.type == 'VALUE':
+            socket.default_value = value if not isinstance(value, tuple) else value[0]
+        else:
+            socket.default_value = (*_triple(value), 1)
+
+    def _pixels(self, name):
+        """Returns three numbers, or an image of them, of a parameter."""
+        value = self.parameters[name]
+        if not self._is_output(value):
+            return np.array(_triple(value), np.float32)
+        if any(n.type in _BY_VIEW for n in _upstream(value)):
+            self.notes.add("the same from all sides and for all rays", self.name, "materials")
+        place = _place_of(value)
+        if place == 'all':
+            return self.baker.plain(self.copy, value)
+        if place == 'uv':
+            return self.baker.over_uvs(self.copy, value, self._layers(value), self._size(value))[:, :, :3]
+        return self._over_mesh(value)
+
+    def _over_mesh(self, value, kind='EMIT'):
+        return self.baker.over_mesh(self.copy, value, self.object.data, self.object.matrix_world, kind)[:, :, :3]
+
+    def _even(self, name):
+        pixels = self._pixels(name)
+        return float(pixels.reshape(-1, 3)[:, 0].mean())
+
+    @staticmethod
+    def _layers(value):
+        return tuple({n.uv_map for n in _upstream(value) if n.type == 'UVMAP' and n.uv_map})
+
+    @staticmethod
+    def _size(value):
+        sizes = [max(n.image.size) for n in _upstream(value) if n.type == 'TEX_IMAGE' and n.image]
+        return min(4096, max(sizes, default=0))
+
+    def _image(self, pixels, what, is_colour):
+        """Adds a node of an image, on the UVs that it was made for."""
+        height, width = pixels.shape[:2]
+        full = np.ones((height, width, 4), np.float32)
+        full[:, :, :pixels.shape[2]] = np.clip(pixels, 0, 1)
+        image = bpy.data.images.new(f"{self.name} {what}", width, height, alpha=pixels.shape[2] == 4)
+        image.colorspace_settings.name = 'sRGB' if is_colour else 'Non-Color'
+        if is_colour:
+            full[:, :, :3] = _encoded(full[:, :, :3])
+        image.pixels.foreach_set(full.ravel())
+        image.update()
+        image.pack()
+        node = self.tree.nodes.new('ShaderNodeTexImage')
+        node.image = image
+        layers = {layer for v in self.parameters.values() if self._is_output(v) for layer in self._layers(v)}
+        name = "lull" if self.place == 'mesh' else next(iter(layers)) if len(layers) == 1 else None
+        if name:
+            uv = self.tree.nodes.new('ShaderNodeUVMap')
+            uv.uv_map = name
+            self.tree.links.new(uv.outputs[0], node.inputs[0])
+        return node
+
+    def _write_colour(self, new):
+        colour, alpha = self._pixels('Base Color'), self._pixels('Alpha')
+        if colour.ndim == 1 and alpha.ndim == 1:
+            self._set(_input(new, 'Base Color'), tuple(colour))
+            self._set(_input(new, 'Alpha'), float(alpha[0]))
+            return
+        if alpha.ndim == 1 and alpha[0] >= 1:
+            image = self._image(_as_image(colour), 'colour', True)
+            self.tree.links.new(image.outputs['Color'], _input(new, 'Base Color'))
+            return
+        image = self._image(_packed(colour, alpha), 'colour', True)
+        self.tree.links.new(image.outputs['Color'], _input(new, 'Base Color'))
+        self.tree.links.new(image.outputs['Alpha'], _input(new, 'Alpha'))
+
+    def _write_radiance(self, new):
+        emission = next(new.inputs[n] for n in _EMISSION if n in new.inputs)
+        value = self.parameters['Radiance']
+        if self._is_output(value) and self._is_known('Radiance', value):
+            self.tree.links.new(value, emission)
+            new.inputs['Emission Strength'].default_value = 1
+            return
+        pixels = self._pixels('Radiance')
+        most = float(pixels.max())
+        new.inputs['Emission Strength'].default_value = most
+        if most <= 0:
+            self._set(emission, (0, 0, 0))
+        elif pixels.ndim == 1:
+            self._set(emission, tuple(pixels / most))
+        else:
+            self.tree.links.new(self._image(pixels / most, 'emission', True).outputs['Color'], emission)
+
+    def _write_normal(self, new):
+        value = self.parameters.get('Normal')
+        if value is None:
+            return
+        if self._is_known_normal(value):
+            self.tree.links.new(value, new.inputs['Normal'])
+            return
+        pixels = self._over_mesh(value, 'NORMAL')
+        image = self._image(pixels, 'normal', False)
+        node = self.tree.nodes.new('ShaderNodeNormalMap')
+        node.uv_map = "lull"
+        self.tree.links.new(image.outputs['Color'], node.inputs['Color'])
+        self.tree.links.new(node.outputs[0], new.inputs['Normal'])
+
+
+def _triple(value):
+    return value if isinstance(value, tuple) else (value, value, value)
+
+
+def _is_plain(node):
+    """Returns whether glTF's samplers read an image as its node does."""
+    return (node.image is not None and node.image.size[0] > 0 and node.projection == 'FLAT' and
+            node.extension in ('REPEAT', 'EXTEND') and node.image.source in ('FILE', 'GENERATED'))
+
+
+def _is_known_mapping(node):
+    if node.type == 'TEX_COORD':
+        return [o.name for o in node.outputs if o.links] == ['UV']
+    if node.type == 'MAPPING':
+        turn = node.inputs['Rotation'].default_value
+        return node.vector_type in ('POINT', 'TEXTURE') and abs(turn[0]) + abs(turn[1]) < 1e-6 and \
+            not any(s.links for s in node.inputs[1:])
+    return True
+
+
+def _as_image(values, shape=None):
+    return values if values.ndim == 3 else np.broadcast_to(values, (*(shape or (4, 4)), 3)).copy()
+
+
+def _packed(*parts):
+    """Puts the first three numbers of the first part, or its first, and the first of the others into the channels of an image."""
+    shapes = [p.shape[:2] for p in parts if p.ndim == 3]
+    shape = max(shapes, default=(4, 4))
+    images = [_resized(_as_image(p, shape), shape) for p in parts]
+    if len(parts) == 2:
+        return np.concatenate([images[0], images[1][:, :, :1]], 2)
+    return np.concatenate([i[:, :, :1] for i in images], 2)
+
+
+def _resized(image, shape):
+    rows = np.arange(shape[0]) * image.shape[0] // shape[0]
+    columns = np.arange(shape[1]) * image.shape[1] // shape[1]
+    return image[rows][:, columns]
+
+
+def _encoded(linear):
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def _keep_used_colours(mesh):
+    """Leaves the colours that its materials read: glTF multiplies by any."""
+    wanted = set()
+    for material in mesh.materials:
+        if material is None or not material.use_nodes:
             continue
-        if socket.links or socket.default_value > 0:
-            warn(f"material '{material.name}': glTF leaves out its {name.lower()}")
+        node = next((n for n in material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED'), None)
+        source = _source(_input(node, 'Base Color')) if node else None
+        if source is not None:
+            wanted |= {n.layer_name for n in _upstream(source) if n.type == 'VERTEX_COLOR'}
+    for layer in list(mesh.color_attributes):
+        if layer.name not in wanted and not ("" in wanted and layer == mesh.color_attributes.active_color):
+            mesh.color_attributes.remove(layer)

@@ -8,7 +8,7 @@ _USUAL = 1024
 _SPP = 4  # over a pixel each, so that no light is lost between pixels
 
 
-def write(scene, path, warn):
+def write(scene, path, notes):
     """Renders the world with Cycles, as it is seen in all directions. Returns the image's path, None
     for a black world."""
     world = scene.world
@@ -16,7 +16,11 @@ def write(scene, path, warn):
         return None
     if world.use_nodes and any(link.to_socket.name == 'Volume' for link in world.node_tree.links
                                if link.to_node.type == 'OUTPUT_WORLD'):
-        warn(f"the volume of world '{world.name}' is left out")
+        notes.say(f"the volume of world '{world.name}' is left out")
+    if not world.cycles_visibility.camera:
+        notes.say(f"the world '{world.name}' is seen by the camera")
+    if world.use_nodes and any(n.type == 'LIGHT_PATH' for n in world.node_tree.nodes):
+        notes.say(f"the world '{world.name}' lights the scene as the camera sees it, whatever its light paths say")
     room = bpy.data.scenes.new('lull world')
     room.world = world
     data = bpy.data.cameras.new('lull world')

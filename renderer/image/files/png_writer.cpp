@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <optional>
@@ -131,6 +132,12 @@ void ApplyView(const ViewTransform& view, size_t components, std::span<float> ro
     for (size_t x = 0; x < pixels; ++x) view.Apply(&row[components * x], 1);
 }
 
+// Scales the colours of a row, whose pixels have `components` values.
+void Brighten(float scale, size_t components, std::span<float> row) {
+    for (size_t i = 0; i < row.size(); ++i)
+        if (i % components != 3) row[i] *= scale;
+}
+
 // Divides the colours of a row R, G, B, A by alpha; transparent pixels are black.
 void DivideByAlpha(std::span<float> row) {
     for (size_t i = 0; i + 3 < row.size(); i += 4)
@@ -144,16 +151,18 @@ void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
     writer->WriteHeader(width, height, 8 * int(sizeof(T)),
                         format.hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                         format.text, false);
+    const Grade& grade = format.grade;
     const size_t components = format.hasAlpha ? 4 : 3;
     std::vector<float> linear(size_t(width) * components);
     std::vector<T> row(linear.size());
     for (int y = 0; y < height; ++y) {
         rows(y, linear);
         if (format.hasAlpha) DivideByAlpha(linear);
-        if (format.view) ApplyView(*format.view, components, linear);
+        if (grade.exposure != 0) Brighten(std::exp2(grade.exposure), components, linear);
+        if (grade.view) ApplyView(*grade.view, components, linear);
         for (size_t i = 0; i < row.size(); ++i) {
-            const bool isMapped = format.toneMap == ToneMap::Filmic;
-            row[i] = i % components == 3 || format.view
+            const bool isMapped = grade.toneMap == ToneMap::Filmic;
+            row[i] = i % components == 3 || grade.view
                          ? EncodeLinear<T>(linear[i])
                          : EncodeSrgb<T>(isMapped ? FilmicToneMap(linear[i]) : linear[i]);
         }

@@ -33,6 +33,15 @@ Rgb Color(const tinygltf::Value& owner, const std::string& name, const Rgb& othe
             float(c.Get(2).GetNumberAsDouble())};
 }
 
+// Returns whether `extras` say that the base is not attenuated by the interface above it.
+bool AddsInterface(const tinygltf::Material& material, const FileLoc& loc) {
+    constexpr const char* kName = "addedInterface";
+    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has(kName)) return false;
+    const tinygltf::Value& value = material.extras.Get("lull").Get(kName);
+    if (!value.IsBool()) throw Error(loc, "has to be true or false");
+    return value.Get<bool>();
+}
+
 double TransmissionFactor(const tinygltf::Material& material) {
     return Number(Extension(material, "KHR_materials_transmission"), "transmissionFactor", 0);
 }
@@ -198,6 +207,9 @@ void GltfMaterials::AddSurface(const MaterialUse& use, const GltfTextureUse& col
                               use.path + "/pbrMetallicRoughness/metallicRoughnessTexture"),
                GltfTexels::LinearColor, warnings);
     use.write.Bool("vertexcolors", hasColors);
+    use.write.Bool(
+        "addedinterface",
+        AddsInterface(use.material, document.At(use.path + "/extras/lull/addedInterface")));
     AddSpecular(use, warnings);
     AddTransmission(use, warnings);
     AddClearcoat(use, warnings);

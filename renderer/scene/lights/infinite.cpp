@@ -83,11 +83,11 @@ std::optional<LightSample> InfiniteLight::Sample(const TileShares& shares, const
 
 // Turns a point of the unit square, and its density there, into a direction.
 std::optional<LightSample> InfiniteLight::SampleAt(const Vec2f& st, float mapPdf) const {
-    const float theta = st.y() * kPi, phi = st.x() * 2 * kPi;
-    const float sinTheta = std::sin(theta);
+    const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
+    const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
     const float pdf = mapPdf / (2 * kPi * kPi * sinTheta);
     if (!(pdf > 0) || !std::isfinite(pdf)) return {};
-    const Vec3f local(sinTheta * std::cos(phi), sinTheta * std::sin(phi), std::cos(theta));
+    const Vec3f local(sinTheta * cosPhi, sinTheta * sinPhi, cosTheta);
     const Vec3f wi = (worldFromLight * local).normalized();
     if (map) map->Prefetch(st);
     return LightSample{.L = map ? Rgb::Ones() : constant,

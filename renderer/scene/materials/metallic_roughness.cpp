@@ -69,7 +69,8 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
       ior(in.entity.parameters.GetFloat("ior", 1.5f)),
       anisotropyRotation(in.entity.parameters.GetFloat("anisotropyrotation", 0)),
       solid(in.entity.parameters.GetBool("solid", false)),
-      vertexColors(in.entity.parameters.GetBool("vertexcolors", false)) {
+      vertexColors(in.entity.parameters.GetBool("vertexcolors", false)),
+      addedInterface(in.entity.parameters.GetBool("addedinterface", false)) {
     // An index of 0 stands for an interface that reflects all (KHR_materials_ior).
     if (ior == 0) return;
     const auto index = InRange(double(ior), 1, 100);
@@ -193,6 +194,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const Rgb tint = Look(specularColor, in) * specularColorFactor;
     const Rgb f0 = strength * (Sqr((ior - 1) / (ior + 1)) * tint).max(0.f).min(1.f);
     const InterfaceAbove above{f0.maxCoeff(), strength};
+    const InterfaceAbove aboveBase = addedInterface ? InterfaceAbove{} : above;
     const float dielectric = 1 - metallic;
     const float transmitting = dielectric * Weight(transmission, transmissionFactor, in);
     const float coat = Weight(clearcoat, clearcoatFactor, in);
@@ -212,7 +214,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const Rgb glossy = isApart ? Rgb(Rgb::Zero()) : r0;
     const float glossy90 = isApart ? 0 : r90;
     if (glossy90 > 0 || ((r90 > 0 || coat > 0) && !IsBlack(base)))
-        bsdf->Add(LayeredReflection(base, glossy, glossy90, alpha, above, coat));
+        bsdf->Add(LayeredReflection(base, glossy, glossy90, alpha, aboveBase, coat));
     else if (!IsBlack(base))
         bsdf->Add(LambertianReflection{base});
 

@@ -21,7 +21,9 @@ struct UvSlot {
 // "sheenroughness", "anisotropy" (the factor is its strength in [0, 1]; red and green are a
 // direction along the tangents, blue a strength). Also "ior"; "solid": transmitted light is
 // refracted, otherwise the surface is a thin sheet; "vertexcolors": the mesh's colours multiply the
-// base colour; "anisotropyrotation": radians, from the first tangent to the second.
+// base colour; "anisotropyrotation": radians, from the first tangent to the second;
+// "addedinterface": the interface's reflection is added to the base, which it does not attenuate,
+// as in the Principled BSDF of Blender 3 (not energy-conserving).
 struct MetallicRoughness {
     UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy;
     UvSlot<FloatTexture> specular, transmission, clearcoat, clearcoatRoughness, sheenRoughness;
@@ -29,7 +31,7 @@ struct MetallicRoughness {
     float metallicFactor, roughnessFactor, specularFactor, transmissionFactor, clearcoatFactor,
         clearcoatRoughnessFactor, sheenRoughnessFactor, anisotropyFactor;
     float ior, anisotropyRotation;
-    bool solid, vertexColors;
+    bool solid, vertexColors, addedInterface;
 
     explicit MetallicRoughness(const MaterialReader& in);
 

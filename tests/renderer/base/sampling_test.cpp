@@ -28,6 +28,22 @@ void ExpectMean(const F& f, double expected, const char* what) {
     EXPECT_NEAR(mean, expected, 4.5 * std::sqrt(variance / kSamples) + 1e-6) << what;
 }
 
+TEST(SineCosine, IsAsPreciseAsFloats) {
+    for (int i = -1000; i <= 1000; ++i) {
+        const float angle = kPi / 4 * float(i) / 1000;
+        EXPECT_NEAR(SineCosineOf(angle).sine, std::sin(double(angle)), 1e-7) << angle;
+        EXPECT_NEAR(SineCosineOf(angle).cosine, std::cos(double(angle)), 1e-7) << angle;
+    }
+    for (int i = 0; i <= 8192; ++i) {
+        const float u = std::min(float(i) / 8192, kOneMinusEpsilon);
+        const double angle = 2 * std::numbers::pi * double(u);
+        EXPECT_NEAR(SineCosineOfTurn(u).sine, std::sin(angle), 1e-7) << u;
+        EXPECT_NEAR(SineCosineOfTurn(u).cosine, std::cos(angle), 1e-7) << u;
+    }
+    EXPECT_EQ(SineCosineOfTurn(0).sine, 0);
+    EXPECT_GT(SineCosineOfTurn(kOneMinusEpsilon / 2).sine, 0);
+}
+
 TEST(Warps, ConcentricDiskIsUniform) {
     ExpectMean([](const Vec2f& u) { return SampleConcentricDisk(u).squaredNorm(); }, 0.5, "r^2");
     ExpectMean([](const Vec2f& u) { return SampleConcentricDisk(u).x(); }, 0, "x");

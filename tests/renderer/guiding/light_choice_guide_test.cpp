@@ -35,7 +35,8 @@ struct Learned {
 
     LightChoice At(const Vec3f& p, int side = 5) const {
         const std::span<const float> sums = guide.At(guide.CellOf(p, side));
-        return sums.back() > 0 ? LightChoice(sums) : scene->lights.Choice(p);
+        return sums.back() > 0 ? LightChoice(sums)
+                               : scene->lights.Choice(p, scene->lights.PlaceOf(p));
     }
     void Record(int count, uint32_t seed) {
         std::mt19937 random(seed);
@@ -66,7 +67,8 @@ TEST(LightChoiceGuide, LeadsToTheLightsThatReachAPlaceAndKeepsAPartOfTheOthers) 
     }
     for (const float x : {-6.f, 6.f}) {
         const Vec3f p(x, 2, 0);
-        const LightChoice choice = learned.At(p), before = learned.scene->lights.Choice(p);
+        const LightChoice choice = learned.At(p), before = learned.scene->lights.Choice(
+                                                      p, learned.scene->lights.PlaceOf(p));
         EXPECT_GT(choice.Pmf(x < 0 ? 0 : 2), 0.8f);
         float sum = 0;
         for (int i = 0; i < kLights; ++i) {

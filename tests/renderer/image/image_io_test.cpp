@@ -369,7 +369,7 @@ TEST(WritePng, EncodesSixteenBitsToneMapsAndText) {
     for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(wide[i], expected[i], 1e-5f) << i;
     EXPECT_TRUE(Contains(ReadBytes(path), std::string("tEXtToneMap\0none", 16)));
 
-    WritePng(path, pixels, 2, 1, {.toneMap = ToneMap::Filmic});
+    WritePng(path, pixels, 2, 1, {.grade = {.toneMap = ToneMap::Filmic}});
     const auto mapped = Texels<uint8_t>(ReadImage(path));
     const float display[] = {0, FilmicToneMap(0.5f), FilmicToneMap(1), 1, FilmicToneMap(0.18f), 0};
     for (size_t i = 0; i < 6; ++i)

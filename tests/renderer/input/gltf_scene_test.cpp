@@ -324,6 +324,20 @@ TEST(GltfLights, AreNamedByTheNodeOrTheLight) {
     EXPECT_EQ(d.shapes[0].label, "ball");
 }
 
+TEST(GltfMaterials, MayAddTheInterfaceToTheBase) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    const auto adds = [&](const nlohmann::json& value) {
+        file.root["materials"] = {{{"extras", {{"lull", {{"addedInterface", value}}}}}}};
+        return kFolder.Parse(file).materials.at(0).parameters.GetBool("addedinterface", false);
+    };
+    EXPECT_TRUE(adds(true));
+    EXPECT_FALSE(adds(false));
+    file.root["materials"][0]["extras"]["lull"]["addedInterface"] = 1;
+    EXPECT_EQ(kFolder.ErrorOf(file),
+              "scene.gltf: /materials/0/extras/lull/addedInterface: has to be true or false");
+}
+
 TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
     GltfFile file;
     file.root["images"] = {{{"uri", "a%20b.png"}}};

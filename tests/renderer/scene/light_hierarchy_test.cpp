@@ -177,7 +177,7 @@ TEST(LightHierarchy, LeavesNoLightOut) {
         hit.wo = SampleUniformSphere(random.Point());
         const Vec3f side = FaceForward(hit.n, hit.wo);
         const Bsdf opaque({side.unitOrthogonal(), side.cross(side.unitOrthogonal()), side}, side);
-        const LightChoice choice = scene->lights.Choice(hit, opaque);
+        const LightChoice choice = scene->lights.Choice(hit, opaque, 0);
         for (int i = 0; i < scene->lights.Count(); ++i) {
             const bool isExcluded = choice.Pmf(i) == 0;
             excluded += isExcluded;

@@ -235,7 +235,8 @@ void Interact(const Curves& curves, const Ray& worldRay, const Hit& found, Surfa
         curves.errorPerWidth * width + Gamma(5) * (ray.o.cwiseAbs() + (found.t * ray.d).cwiseAbs());
     if (curves.place) {
         const Vec3f n = TransformNormal(curves.place->shapeFromWorld, hit->n);
-        FinishQuadricHit(*curves.place, hit->p, hit->pError, kNeedsTangents, hit);
+        FinishQuadricHit(*curves.place, hit->p, hit->pError, UnitOf(hit->dpdu.cross(hit->dpdv)),
+                         kNeedsTangents, hit);
         hit->n = n;
     }
     hit->n.stableNormalize();

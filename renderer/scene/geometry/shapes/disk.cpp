@@ -39,15 +39,7 @@ void Interact(const Disk& disk, const Ray& worldRay, const Hit& found, SurfaceNe
     hit->dpdu = {-disk.phiMax * p.y(), disk.phiMax * p.x(), 0};
     hit->dpdv = Vec3f(p.x(), p.y(), 0) * (-width / r);
     hit->dndu = hit->dndv = Vec3f::Zero();
-    const Vec3f dpdu = hit->dpdu, dpdv = hit->dpdv;
-    // The cross product of the tangents would underflow at the centre; the normal is known.
-    hit->dpdu = Vec3f(1, 0, 0);
-    hit->dpdv = Vec3f(0, 1, 0);
-    FinishQuadricHit(disk.place, p, Vec3f::Zero(), needs, hit);
-    hit->dpdu = TransformVector(disk.place.worldFromShape, dpdu);
-    hit->dpdv = TransformVector(disk.place.worldFromShape, dpdv);
-    hit->surfaceDpdu = hit->dpdu;
-    hit->surfaceDpdv = hit->dpdv;
+    FinishQuadricHit(disk.place, p, Vec3f::Zero(), Vec3f::UnitZ(), needs, hit);
 }
 
 // Under a transform that mirrors, rays find the normal on the other side than samples.

@@ -5,12 +5,6 @@
 namespace lull {
 namespace {
 
-// Meshes without uv have pbrt-v3's: (0,0), (1,0), (1,1).
-std::array<Vec2f, 3> Uvs(const Mesh& mesh, const std::array<uint32_t, 3>& v) {
-    if (mesh.uv.empty()) return {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1)};
-    return {mesh.uv[v[0]], mesh.uv[v[1]], mesh.uv[v[2]]};
-}
-
 template <typename T, size_t N>
 std::array<T, N> Interpolate(const std::vector<std::array<T, N>>& values,
                              const std::array<uint32_t, 3>& v, float b1, float b2) {
@@ -32,11 +26,11 @@ void UseVertexTangents(const std::array<float, 4>& tangent, SurfaceInteraction* 
 
 // Computes tangents and, where asked for, derivatives of the normal as pbrt-v3's triangles have
 // them (its signs included: bump maps show them).
-void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, SurfaceNeeds needs,
+void ComputeTangents(const Mesh& mesh, const TriangleCorners& corners, SurfaceNeeds needs,
                      SurfaceInteraction* hit) {
-    const auto uv = Uvs(mesh, v);
+    const auto& [p, n, uv] = corners;
     const Vec2f duv02 = uv[0] - uv[2], duv12 = uv[1] - uv[2];
-    const Vec3f dp02 = mesh.p[v[0]] - mesh.p[v[2]], dp12 = mesh.p[v[1]] - mesh.p[v[2]];
+    const Vec3f dp02 = p[0] - p[2], dp12 = p[1] - p[2];
     const float determinant = duv02[0] * duv12[1] - duv02[1] * duv12[0];
     const bool degenerate = std::abs(determinant) < 1e-8f;
     if (!degenerate) {
@@ -48,7 +42,7 @@ void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, Surface
     hit->dndu = hit->dndv = Vec3f::Zero();
     hit->surfaceDpdu = hit->dpdu;
     hit->surfaceDpdv = hit->dpdv;
-    if (mesh.n.empty()) return;
+    if (!mesh.hasNormals) return;
 
     // Make an orthonormal shading frame out of dpdu and the interpolated normal.
     Vec3f s = hit->dpdu.normalized();
@@ -60,7 +54,7 @@ void ComputeTangents(const Mesh& mesh, const std::array<uint32_t, 3>& v, Surface
         CoordinateSystem(hit->ns, &s, &t);
     }
     if (needs & kNeedsNormalDerivatives) {
-        const Vec3f dn02 = mesh.n[v[0]] - mesh.n[v[2]], dn12 = mesh.n[v[1]] - mesh.n[v[2]];
+        const Vec3f dn02 = n[0] - n[2], dn12 = n[1] - n[2];
         if (!degenerate) {
             hit->dndu = (duv12[1] * dn02 - duv02[1] * dn12) / determinant;
             hit->dndv = (duv02[0] * dn12 - duv12[0] * dn02) / determinant;
@@ -104,8 +98,8 @@ Bounds3f Mesh::WorldBounds() const {
 
 void Interact(const Mesh& mesh, const Ray&, const Hit& found, SurfaceNeeds needs,
               SurfaceInteraction* hit) {
-    const auto& v = mesh.triangles[found.primitive];
-    const Vec3f &p0 = mesh.p[v[0]], &p1 = mesh.p[v[1]], &p2 = mesh.p[v[2]];
+    const TriangleCorners& corners = mesh.corners[found.primitive];
+    const auto& [p0, p1, p2] = corners.p;
     const float b1 = found.b1, b2 = found.b2, b0 = 1 - b1 - b2;
     // The sum of the weighted vertices would bound the error of the point itself, but that of
     // Embree's distance to this triangle comes from all of the vertices, also from a far one that
@@ -116,26 +110,25 @@ void Interact(const Mesh& mesh, const Ray&, const Hit& found, SurfaceNeeds needs
     hit->n = UnitOf((p0 - p2).cross(p1 - p2));
     if (mesh.flipNormals) hit->n = -hit->n;
     hit->ns = hit->n;
-    if (!mesh.n.empty()) {
+    if (mesh.hasNormals) {
         // The interpolated normal decides the side of the geometric one.
-        const Vec3f sum = b0 * mesh.n[v[0]] + b1 * mesh.n[v[1]] + b2 * mesh.n[v[2]];
+        const Vec3f sum = b0 * corners.n[0] + b1 * corners.n[1] + b2 * corners.n[2];
         if (const float length2 = sum.squaredNorm(); length2 > 0)
             hit->ns = sum / std::sqrt(length2);
     }
-    if (needs & kNeedsUv) {
-        const auto uvs = Uvs(mesh, v);
-        hit->uv = b0 * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
-    }
+    if (needs & kNeedsUv) hit->uv = b0 * corners.uv[0] + b1 * corners.uv[1] + b2 * corners.uv[2];
     if (needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint)) {
-        ComputeTangents(mesh, v, needs, hit);
-        if (!mesh.tangents.empty()) UseVertexTangents(Interpolate(mesh.tangents, v, b1, b2), hit);
+        ComputeTangents(mesh, corners, needs, hit);
+        if (!mesh.tangents.empty())
+            UseVertexTangents(Interpolate(mesh.tangents, mesh.triangles[found.primitive], b1, b2),
+                              hit);
     }
     if (needs & (kNeedsSecondUv | kNeedsColor)) {
         hit->uv1 = mesh.Uv1(found.primitive, b1, b2);
         const auto c = mesh.Color(found.primitive, b1, b2);
         hit->color = Rgb(c[0], c[1], c[2]);
     }
-    if (!mesh.n.empty()) {
+    if (mesh.hasNormals) {
         if (mesh.reverseOrientation) hit->ns = -hit->ns;
         if (mesh.frontByWinding)
             hit->ns = FaceForward(hit->ns, hit->n);
@@ -144,9 +137,24 @@ void Interact(const Mesh& mesh, const Ray&, const Hit& found, SurfaceNeeds needs
     }
 }
 
+// Meshes without texture coordinates have pbrt-v3's: (0,0), (1,0), (1,1).
+void Mesh::SetCorners(const std::vector<Vec3f>& n, const std::vector<Vec2f>& uv) {
+    hasNormals = !n.empty();
+    corners.reserve(triangles.size());
+    for (const auto& v : triangles) {
+        TriangleCorners& c = corners.emplace_back();
+        c.uv = {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1)};
+        for (size_t i = 0; i < 3; ++i) {
+            c.p[i] = p[v[i]];
+            c.n[i] = hasNormals ? n[v[i]] : Vec3f(Vec3f::Zero());
+            if (!uv.empty()) c.uv[i] = uv[v[i]];
+        }
+    }
+}
+
 Vec2f Mesh::Uv(uint32_t triangle, float b1, float b2) const {
-    const auto uvs = Uvs(*this, triangles[triangle]);
-    return (1 - b1 - b2) * uvs[0] + b1 * uvs[1] + b2 * uvs[2];
+    const auto& uv = corners[triangle].uv;
+    return (1 - b1 - b2) * uv[0] + b1 * uv[1] + b2 * uv[2];
 }
 
 Vec2f Mesh::Uv1(uint32_t triangle, float b1, float b2) const {
@@ -166,15 +174,15 @@ float Mesh::Area(uint32_t triangle) const {
 }
 
 EmittingTriangle Mesh::EmitterAt(uint32_t triangle) const {
-    const auto& v = triangles[triangle];
-    const Vec3f cross = (p[v[1]] - p[v[0]]).cross(p[v[2]] - p[v[0]]);
+    const auto& [p, n, uv] = corners[triangle];
+    const Vec3f cross = (p[1] - p[0]).cross(p[2] - p[0]);
     const float twiceArea = LengthOf(cross);
     Vec3f normal = cross / twiceArea;
-    if (!n.empty() && !frontByWinding)
-        normal = FaceForward(normal, n[v[0]] + n[v[1]] + n[v[2]]);
+    if (hasNormals && !frontByWinding)
+        normal = FaceForward(normal, n[0] + n[1] + n[2]);
     else if (flipNormals)
         normal = -normal;
-    return {p[v[0]], p[v[1]], p[v[2]], normal, 2 / twiceArea};
+    return {p[0], p[1], p[2], normal, 2 / twiceArea};
 }
 
 ShapeSample SampleArea(const EmittingTriangle& triangle, const Vec2f& u) {

@@ -21,11 +21,10 @@ PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& e
 }
 
 void FinishQuadricHit(const QuadricPlacement& place, const Vec3f& pShape, const Vec3f& errorShape,
-                      SurfaceNeeds needs, SurfaceInteraction* hit) {
+                      const Vec3f& nShape, SurfaceNeeds needs, SurfaceInteraction* hit) {
     const Mat4d& m = place.worldFromShape;
     std::tie(hit->p, hit->pError) = TransformWithError(m, pShape, errorShape);
-    hit->n = UnitOf(hit->dpdu.cross(hit->dpdv));
-    hit->n = UnitOf(TransformNormal(place.shapeFromWorld, hit->n));
+    hit->n = UnitOf(TransformNormal(place.shapeFromWorld, nShape));
     if (place.flipNormals) hit->n = -hit->n;
     hit->ns = hit->n;
     if (!(needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint))) return;

@@ -14,17 +14,18 @@ Bounds3f TransformBounds(const Mat4d& m, const Vec3f& lower, const Vec3f& upper)
 // Transforms a point with absolute error bounds, and bounds the error of the result.
 PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& error);
 
-// Transforms the point and, where needed, hit->dpdu ... dndv from shape space to world space and
-// derives the normals, for which dpdu and dpdv must always be given.
+// Transforms the point, the normal and, where needed, hit->dpdu ... dndv from shape space to world
+// space.
 void FinishQuadricHit(const QuadricPlacement&, const Vec3f& pShape, const Vec3f& errorShape,
-                      SurfaceNeeds, SurfaceInteraction* hit);
+                      const Vec3f& nShape, SurfaceNeeds, SurfaceInteraction* hit);
 
 // A ray in shape space, in double; the direction keeps its length so that t is the same.
 struct ShapeRay {
     Eigen::Vector3d o, d;
 
     ShapeRay(const QuadricPlacement& place, const Ray& ray)
-        : o((place.shapeFromWorld * ray.o.cast<double>().homogeneous()).hnormalized()),
+        : o(place.shapeFromWorld.topLeftCorner<3, 3>() * ray.o.cast<double>() +
+            place.shapeFromWorld.topRightCorner<3, 1>()),
           d(place.shapeFromWorld.topLeftCorner<3, 3>() * ray.d.cast<double>()) {}
     Eigen::Vector3d operator()(double t) const { return o + t * d; }
 };

@@ -209,14 +209,10 @@ void Interact(const Revolved& shape, const Ray& worldRay, const Hit& found, Surf
                                              : Vector3d(duu.cross(dpdv) + dpdu.cross(duv)));
         hit->dndv = ofUnit(shape.isOnSurface ? ofGradient(dpdv) : Vector3d(duv.cross(dpdv)));
     }
-    // The cross product of the tangents would vanish on the axis; the normal is known.
-    CoordinateSystem(n.cast<float>(), &hit->dpdu, &hit->dpdv);
+    hit->dpdu = dpdu.cast<float>();
+    hit->dpdv = dpdv.cast<float>();
     const Vec3f point = p.cast<float>();
-    FinishQuadricHit(shape.place, point, Gamma(5) * point.cwiseAbs(), needs, hit);
-    hit->dpdu = TransformVector(shape.place.worldFromShape, dpdu.cast<float>());
-    hit->dpdv = TransformVector(shape.place.worldFromShape, dpdv.cast<float>());
-    hit->surfaceDpdu = hit->dpdu;
-    hit->surfaceDpdv = hit->dpdv;
+    FinishQuadricHit(shape.place, point, Gamma(5) * point.cwiseAbs(), n.cast<float>(), needs, hit);
 }
 
 ShapeSample SampleArea(const Revolved& shape, const Vec2f& u) {

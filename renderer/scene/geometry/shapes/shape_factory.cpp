@@ -124,8 +124,6 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     for (Vec3f& n : data.normals) n = TransformNormal(inverse, n);
     ReadExtraAttributes(entity, data.positions.size(), &mesh);
     mesh.p = std::move(data.positions);
-    mesh.n = std::move(data.normals);
-    mesh.uv = std::move(data.uvs);
     mesh.triangles = std::move(data.triangles);
     std::erase_if(mesh.triangles, [&](const auto& v) {
         const Vec3f &p0 = mesh.p[v[0]], &p1 = mesh.p[v[1]], &p2 = mesh.p[v[2]];
@@ -134,6 +132,7 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
         warnings.AddMinor(entity.loc, "zero-area triangle left out");
         return true;
     });
+    mesh.SetCorners(data.normals, data.uvs);
     mesh.p.push_back(Vec3f::Zero());  // the accelerator reads past the last vertex
     return mesh;
 }

@@ -26,6 +26,30 @@ bool IsInside(const Sphere& sphere, const Vec3f& p) {
 // Returns 1 - cos of the half angle that the sphere subtends, without cancellation.
 float OneMinusCosMax(float sin2Max) { return sin2Max / (1 + SafeSqrt(1 - sin2Max)); }
 
+float Theta(const Sphere& sphere, float z) {
+    return std::acos(std::clamp(z / sphere.radius, -1.f, 1.f));
+}
+// Returns theta where v is 0 and where it is 1.
+std::pair<float, float> Thetas(const Sphere& sphere) {
+    return {Theta(sphere, std::min(sphere.zMin, sphere.zMax)),
+            Theta(sphere, std::max(sphere.zMin, sphere.zMax))};
+}
+
+// Computes the derivatives at p of position and, where asked for, normal, in shape space.
+void ComputeTangents(const Sphere& sphere, const Vec3f& p, SurfaceNeeds needs,
+                     SurfaceInteraction* hit) {
+    const float r = sphere.radius, zRadius = std::hypot(p.x(), p.y());
+    const auto [first, last] = Thetas(sphere);
+    const float dTheta = last - first, phiMax = sphere.phiMax;
+    hit->dpdu = {-phiMax * p.y(), phiMax * p.x(), 0};
+    hit->dpdv = dTheta * Vec3f(p.z() * p.x() / zRadius, p.z() * p.y() / zRadius, -zRadius);
+    hit->dndu = hit->dndv = Vec3f::Zero();
+    if (needs & kNeedsNormalDerivatives) {
+        hit->dndu = hit->dpdu / r;
+        hit->dndv = hit->dpdv / r;
+    }
+}
+
 }  // namespace
 
 Bounds3f Sphere::WorldBounds() const {
@@ -57,25 +81,14 @@ void Interact(const Sphere& sphere, const Ray& worldRay, const Hit& found, Surfa
     const float r = sphere.radius;
     Vec3f p = (ShapeRay(sphere.place, worldRay)(found.t).normalized() * double(r)).cast<float>();
     if (p.x() == 0 && p.y() == 0) p.x() = 1e-5f * r;
-    const float thetaMin = std::acos(std::clamp(std::min(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));
-    const float thetaMax = std::acos(std::clamp(std::max(sphere.zMin, sphere.zMax) / r, -1.f, 1.f));
-    const float theta = std::acos(std::clamp(p.z() / r, -1.f, 1.f));
-    const float zRadius = std::hypot(p.x(), p.y());
-    const float cosPhi = p.x() / zRadius, sinPhi = p.y() / zRadius;
-    const float dTheta = thetaMax - thetaMin, phiMax = sphere.phiMax;
-    if (needs & (kNeedsUv | kNeedsSecondUv))
-        hit->uv = {Azimuth(p.x(), p.y()) / phiMax, (theta - thetaMin) / dTheta};
-    hit->dpdu = {-phiMax * p.y(), phiMax * p.x(), 0};
-    hit->dpdv = dTheta * Vec3f(p.z() * cosPhi, p.z() * sinPhi, -r * std::sin(theta));
-    if (needs & kNeedsNormalDerivatives) {
-        // The normal is p / r up to its sign, so its derivatives are those of p.
-        const float sign = hit->dpdu.cross(hit->dpdv).dot(p) < 0 ? -1.f : 1.f;
-        hit->dndu = sign / r * hit->dpdu;
-        hit->dndv = sign / r * hit->dpdv;
-    } else {
-        hit->dndu = hit->dndv = Vec3f::Zero();
+    if (needs & (kNeedsUv | kNeedsSecondUv)) {
+        const auto [first, last] = Thetas(sphere);
+        hit->uv = {Azimuth(p.x(), p.y()) / sphere.phiMax,
+                   (Theta(sphere, p.z()) - first) / (last - first)};
     }
-    FinishQuadricHit(sphere.place, p, Gamma(5) * p.cwiseAbs(), needs, hit);
+    if (needs & (kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint))
+        ComputeTangents(sphere, p, needs, hit);
+    FinishQuadricHit(sphere.place, p, Gamma(5) * p.cwiseAbs(), p / r, needs, hit);
 }
 
 std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const Vec2f& u) {
@@ -100,8 +113,8 @@ std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const
         const float sin2 = x * (2 - x);
         const float cosAlpha = sin2 / sinMax + (1 - x) * SafeSqrt(1 - sin2 / sin2Max);
         const float sinAlpha = SafeSqrt(1 - Sqr(cosAlpha));
-        const float phi = u.y() * 2 * kPi;
-        sample.n = -(sinAlpha * std::cos(phi) * s + sinAlpha * std::sin(phi) * t + cosAlpha * axis);
+        const auto [sinPhi, cosPhi] = SineCosineOfTurn(u.y());
+        sample.n = -(sinAlpha * cosPhi * s + sinAlpha * sinPhi * t + cosAlpha * axis);
         sample.p = center + sphere.radius * sample.n;
         sample.pError = Gamma(5) * sample.p.cwiseAbs();
         sample.pdf = 1 / (2 * kPi * oneMinusCosMax);

@@ -1,0 +1,97 @@
+"""Makes a scene of plain meshes, one for each that a render shows, however it came about: modifiers, instances, particles,
+metaballs and text. Copies share their mesh."""
+import bpy
+from mathutils import Matrix
+
+_MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
+_CURVES = {'CURVE', 'SURFACE', 'FONT'}
+_UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE'}
+
+
+def flatten(wanted, override, notes):
+    """Fills a new scene with the meshes of the objects `wanted`, all of the material `override` if there is one.
+
+    Returns: the scene, and a list of its objects. Lights and cameras are left to others.
+    """
+    flat = bpy.data.scenes.new('lull')
+    flat.world = None
+    made, meshes = [], {}
+    graph = bpy.context.evaluated_depsgraph_get()
+    # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
+    listed = {i.parent.original for i in graph.object_instances if i.is_instance}
+    for instance in graph.object_instances:
+        o = instance.object
+        source = instance.parent.original if instance.is_instance else o.original
+        if source not in wanted or not (instance.is_instance or _shows_itself(instance, listed)):
+            continue
+        if o.type not in _MESHES:
+            if o.type not in _UNSEEN:
+                notes.add("left out, as glTF has nothing alike", o.original.name)
+            continue
+        key = _key(o)
+        if key not in meshes:
+            meshes[key] = _mesh(o, instance.is_instance, graph, override)
+        if meshes[key] is not None:
+            made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
+    for o in made:
+        _note_of(o, notes)
+    return flat, made
+
+
+def _shows_itself(instance, listed):
+    o = instance.object.original
+    is_copied = o.parent is not None and o.parent.instance_type in ('VERTS', 'FACES')
+    return instance.show_self and not is_copied and not (o.type in _CURVES and o in listed)
+
+
+def _key(o):
+    return (o.data.as_pointer() if o.data else 0, o.type, o.mode,
+            tuple(slot.material.name if slot.material else "" for slot in o.material_slots))
+
+
+def _mesh(o, is_instance, graph, override):
+    """Returns a mesh with the materials of an evaluated object; None where there are no faces."""
+    if is_instance and o.type == 'MESH':  # which may have no object of its own
+        mesh = o.data.copy()
+    else:
+        mesh = bpy.data.meshes.new_from_object(o, preserve_all_data_layers=True, depsgraph=graph)
+    if mesh is None or not mesh.polygons:
+        return None
+    materials = [slot.material.original if slot.material else None for slot in o.material_slots]
+    mesh.materials.clear()
+    for material in materials or [None]:
+        mesh.materials.append(override or material)
+    last = len(mesh.materials) - 1
+    indices = [min(p.material_index, last) for p in mesh.polygons]
+    mesh.polygons.foreach_set("material_index", indices)
+    return mesh
+
+
+def _place(flat, original, mesh, matrix):
+    """Adds an object. glTF's nodes cannot shear, so that vertices do."""
+    location, rotation, scale = matrix.decompose()
+    apart = Matrix.LocRotScale(location, rotation, scale) - matrix
+    size = max(abs(v) for row in matrix.to_3x3() for v in row)
+    if max(abs(v) for row in apart for v in row) > 1e-5 * max(size, 1e-9):
+        mesh = mesh.copy()
+        mesh.transform(matrix)
+        matrix = Matrix.Identity(4)
+    o = bpy.data.objects.new(original.name, mesh)
+    o.matrix_world = matrix
+    o["lull_source"] = original.name
+    flat.collection.objects.link(o)
+    return o
+
+
+def _note_of(o, notes):
+    original = bpy.data.objects[o["lull_source"]]
+    for system in original.particle_systems:
+        settings = system.settings
+        if settings.type == 'HAIR' and settings.render_type == 'PATH' or settings.render_type in ('LINE', 'HALO'):
+            notes.add("without hair", original.name)
+    if original.is_shadow_catcher or original.is_holdout:
+        notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
+    unseen = [name for name in ("camera", "diffuse", "glossy", "transmission", "shadow")
+              if not getattr(original, "visible_" + name, True)]
+    if unseen:
+        notes.add("visible to all rays", original.name)

@@ -1,0 +1,119 @@
+"""Puts the nodes of groups into the tree that uses them."""
+
+_OF_THE_TREE = {"rna_type", "type", "inputs", "outputs", "internal_links", "dimensions", "bl_idname", "bl_label", "bl_description",
+                "bl_icon", "bl_static_type", "bl_width_default", "bl_width_min", "bl_width_max", "bl_height_default",
+                "bl_height_min", "bl_height_max", "parent", "location", "select", "name"}
+
+
+def inline(tree):
+    """Replaces groups, of any depth. Those without a tree stay."""
+    while True:
+        group = next((n for n in tree.nodes if n.type == 'GROUP' and n.node_tree and not n.mute), None)
+        if group is None:
+            return
+        _expand(tree, group)
+
+
+def _copy(node, tree):
+    made = tree.nodes.new(node.bl_idname)
+    for p in node.bl_rna.properties:
+        if p.identifier in _OF_THE_TREE:
+            continue
+        if p.is_readonly:
+            _copy_parts(getattr(node, p.identifier), getattr(made, p.identifier))
+            continue
+        try:
+            setattr(made, p.identifier, getattr(node, p.identifier))
+        except (AttributeError, TypeError):
+            pass
+    for mine, other in zip(made.inputs, node.inputs):
+        if hasattr(other, "default_value"):
+            try:
+                mine.default_value = other.default_value
+            except (AttributeError, TypeError):
+                pass
+    for mine, other in zip(made.outputs, node.outputs):
+        if hasattr(other, "default_value"):  # of values and colours, which have it there
+            mine.default_value = other.default_value
+    return made
+
+
+def _copy_parts(old, new):
+    """Copies ramps and curves, which are part of a node."""
+    kind = type(old).__name__
+    if kind == 'ColorRamp':
+        for name in "color_mode", "interpolation", "hue_interpolation":
+            setattr(new, name, getattr(old, name))
+        while len(new.elements) < len(old.elements):
+            new.elements.new(0.5)
+        for mine, other in zip(new.elements, old.elements):
+            mine.position, mine.color = other.position, other.color
+    elif kind == 'CurveMapping':
+        for mine, other in zip(new.curves, old.curves):
+            while len(mine.points) < len(other.points):
+                mine.points.new(0.5, 0.5)
+            for a, b in zip(mine.points, other.points):
+                a.location, a.handle_type = b.location, b.handle_type
+        new.update()
+    elif kind in ('TexMapping', 'ColorMapping', 'ImageUser'):
+        for p in old.bl_rna.properties:
+            if not p.is_readonly:
+                try:
+                    setattr(new, p.identifier, getattr(old, p.identifier))
+                except (AttributeError, TypeError):
+                    pass
+
+
+def _expand(tree, group):
+    inner = group.node_tree
+    made = {n: _copy(n, tree) for n in inner.nodes if n.type not in ('GROUP_INPUT', 'GROUP_OUTPUT', 'FRAME')}
+    outputs = [n for n in inner.nodes if n.type == 'GROUP_OUTPUT']
+    result = next((n for n in outputs if n.is_active_output), outputs[0] if outputs else None)
+
+    def source(link):
+        """Returns the socket of the outer tree that a link of the group comes from, or a socket with a plain value."""
+        node = link.from_node
+        if node.type == 'GROUP_INPUT':
+            outside = group.inputs[list(node.outputs).index(link.from_socket)]
+            return outside.links[0].from_socket if outside.links else outside
+        return made[node].outputs[list(node.outputs).index(link.from_socket)]
+
+    def connect(link_source, socket):
+        if link_source.is_output:
+            tree.links.new(link_source, socket)
+        elif hasattr(socket, "default_value") and hasattr(link_source, "default_value"):
+            _set(socket, link_source.default_value)
+
+    for link in inner.links:
+        if link.from_node.type == 'FRAME' or link.to_node not in made:
+            continue
+        target = made[link.to_node].inputs[list(link.to_node.inputs).index(link.to_socket)]
+        connect(source(link), target)
+    if result is not None:
+        for i, outside in enumerate(group.outputs):
+            inside = result.inputs[i]
+            for link in list(outside.links):
+                target = link.to_socket
+                if inside.links:
+                    connect(source(inside.links[0]), target)
+                elif hasattr(inside, "default_value") and hasattr(target, "default_value"):
+                    _set(target, inside.default_value)
+    tree.nodes.remove(group)
+
+
+def _set(socket, value):
+    """Sets a plain value of another type, as nodes convert it."""
+    try:
+        values = list(value)
+    except TypeError:
+        values = None
+    try:
+        wants = list(socket.default_value)
+    except TypeError:
+        wants = None
+    if wants is None:
+        socket.default_value = value if values is None else sum(values[:3]) / 3
+    elif values is None:
+        socket.default_value = [value] * 3 + [1] * (len(wants) - 3)
+    else:
+        socket.default_value = (values + [1])[:len(wants)]

@@ -1,0 +1,26 @@
+"""What will look different, collected by its consequence."""
+
+
+class Notes:
+    """Lists names by what happens to them, and sentences."""
+
+    def __init__(self):
+        self._names, self._sentences = {}, []
+
+    def add(self, consequence, name, kind="objects"):
+        """Notes that `name`, of a kind in the plural, will be so."""
+        self._names.setdefault((kind, consequence), []).append(name)
+
+    def say(self, sentence):
+        if sentence not in self._sentences:
+            self._sentences.append(sentence)
+
+    def lines(self):
+        """Returns a line each, such as "2 materials are even: chalk, sand"."""
+        lines = list(self._sentences)
+        for (kind, consequence), names in self._names.items():
+            names = sorted(set(names))
+            shown = ", ".join(f"'{n}'" for n in names[:5]) + (" and others" if len(names) > 5 else "")
+            is_one = len(names) == 1
+            lines.append(f"{len(names)} {kind[:-1] if is_one else kind} {'is' if is_one else 'are'} {consequence}: {shown}")
+        return lines
