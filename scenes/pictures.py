@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Renders scenes until every block has stopped, and makes the pictures of the documents in scenes/pictures.
 
-pictures.py LULL [many-lights|room|report]: of many-lights decision.svg, the estimates for the block that stopped last. Of
-the room, denoised: room-day.jpg and room-night.jpg. report.jpg is a screenshot of a report. All by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
+pictures.py LULL [cornell|room|report]: of cornell decision.svg, the estimates for the block that stopped last. Of the room,
+denoised: room-day.jpg and room-night.jpg. report.jpg is a screenshot of a report. All by default. Needs oiiotool (Debian:
+openimageio-tools) and, for the screenshot, chromium.
 """
 import json
 import math
@@ -12,7 +13,7 @@ import sys
 import tempfile
 
 SCENES = pathlib.Path(__file__).resolve().parent
-SIDE = 200        # of many-lights, in pixels
+SIDE = 400        # of cornell, in pixels
 ROOM_CAP = "200"  # samples per pixel
 
 
@@ -50,9 +51,9 @@ def curve(decisions, width, height):
 """
 
 
-def many_lights(lull, out, pictures):
-    subprocess.run([lull, "render", SCENES / "many-lights/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "--block", "50",
-                    "--cap", "1000", "-o", out / "r.exr", "--report", out / "r.json"], check=True)
+def cornell(lull, out, pictures):
+    subprocess.run([lull, "render", SCENES / "cornell/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "-o", out / "r.exr",
+                    "--report", out / "r.json"], check=True)
     blocks = json.loads((out / "r.json").read_text())["blocks"]
     stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
     last = max(stopped, key=lambda b: b["spp"])
@@ -86,7 +87,7 @@ def report(lull, out, pictures):
 
 
 def main():
-    makers = {"many-lights": many_lights, "room": room, "report": report}
+    makers = {"cornell": cornell, "room": room, "report": report}
     if len(sys.argv) not in (2, 3) or sys.argv[2:] and sys.argv[2] not in makers:
         raise SystemExit(__doc__)
     pictures = SCENES / "pictures"
