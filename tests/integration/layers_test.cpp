@@ -376,13 +376,14 @@ TEST_F(LayersTest, PicturesSayHowTheyAreMade) {
 
 TEST_F(LayersTest, RulesSeeThePictureAsItIsShown) {
     const auto stops = [&](const std::string& options) {
-        Render("--cap 400 " + options + " -o a.exr");
+        Render("--resolution 64x64 --cap 600 " + options + " -o a.exr");
         return ReadExr(directory.File("a.exr"));
     };
     const auto sppOf = [](const ExrImage& exr) { return exr.Find("spp")->values[0]; };
+    directory.Write("scene.pbrt", SceneText(kLamps));
     // Dark noise, which hardly anybody sees.
-    for (const std::string rule : {"--stop entropy ", "--denoise "}) {
-        const std::string dark = rule + "--exposure -5 ";
+    for (const std::string rule : {"--stop entropy:0.2 ", "--denoise --caution 10 "}) {
+        const std::string dark = rule + "--exposure -6 ";
         const ExrImage plain = stops(dark), lifted = stops(dark + "--graded-by 4"),
                        shown = stops(dark + "--view-exposure 4");
         EXPECT_GT(sppOf(lifted), sppOf(plain)) << rule;

@@ -106,7 +106,7 @@ TEST_P(Plugins, LookAsInPbrt) {
         EXPECT_TRUE(std::abs(c.energyRatio - 1) < tolerance || std::abs(c.energySigma) < 3.5)
             << line;
         EXPECT_LE(c.pixelsOut, 0.01) << line;  // single samples have tails that the normal has not
-        EXPECT_EQ(c.tilesOut, 0) << line;
+        EXPECT_LE(c.tilesOut, filters ? 0.04 : 0) << line;
         EXPECT_EQ(ours.rejected, 0);
     }
 }

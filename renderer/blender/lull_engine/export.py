@@ -14,7 +14,6 @@ import os
 import sys
 
 import bpy
-from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -87,28 +86,32 @@ def _collections(collection):
     return [collection] + [c for child in collection.children for c in _collections(child)]
 
 
-def note_clipping(camera, made, notes):
-    """Notes objects before the distance at which a camera begins to see."""
-    inverse, start = camera.matrix_world.inverted(), camera.data.clip_start
-    for o in made:
-        depths = [-(inverse @ (o.matrix_world @ Vector(corner))).z for corner in o.bound_box]
-        if max(depths) > 0 and min(depths) < start and _may_be_seen(camera, o):
-            notes.add("seen before the camera's clip start", o["lull_source"])
+def note_clipping(scene, flat, notes):
+    """Notes objects that are seen before the distance at which a camera begins to see, of 16x12 rays."""
+    window = bpy.context.window
+    window.scene = flat
+    graph = bpy.context.evaluated_depsgraph_get()
+    place, data = flat.camera.matrix_world, scene.camera.data
+    right_top, _, left_bottom, _ = data.view_frame(scene=scene)
+    for i in range(16):
+        for j in range(12):
+            at = Vector((left_bottom.x + (right_top.x - left_bottom.x) * (i + 0.5) / 16,
+                         left_bottom.y + (right_top.y - left_bottom.y) * (j + 0.5) / 12, right_top.z))
+            is_flat = data.type == 'ORTHO'
+            start = Vector((at.x, at.y, 0)) if is_flat else Vector()
+            way = Vector((0, 0, -1)) if is_flat else at.normalized()
+            found = flat.ray_cast(graph, place @ start, (place.to_3x3() @ way).normalized(), distance=data.clip_start / -way.z)
+            if found[0]:
+                notes.add("seen before the camera's clip start", found[4]["lull_source"])
+    window.scene = scene
 
 
-def _may_be_seen(camera, o):
-    corners = [world_to_camera_view(bpy.context.scene, camera, o.matrix_world @ Vector(c)) for c in o.bound_box]
-    return min(c.x for c in corners) < 1 and max(c.x for c in corners) > 0 and \
-        min(c.y for c in corners) < 1 and max(c.y for c in corners) > 0
-
-
-def camera_of(scene):
-    """Returns the scene's camera. Raises: SystemExit without one that glTF has."""
+def check_camera(scene):
+    """Raises: SystemExit without a camera that glTF has."""
     if scene.camera is None:
         raise SystemExit("the scene has no camera")
     if scene.camera.data.type == 'PANO':
         raise SystemExit(f"camera '{scene.camera.name}' is panoramic, which glTF does not support")
-    return scene.camera
 
 
 def add_camera(scene, flat, notes):
@@ -180,12 +183,12 @@ def main():
     layer = bpy.context.window.view_layer
     wanted = show_as_rendered(scene, layer)
     scene.frame_set(what["frame"], subframe=what["subframe"])
-    camera = camera_of(scene)
+    check_camera(scene)
     note_film(scene, notes)
     flat, made = flatten.flatten(wanted, what["material"] and bpy.data.materials[what["material"]], notes)
     lamps = lights.find(scene, wanted)
     add_camera(scene, flat, notes)
-    note_clipping(camera, made, notes)
+    note_clipping(scene, flat, notes)
     baker = bake.Baker(what["texture"])
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])
