@@ -45,7 +45,7 @@ class AddOn(unittest.TestCase):
         os.makedirs(user / "scripts/addons")
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
-        for frame, names in (1, ["factory", "lamps", "glass", "veil"]), (11, ["skin"]):
+        for frame, names in (1, ["factory", "lamps", "glass", "veil", "nodes"]), (11, ["skin"]):
             what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": 4 * SPP,
                     "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
@@ -131,6 +131,18 @@ class AddOn(unittest.TestCase):
         self.assert_close("veil", passes, 0.01, 0.02)
         self.assertNotIn("Warning", said)
 
+    def test_nodes_that_gltf_lacks(self):
+        passes, said = self.render("nodes")
+        self.assert_close("nodes", passes, 0.01, 0.02)
+        self.assertNotIn("Warning", said)
+
+    def test_brightens_as_the_film_and_the_view_do(self):
+        _, said = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2; scene.view_settings.exposure = 1")
+        self.assertNotIn("Error", said)
+        once, _ = self.render("lamps")
+        twice, _ = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2")
+        self.assertLess(abs(rgb(twice) - 2 * rgb(once)).max(), 1e-4)
+
     def test_skin_at_a_frame(self):
         passes, _ = self.render("skin", frame=11)
         self.assert_close("skin", passes, 0.005, 0.01)
@@ -187,10 +199,10 @@ cube.modifiers.new('hair', 'PARTICLE_SYSTEM').particle_system.name = 'fur'
 nodes = cube.active_material.node_tree.nodes
 noise = nodes.new('ShaderNodeTexNoise')
 cube.active_material.node_tree.links.new(noise.outputs['Color'], nodes['Principled BSDF'].inputs['Base Color'])
+nodes['Principled BSDF'].inputs['Subsurface'].default_value = 0.5
 bpy.data.lights['Light'].type = 'SPOT'""")
-        for text in ("particles 'fur' of object 'Cube'",
-                     "material 'Material': glTF cannot express its node 'Noise Texture'",
-                     "spot light 'Light' has no radius"):
+        for text in ("1 object is without hair: 'Cube'", "1 material is without subsurface: 'Material'",
+                     "1 light is without a radius, with sharp shadows: 'Light'"):
             self.assertEqual(said.count(text), 1, said)
 
 

@@ -139,6 +139,68 @@ def veil(folder):
     camera((0, -7, 3.2), (1.2, 0, 0), lens=35)
 
 
+def nodes(folder):
+    """A group of nodes, a checker by object coordinates in a mixture, colours of two copies, a cut by an image's other channel,
+    vertices that carry copies, text, a sheared box, and an area light that is seen from behind."""
+    scene = bpy.context.scene
+    floor(matte())
+    lamp('SUN', 2, (0, 0, 5), (0.5, 0.3, 0), angle=0)
+    lamp('AREA', 20, (-2, 2, 1.2), (math.pi / 2, 0, 0), size=2)
+
+    group = bpy.data.node_groups.new("paint", 'ShaderNodeTree')
+    group.inputs.new('NodeSocketColor', "Color")
+    group.outputs.new('NodeSocketShader', "Shader")
+    inlet, outlet, paint = (group.nodes.new(kind) for kind in ('NodeGroupInput', 'NodeGroupOutput', 'ShaderNodeBsdfDiffuse'))
+    group.links.new(inlet.outputs[0], paint.inputs['Color'])
+    group.links.new(paint.outputs[0], outlet.inputs[0])
+    grouped = matte("grouped")
+    tree = grouped.node_tree
+    node = tree.nodes.new('ShaderNodeGroup')
+    node.node_tree = group
+    node.inputs[0].default_value = (0.1, 0.6, 0.2, 1)
+    tree.links.new(node.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])
+    sphere(grouped, (-1.5, -1, 0.5), 0.5)
+
+    checked = matte("checked", (0.7, 0.1, 0.1, 1))
+    tree = checked.node_tree
+    red = next(n for n in tree.nodes if n.type == 'BSDF_DIFFUSE')
+    blue, mix, checker, place = (tree.nodes.new('ShaderNode' + kind) for kind in
+                                 ('BsdfDiffuse', 'MixShader', 'TexChecker', 'TexCoord'))
+    blue.inputs['Color'].default_value = (0.1, 0.1, 0.7, 1)
+    checker.inputs['Scale'].default_value = 2
+    for a, b in ((place.outputs['Object'], checker.inputs['Vector']), (checker.outputs['Fac'], mix.inputs[0]),
+                 (red.outputs[0], mix.inputs[1]), (blue.outputs[0], mix.inputs[2]),
+                 (mix.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])):
+        tree.links.new(a, b)
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 0.5))
+    dress(checked)
+
+    own = matte("own")
+    tree = own.node_tree
+    info = tree.nodes.new('ShaderNodeObjectInfo')
+    tree.links.new(info.outputs['Color'], next(n for n in tree.nodes if n.type == 'BSDF_DIFFUSE').inputs['Color'])
+    for x, colour in (1.2, (0.8, 0.6, 0.1, 1)), (2.2, (0.1, 0.6, 0.6, 1)):
+        sphere(own, (x, 0, 0.4), 0.4).color = colour
+
+    carrier = bpy.data.objects.new("carrier", bpy.data.meshes.new("carrier"))
+    carrier.data.from_pydata([(-2.5, 1, 0.2), (-1.5, 1, 0.2), (-0.5, 1, 0.2)], [(0, 1), (1, 2)], [])
+    scene.collection.objects.link(carrier)
+    carrier.instance_type = 'VERTS'
+    bpy.ops.mesh.primitive_cube_add(size=0.4)
+    dress(matte("copies", (0.6, 0.3, 0.6, 1))).parent = carrier
+
+    bpy.ops.object.text_add(location=(0.5, -2, 0.1), rotation=(1.2, 0, 0))
+    bpy.context.object.data.body, bpy.context.object.data.extrude = "lull", 0.1
+    bpy.context.object.data.materials.append(matte("ink", (0.05, 0.05, 0.05, 1)))
+
+    stretched = bpy.data.objects.new("stretched", None)
+    stretched.scale = (2, 1, 1)
+    scene.collection.objects.link(stretched)
+    bpy.ops.mesh.primitive_cube_add(size=0.6, location=(1, 1.5, 0.3), rotation=(0, 0, 0.7))
+    dress(matte("sheared", (0.6, 0.6, 0.2, 1))).parent = stretched
+    camera((4, -5, 3), (1.1, 0, 0.68))
+
+
 def skin(folder):
     """A bone bends a bar in the frames 1 to 11; the world is a plain colour, the floor has no
     material, and what is in an excluded collection is not there."""

@@ -154,9 +154,12 @@ def patch(path):
         # Without this, glass would be a thin sheet; Blender's is solid.
         if "KHR_materials_transmission" in extensions:
             extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
-        if material.get("extras", {}).pop("lull_adds", None):
-            material["extras"]["lull"] = {"addedInterface": True}
-        absorbs = material.get("extras", {}).pop("lull_absorbs", None)
+        extras = material.get("extras", {})
+        own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"))
+               if extras.pop(mark, None)}  # Blender has numbers only
+        if own:
+            extras["lull"] = own
+        absorbs = extras.pop("lull_absorbs", None)
         if absorbs and max(absorbs) > 0 and "KHR_materials_volume" in extensions:
             distance = 1 / max(absorbs)
             extensions["KHR_materials_volume"].update(
@@ -182,10 +185,13 @@ def main():
     scene = load(what)
     layer = bpy.context.window.view_layer
     wanted = show_as_rendered(scene, layer)
+    flat = bpy.data.scenes.new('lull')
+    # Poses are those of the frame only where it is set in a graph that is up to date.
+    bpy.context.evaluated_depsgraph_get()
     scene.frame_set(what["frame"], subframe=what["subframe"])
     check_camera(scene)
     note_film(scene, notes)
-    flat, made = flatten.flatten(wanted, what["material"] and bpy.data.materials[what["material"]], notes)
+    made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], notes)
     lamps = lights.find(scene, wanted)
     add_camera(scene, flat, notes)
     note_clipping(scene, flat, notes)

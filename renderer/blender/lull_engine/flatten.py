@@ -10,13 +10,11 @@ _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE'}
 
 
-def flatten(wanted, override, notes):
-    """Fills a new scene with the meshes of the objects `wanted`, all of the material `override` if there is one.
+def flatten(flat, wanted, override, notes):
+    """Fills an empty scene with the meshes of the objects `wanted`, all of the material `override` if there is one.
 
-    Returns: the scene, and a list of its objects. Lights and cameras are left to others.
+    Returns: its objects. Lights and cameras are left to others.
     """
-    flat = bpy.data.scenes.new('lull')
-    flat.world = None
     made, meshes = [], {}
     graph = bpy.context.evaluated_depsgraph_get()
     # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
@@ -37,7 +35,7 @@ def flatten(wanted, override, notes):
             made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
     for o in made:
         _note_of(o, notes)
-    return flat, made
+    return made
 
 
 def _shows_itself(instance, listed):

@@ -140,7 +140,7 @@ def _add_area(flat, o, light, matrix, notes):
     mesh.from_pydata(points, [], [tuple(range(len(points)))])
     # Blender's watts: a Lambertian surface of this radiance emits pi / 4 of them.
     mesh.materials.append(_shining(o.name, light.color, light.energy / (4 * area)))
-    mesh.materials[0]["lull"] = {"openBehind": True}
+    mesh.materials[0]["lull_open"] = True
     made = bpy.data.objects.new(o.name, mesh)
     made.matrix_world = matrix
     flat.collection.objects.link(made)
