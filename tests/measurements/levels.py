@@ -11,6 +11,9 @@ import h5py
 import numpy as np
 
 
+NO_NOISE = 0.05  # L*; blocks with less, such as a plain sky, say nothing of what people accept
+
+
 def read_thresholds(path):
     rows = (line.strip().strip(';').split(';') for line in open(path) if line.strip())
     return {row[0]: [int(spp) for spp in row[1:]] for row in rows}
@@ -70,8 +73,10 @@ def main():
             for view in file:
                 for name in file[view]:
                     threshold = human[view][int(name[len('block_'):])]
-                    views.setdefault(view, []).append(np.log(measures(file[view][name], threshold)))
                     now = at(file[view][name], threshold)
+                    if now('masked_noise').mean() < NO_NOISE:
+                        continue
+                    views.setdefault(view, []).append(np.log(measures(file[view][name], threshold)))
                     blocks.append((view, now('lightness').mean(), now('texture').mean(), now('masked_noise')))
     print('| viewpoint | blocks | mean of masked noise | RMS | peak noise |\n|---|---|---|---|---|')
     cell = lambda values: f'{np.exp(np.mean(values)):.2f} ({np.std(values):.2f})'
