@@ -6,6 +6,7 @@ with a fixed seed on both sides. `--keep FOLDER` leaves them there to look at.""
 import json
 import os
 import pathlib
+import shlex
 import signal
 import subprocess
 import sys
@@ -191,6 +192,23 @@ class AddOn(unittest.TestCase):
             self.assertEqual(len(errors), 1, said)
             self.assertIn(message, errors[0])
             self.assertNotIn("Traceback", said)
+
+    def test_checks_and_exports_for_the_command_line(self):
+        path = self.folder / "exported" / "lamps.gltf"
+        path.parent.mkdir()
+        said = self.blender(*self.command("lamps", SAMPLES + f"""
+bpy.ops.lull.check()
+print('TEXT', repr(bpy.data.texts['lull: differences'].as_string()))
+bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
+        self.assertIn("TEXT 'Nothing will look different.", said)
+        command = next(line[line.index("lull render"):] for line in said.splitlines() if "lull render" in line)
+        self.assertEqual(sorted(f.name for f in path.parent.iterdir()), ["lamps.bin", "lamps.gltf"])
+        picture = path.with_name("picture.exr")
+        subprocess.run(shlex.split(command) + ["-o", picture, "--quiet"], env=self.environment, check=True,
+                       stdout=subprocess.DEVNULL)
+        channels, _ = exr.read(picture)
+        once, _ = self.render("lamps")
+        self.assertLess(abs(np.stack([channels[c] for c in "RGB"], -1) - rgb(once)).max(), 1e-5)
 
     def test_warns_by_name(self):
         _, said = self.render("factory", SAMPLES + """

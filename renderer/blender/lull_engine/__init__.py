@@ -11,10 +11,10 @@ bl_info = {
 
 import bpy  # noqa: E402
 
-from . import engine, panels, settings  # noqa: E402
+from . import engine, operators, panels, settings  # noqa: E402
 
 _CLASSES = (settings.LullPreferences, settings.LullSettings, engine.LullEngine,
-            panels.LULL_RENDER_PT_stopping, panels.LULL_RENDER_PT_sampling)
+            operators.LULL_OT_check, operators.LULL_OT_export, panels.LULL_RENDER_PT_stopping, panels.LULL_RENDER_PT_sampling)
 
 
 def register():
@@ -22,9 +22,11 @@ def register():
         bpy.utils.register_class(each)
     bpy.types.Scene.lull = bpy.props.PointerProperty(type=settings.LullSettings)
     panels.share(True)
+    bpy.types.TOPBAR_MT_file_export.append(operators.menu)
 
 
 def unregister():
+    bpy.types.TOPBAR_MT_file_export.remove(operators.menu)
     panels.share(False)
     del bpy.types.Scene.lull
     for each in reversed(_CLASSES):

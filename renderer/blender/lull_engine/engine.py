@@ -69,6 +69,49 @@ class LullEngine(bpy.types.RenderEngine):
             self.report({'ERROR'}, str(e))  # and in the terminal
 
 
+def export(scene, layer, folder, stopped, name="scene"):
+    """Writes a view layer as NAME.gltf, in another Blender, which leaves the scene unchanged.
+
+    Returns: the result of export.py; None if `stopped` has returned true. Raises: Failure.
+    """
+    blend, said = os.path.join(folder, name + ".blend"), os.path.join(folder, name + ".json")
+    override = scene.view_layers[layer].material_override
+    bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
+    what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
+            "folder": folder, "name": name, "frame": scene.frame_current, "subframe": scene.frame_subframe,
+            "texture": scene.lull.texture, "said": said}
+    scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
+    try:
+        code, output, ended = run(
+            [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",
+             "--enable-autoexec" if scripts else "--disable-autoexec", "--python-exit-code", "1",
+             "--python", _EXPORT, "--", json.dumps(what)], stopped)
+        if ended:
+            return None
+        if code != 0 or not os.path.exists(said):
+            lines = [line for line in output.splitlines() if line.strip() and
+                     not line.startswith("Blender quit")]
+            raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "exit code %d" % code))
+        with open(said, encoding="utf-8") as f:
+            return json.load(f)
+    finally:
+        for file in blend, said:
+            if os.path.exists(file):
+                os.remove(file)
+
+
+def look_arguments(scene):
+    """Returns the options of `lull render` that say how the picture looks."""
+    said = []
+    if scene.render.film_transparent:
+        said += ["--transparent"]
+    if scene.cycles.film_exposure not in (0, 1):
+        said += ["--exposure", "%.9g" % math.log2(scene.cycles.film_exposure)]
+    if scene.view_settings.exposure:
+        said += ["--view-exposure", "%.9g" % scene.view_settings.exposure]
+    return said
+
+
 class _Job:
     """The render of one view layer."""
 
@@ -98,7 +141,7 @@ class _Job:
     def run(self):
         lull, engine = find_lull(), self.engine
         engine.update_stats("", "Exporting")
-        exported = self._export()
+        exported = export(self.scene, self.layer, self.folder, engine.test_break)
         if exported is None:
             return
         for warning in exported["warnings"]:
@@ -107,12 +150,7 @@ class _Job:
         command = [lull, "render", exported["gltf"], "-o", picture,
                    "--resolution", "%dx%d" % self.whole, "--aov", "albedo,normal,depth,noise",
                    *self.settings.arguments()]
-        if self.is_transparent:
-            command += ["--transparent"]
-        if self.scene.cycles.film_exposure not in (0, 1):
-            command += ["--exposure", "%.9g" % math.log2(self.scene.cycles.film_exposure)]
-        if self.scene.view_settings.exposure:
-            command += ["--view-exposure", "%.9g" % self.scene.view_settings.exposure]
+        command += look_arguments(self.scene)
         if self.crop:
             command += ["--crop", self.crop]
         if exported["environment"]:
@@ -131,34 +169,6 @@ class _Job:
                                           "ended with exit code %d" % render.code))
         finally:
             engine.end_result(result)
-
-    def _export(self):
-        """Writes the scene as glTF, in another Blender, which leaves this scene unchanged.
-
-        Returns: the result of export.py; None if the user has cancelled.
-        """
-        blend = os.path.join(self.folder, "scene.blend")
-        override = self.scene.view_layers[self.layer].material_override
-        bpy.data.libraries.write(blend, {self.scene, override} - {None}, path_remap='ABSOLUTE')
-        said = os.path.join(self.folder, "export.json")
-        what = {"blend": blend, "scene": self.scene.name, "layer": self.layer,
-                "material": override.name if override else None, "folder": self.folder,
-                "frame": self.scene.frame_current, "subframe": self.scene.frame_subframe,
-                "texture": self.settings.texture, "said": said}
-        scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
-        code, output, ended = run(
-            [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",
-             "--enable-autoexec" if scripts else "--disable-autoexec", "--python-exit-code", "1",
-             "--python", _EXPORT, "--", json.dumps(what)], self.engine.test_break)
-        if ended:
-            return None
-        if code != 0 or not os.path.exists(said):
-            lines = [line for line in output.splitlines() if line.strip() and
-                     not line.startswith("Blender quit")]
-            raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "exit code %d" %
-                                                              code))
-        with open(said, encoding="utf-8") as f:
-            return json.load(f)
 
     def _watch(self, render, result):
         """Shows the progress of the render until it ends."""

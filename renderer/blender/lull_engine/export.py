@@ -1,7 +1,7 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
 The last argument is a JSON object: the file, the names of scene, view layer and its material override (or null), the frame, the size of
-baked images, the output folder, and the file of the result, with `gltf`, `environment` (or null) and
+baked images, the output folder, the name of the files in it, and the file of the result, with `gltf`, `environment` (or null) and
 `warnings`.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
@@ -201,9 +201,9 @@ def main():
         flat.collection.objects.unlink(o)
     baker.end()
     lights.add(lamps, scene, flat, notes)
-    environment = world.write(scene, os.path.join(what["folder"], "world.exr"), notes)
+    environment = world.write(scene, os.path.join(what["folder"], what["name"] + ".world.exr"), notes)
     bpy.context.window.scene = flat
-    path = os.path.join(what["folder"], "scene.gltf")
+    path = os.path.join(what["folder"], what["name"] + ".gltf")
     export(path)
     patch(path)
     with open(what["said"], "w", encoding="utf-8") as f:

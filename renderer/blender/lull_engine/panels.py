@@ -50,6 +50,7 @@ class LULL_RENDER_PT_stopping(_Panel, bpy.types.Panel):
         layout.prop(settings, "cap")
         layout.prop(settings, "time")
         layout.prop(settings, "denoise")
+        layout.operator("lull.check")
 
 
 class LULL_RENDER_PT_sampling(_Panel, bpy.types.Panel):

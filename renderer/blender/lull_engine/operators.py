@@ -1,0 +1,65 @@
+"""Shows what will look different, and exports the scene for the command line."""
+import os
+import shlex
+import tempfile
+
+import bpy
+from bpy_extras.io_utils import ExportHelper
+
+from .engine import export, look_arguments
+from .process import Failure
+
+_REPORT = "lull: differences"
+
+
+def _never():
+    return False
+
+
+class LULL_OT_check(bpy.types.Operator):
+    """List what will look different in lull, without rendering"""
+    bl_idname, bl_label = "lull.check", "Check Scene"
+
+    def execute(self, context):
+        try:
+            with tempfile.TemporaryDirectory(prefix="lull-") as folder:
+                lines = export(context.scene, context.view_layer.name, folder, _never)["warnings"]
+        except (Failure, OSError) as e:
+            self.report({'ERROR'}, str(e))
+            return {'CANCELLED'}
+        text = bpy.data.texts.get(_REPORT) or bpy.data.texts.new(_REPORT)
+        text.clear()
+        text.write("\n".join(lines or ["Nothing will look different."]) + "\n")
+        for line in lines:
+            self.report({'WARNING'}, line)
+        self.report({'INFO'}, f"{len(lines) or 'No'} differences; see the text '{_REPORT}'")
+        return {'FINISHED'}
+
+
+class LULL_OT_export(bpy.types.Operator, ExportHelper):
+    """Write the scene as lull's render engine sees it, with its world, and print the command that renders it"""
+    bl_idname, bl_label = "lull.export", "Export for lull"
+    filename_ext = ".gltf"
+    filter_glob: bpy.props.StringProperty(default="*.gltf", options={'HIDDEN'})
+
+    def execute(self, context):
+        scene = context.scene
+        folder, file = os.path.split(self.filepath)
+        try:
+            done = export(scene, context.view_layer.name, folder, _never, os.path.splitext(file)[0])
+        except (Failure, OSError) as e:
+            self.report({'ERROR'}, str(e))
+            return {'CANCELLED'}
+        for line in done["warnings"]:
+            self.report({'WARNING'}, line)
+        scale = scene.render.resolution_percentage / 100
+        size = "%dx%d" % (int(scene.render.resolution_x * scale), int(scene.render.resolution_y * scale))
+        command = ["lull", "render", done["gltf"], "--resolution", size, *look_arguments(scene), *scene.lull.arguments()]
+        if done["environment"]:
+            command += ["--environment", done["environment"]]
+        self.report({'INFO'}, shlex.join(command))
+        return {'FINISHED'}
+
+
+def menu(self, _context):
+    self.layout.operator(LULL_OT_export.bl_idname, text="lull (.gltf)")
