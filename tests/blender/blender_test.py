@@ -46,7 +46,7 @@ class AddOn(unittest.TestCase):
         os.makedirs(user / "scripts/addons")
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
-        for frame, names in (1, ["factory", "lamps", "glass", "veil", "nodes"]), (11, ["skin"]):
+        for frame, names in (1, ["factory", "lamps", "glass", "veil", "nodes", "pane"]), (11, ["skin"]):
             what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": 4 * SPP,
                     "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
@@ -143,6 +143,19 @@ class AddOn(unittest.TestCase):
         once, _ = self.render("lamps")
         twice, _ = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2")
         self.assertLess(abs(rgb(twice) - 2 * rgb(once)).max(), 1e-4)
+
+    def test_lets_the_sun_through_panes(self):
+        solid, said = self.render("pane", SAMPLES + "s.panes = False")
+        self.assertNotIn("Warning", said)
+        sheet, said = self.render("pane")
+        self.assertIn("1 object is made a sheet instead of a slab", said)
+        open_, _ = self.render("pane", SAMPLES + "bpy.data.objects['pane'].hide_render = True")
+        shadow = (slice(-6, None), slice(20, 40))  # below the pane
+        self.assertLess(rgb(solid)[shadow].mean(), 0.2 * rgb(open_)[shadow].mean())
+        # By both interfaces' colour and one's reflection; the pane reflects some light of the floor, too.
+        share = rgb(sheet)[shadow].mean((0, 1)) / rgb(open_)[shadow].mean((0, 1))
+        for got, colour in zip(share, (0.9, 0.95, 0.9)):
+            self.assertAlmostEqual(got, colour ** 2 * 0.97, delta=0.05)
 
     def test_skin_at_a_frame(self):
         passes, _ = self.render("skin", frame=11)

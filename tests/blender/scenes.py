@@ -139,6 +139,16 @@ def veil(folder):
     camera((0, -7, 3.2), (1.2, 0, 0), lens=35)
 
 
+def pane(folder):
+    """The sun through a pane of glass, modelled as a slab."""
+    floor(matte())
+    lamp('SUN', 3, (0, 0, 5), (0.3, 0, 0), angle=0)
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 2), rotation=(0.1, 0, 0.4))
+    bpy.context.object.scale = (4, 4, 0.02)
+    dress(material("glass", 'BsdfGlass', Color=(0.9, 0.95, 0.9, 1), Roughness=0, IOR=1.45)).name = "pane"
+    camera((0, -3, 1.2), (1.1, 0, 0))
+
+
 def nodes(folder):
     """A group of nodes, a checker by object coordinates in a mixture, colours of two copies, a cut by an image's other channel,
     vertices that carry copies, text, a sheared box, and an area light that is seen from behind."""

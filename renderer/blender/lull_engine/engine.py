@@ -79,7 +79,7 @@ def export(scene, layer, folder, stopped, name="scene"):
     bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
     what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
             "folder": folder, "name": name, "frame": scene.frame_current, "subframe": scene.frame_subframe,
-            "texture": scene.lull.texture, "said": said}
+            "texture": scene.lull.texture, "panes": scene.lull.panes, "said": said}
     scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
     try:
         code, output, ended = run(

@@ -1,7 +1,7 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
 The last argument is a JSON object: the file, the names of scene, view layer and its material override (or null), the frame, the size of
-baked images, the output folder, the name of the files in it, and the file of the result, with `gltf`, `environment` (or null) and
+baked images, whether slabs of glass become sheets, the output folder, the name of the files in it, and the file of the result, with `gltf`, `environment` (or null) and
 `warnings`.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
@@ -21,6 +21,7 @@ import bake  # noqa: E402
 import flatten  # noqa: E402
 import lights  # noqa: E402
 import notes as notes_  # noqa: E402
+import panes  # noqa: E402
 import surfaces  # noqa: E402
 import world  # noqa: E402
 
@@ -152,7 +153,7 @@ def patch(path):
     for material in root.get("materials", []):
         extensions = material.get("extensions", {})
         # Without this, glass would be a thin sheet; Blender's is solid.
-        if "KHR_materials_transmission" in extensions:
+        if "KHR_materials_transmission" in extensions and not material.get("extras", {}).pop("lull_thin", None):
             extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
         extras = material.get("extras", {})
         own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"))
@@ -200,6 +201,8 @@ def main():
         notes.add("left out, being nothing but a volume", o["lull_source"])
         flat.collection.objects.unlink(o)
     baker.end()
+    if what["panes"]:
+        panes.prepare(made, notes)
     lights.add(lamps, scene, flat, notes)
     environment = world.write(scene, os.path.join(what["folder"], what["name"] + ".world.exr"), notes)
     bpy.context.window.scene = flat

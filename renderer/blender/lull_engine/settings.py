@@ -56,6 +56,8 @@ class LullSettings(bpy.types.PropertyGroup):
                            description="Maximum number of bounces")
     texture: IntProperty(name="Texture Size", default=1024, min=16, max=8192, subtype='PIXEL',
                          description="Size of the images that replace nodes which glTF does not have")
+    panes: BoolProperty(name="Sheets for Panes", default=True,
+                        description="Replace flat slabs of clear glass by sheets, which light sampling passes")
     graded_by: FloatProperty(name="Graded By", default=0, min=-10, max=10,
                              description="Judge noise in the image brightened by this many stops as well")
     seed: IntProperty(name="Seed", min=0, description="Seed of the random numbers")

@@ -1,0 +1,77 @@
+"""Makes sheets of panes that are modelled as slabs of glass: light sampling passes a sheet, and no solid."""
+import bpy
+import numpy as np
+
+_LEAST_WIDTHS = 20  # of the thickness, that a pane has both ways
+_SMOOTH = 0.03  # roughness
+
+
+def prepare(made, notes):
+    """Replaces the meshes of flattened objects whose materials are converted."""
+    sheets = {}
+    for o in made:
+        mesh = o.data
+        if mesh not in sheets:
+            sheets[mesh] = _sheet(o) if len(mesh.materials) == 1 and _glass(mesh.materials[0]) else None
+        if sheets[mesh] is not None:
+            o.data = sheets[mesh]
+            notes.add("made a sheet instead of a slab of glass, so that light passes", o["lull_source"])
+
+
+def _glass(material):
+    """Returns the surface of smooth clear glass; None for other materials."""
+    if material is None or not material.use_nodes or material.get("lull_absorbs"):
+        return None
+    surface = next((n for n in material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED'), None)
+    if surface is None:
+        return None
+    inputs = surface.inputs
+    transmission = inputs.get('Transmission') or inputs['Transmission Weight']
+    values = (transmission, inputs['Roughness'], inputs['Base Color'], inputs['Alpha'], inputs['Normal'])
+    is_glass = (not any(s.links for s in values) and transmission.default_value > 0.99 and
+                inputs['Roughness'].default_value <= _SMOOTH and inputs['Alpha'].default_value == 1)
+    return surface if is_glass else None
+
+
+def _sheet(o):
+    """Returns the middle of a closed slab; None for other meshes."""
+    mesh = o.data
+    points = np.empty(3 * len(mesh.vertices))
+    mesh.vertices.foreach_get("co", points)
+    points = points.reshape(-1, 3)
+    low, high = points.min(0), points.max(0)
+    sides = (high - low) * np.abs(o.matrix_world.to_scale())
+    axis = int(np.argmin(sides))
+    others = np.delete(sides, axis)
+    thick = high[axis] - low[axis]
+    is_slab = thick > 0 and others.min() >= _LEAST_WIDTHS * sides[axis]
+    top = points[:, axis] > high[axis] - 0.01 * thick
+    bottom = points[:, axis] < low[axis] + 0.01 * thick
+    if not is_slab or not (top | bottom).all() or not _is_closed(mesh):
+        return None
+    middle = points.copy()
+    middle[:, axis] = (low[axis] + high[axis]) / 2
+    faces = [tuple(p.vertices) for p in mesh.polygons if top[list(p.vertices)].all()]
+    used = sorted({v for f in faces for v in f})
+    place = {v: i for i, v in enumerate(used)}
+    sheet = bpy.data.meshes.new(mesh.name + " sheet")
+    sheet.from_pydata([tuple(middle[v]) for v in used], [], [tuple(place[v] for v in f) for f in faces])
+    sheet.materials.append(_thin(mesh.materials[0]))
+    return sheet
+
+
+def _is_closed(mesh):
+    counts = {}
+    for polygon in mesh.polygons:
+        for key in polygon.edge_keys:
+            counts[key] = counts.get(key, 0) + 1
+    return all(n == 2 for n in counts.values())
+
+
+def _thin(material):
+    """Returns glass without thickness, which light passes once: the colour of both sides of the slab."""
+    thin = material.copy()
+    colour = _glass(thin).inputs['Base Color']
+    colour.default_value = [c * c for c in colour.default_value[:3]] + [1]
+    thin["lull_thin"] = True
+    return thin
