@@ -98,7 +98,8 @@ TEST(Lobes, AreReciprocal) {
             if (const auto* t = std::get_if<MicrofacetTransmission>(&l.lobe))
                 scale = a.z() > 0 ? Sqr(t->eta) : 1 / Sqr(t->eta);
             if (!IsFrontFacing(l.lobe, a, b)) continue;
-            const float tolerance = 2e-3f * std::max(1e-2f, ba.maxCoeff());
+            // Rounding of the half vector counts in the tails of narrow lobes.
+            const float tolerance = 2e-3f * std::max(5e-2f, ba.maxCoeff());
             EXPECT_LT((ab * scale - ba).abs().maxCoeff(), tolerance) << l.name << " " << i;
         }
     }
