@@ -150,7 +150,7 @@ def pane(folder):
 
 
 def nodes(folder):
-    """A group of nodes, a checker by object coordinates in a mixture, colours of two copies, a cut by an image's other channel,
+    """A group of nodes, checkers by object coordinates on the sides of a cube, in mixtures, colours of two copies, a cut by an image's other channel,
     vertices that carry copies, text, a sheared box, and an area light that is seen from behind."""
     scene = bpy.context.scene
     floor(matte())
@@ -183,7 +183,12 @@ def nodes(folder):
                  (mix.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])):
         tree.links.new(a, b)
     bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 0.5))
-    dress(checked)
+    cube = dress(checked)
+    finer = checked.copy()
+    next(n for n in finer.node_tree.nodes if n.type == 'TEX_CHECKER').inputs['Scale'].default_value = 4
+    cube.data.materials.append(finer)
+    for polygon in cube.data.polygons:
+        polygon.material_index = polygon.index % 2
 
     own = matte("own")
     tree = own.node_tree

@@ -17,25 +17,25 @@ class Baker:
         self.scene.cycles.use_denoising = False
         self.scene.cycles.device = 'CPU'
         self.scene.render.bake.margin = 8
-        self.unwrapped = set()
 
     def plain(self, material, socket):
         """Returns the R, G, B of a socket that is the same everywhere."""
         return self._bake(material, socket, self._square(()), _PLAIN)[:, :, :3].mean((0, 1))
 
-    def over_uvs(self, material, socket, names, size, kind='EMIT'):
+    def over_uvs(self, material, socket, names, size):
         """Returns the pixels over a square, whose UV layers have these names."""
-        return self._bake(material, socket, self._square(names), size or self.size, kind)
+        return self._bake(material, socket, self._square(names), size or self.size)
 
-    def over_mesh(self, material, socket, placed, kind='EMIT'):
-        """Returns the pixels over the UV layer `lull` of an object's mesh, which it adds."""
-        mesh = placed.data
+    def over_mesh(self, material, socket, placed, slot, kind='EMIT'):
+        """Returns the pixels over the UV layer `lull` of an object's mesh, which it adds, where the mesh has the material `slot`."""
         o = placed.copy()
         self.scene.collection.objects.link(o)
-        if mesh.name not in self.unwrapped:
-            self._unwrap(o, mesh)
-            self.unwrapped.add(mesh.name)
-        return self._bake(material, socket, o, self.size, kind)
+        if _UV not in o.data.uv_layers:
+            self._unwrap(o)
+        o.data = o.data.copy()
+        o.data.uv_layers.active = o.data.uv_layers[_UV]
+        others = [i for i, m in enumerate(o.data.materials) if m != slot]
+        return self._bake(material, socket, o, self.size, others, kind)
 
     def end(self):
         bpy.data.scenes.remove(self.scene)
@@ -43,6 +43,7 @@ class Baker:
     def _square(self, names):
         mesh = bpy.data.meshes.new('bake')
         mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+        mesh.materials.append(None)
         for name in names or ("UVMap",):
             layer = mesh.uv_layers.new(name=name)
             for loop, uv in zip(layer.data, ((0, 0), (1, 0), (1, 1), (0, 1))):
@@ -51,16 +52,16 @@ class Baker:
         self.scene.collection.objects.link(o)
         return o
 
-    def _unwrap(self, o, mesh):
-        active = mesh.uv_layers.active_index
-        mesh.uv_layers.new(name=_UV)
-        mesh.uv_layers.active = mesh.uv_layers[_UV]
+    def _unwrap(self, o):
+        layers = o.data.uv_layers
+        active = layers.active_index
+        layers.active = layers.new(name=_UV)
         self._select(o)
         bpy.ops.object.mode_set(mode='EDIT')
         bpy.ops.mesh.select_all(action='SELECT')
         bpy.ops.uv.smart_project(island_margin=0.005)
         bpy.ops.object.mode_set(mode='OBJECT')
-        mesh.uv_layers.active_index = max(active, 0)
+        layers.active_index = max(active, 0)
 
     def _select(self, o):
         bpy.context.window.scene = self.scene
@@ -70,50 +71,38 @@ class Baker:
         o.select_set(True)
         layer.objects.active = o
 
-    def _bake(self, material, socket, o, size, kind='EMIT'):
-        """Renders what a socket says into an image; for normals, what the surface itself does."""
+    def _bake(self, material, socket, o, size, others=(), kind='EMIT'):
+        """Renders the value of a socket, or the normals of the surface, into an image. Removes the object and its mesh; `others`
+        are the slots of its other materials."""
         image = bpy.data.images.new('bake', size, size, alpha=True, float_buffer=True)
         image.colorspace_settings.name = 'Non-Color'
-        before = bpy.context.window.scene
-        mesh = o.data
-        old, faces = list(mesh.materials), [p.material_index for p in mesh.polygons]
-        own = material.copy()
-        tree = own.node_tree
-        if kind == 'EMIT':
-            _emit(tree, tree.nodes[socket.node.name].outputs[_index(socket)])
-        blank = bpy.data.materials.new('blank')
+        before, mesh = bpy.context.window.scene, o.data
+        own, blank = material.copy(), bpy.data.materials.new('blank')
         blank.use_nodes = True
-        mesh.materials.clear()
-        for slot in old or [material]:
-            mesh.materials.append(own if slot is None or slot == material or len(old) < 2 else blank)
-        if own not in list(mesh.materials):
-            mesh.materials[0] = own
-        if len(faces) > 1:
-            mesh.polygons.foreach_set("material_index", faces)
-        for each in (own, blank):
-            target = each.node_tree.nodes.new('ShaderNodeTexImage')
-            target.image = image if each == own else _scrap()
-            each.node_tree.nodes.active = target
-        uvs = mesh.uv_layers
-        active = uvs.active_index
-        if _UV in uvs:
-            uvs.active = uvs[_UV]
+        if kind == 'EMIT':
+            _emit(own.node_tree, own.node_tree.nodes[socket.node.name].outputs[_index(socket)])
+        _aim(own, image)
+        _aim(blank, _scrap())
+        for i in range(len(mesh.materials)):
+            mesh.materials[i] = blank if i in others else own
         self._select(o)
         bpy.ops.object.bake(type=kind)
         pixels = np.empty(size * size * 4, np.float32)
         image.pixels.foreach_get(pixels)
-        uvs.active_index = max(active, 0)
-        mesh.materials.clear()
-        for slot in old:
-            mesh.materials.append(slot)
-        if len(faces) > 1:
-            mesh.polygons.foreach_set("material_index", faces)
         bpy.data.objects.remove(o)
-        bpy.data.materials.remove(own)
-        bpy.data.materials.remove(blank)
+        bpy.data.meshes.remove(mesh)
+        for made in own, blank:
+            bpy.data.materials.remove(made)
         bpy.data.images.remove(image)
         bpy.context.window.scene = before
         return pixels.reshape(size, size, 4)
+
+
+def _aim(material, image):
+    """Lets a bake write into an image where a mesh has the material."""
+    target = material.node_tree.nodes.new('ShaderNodeTexImage')
+    target.image = image
+    material.node_tree.nodes.active = target
 
 
 def _scrap():

@@ -100,9 +100,11 @@ def export(scene, layer, folder, stopped, name="scene"):
                 os.remove(file)
 
 
-def look_arguments(scene):
-    """Returns the options of `lull render` that say how the picture looks."""
-    said = []
+def arguments(scene, exported, size):
+    """Returns the arguments of `lull render` for an exported scene of this size, as Blender's settings have it."""
+    said = [exported["gltf"], "--resolution", "%dx%d" % size, *scene.lull.arguments()]
+    if exported["environment"]:
+        said += ["--environment", exported["environment"]]
     if scene.render.film_transparent:
         said += ["--transparent"]
     if scene.cycles.film_exposure not in (0, 1):
@@ -147,14 +149,10 @@ class _Job:
         for warning in exported["warnings"]:
             engine.report({'WARNING'}, warning)
         picture = os.path.join(self.folder, "picture.exr")
-        command = [lull, "render", exported["gltf"], "-o", picture,
-                   "--resolution", "%dx%d" % self.whole, "--aov", "albedo,normal,depth,noise",
-                   *self.settings.arguments()]
-        command += look_arguments(self.scene)
+        command = [lull, "render", *arguments(self.scene, exported, self.whole), "-o", picture,
+                   "--aov", "albedo,normal,depth,noise"]
         if self.crop:
             command += ["--crop", self.crop]
-        if exported["environment"]:
-            command += ["--environment", exported["environment"]]
         if self.scene.render.threads_mode == 'FIXED':
             command += ["--threads", str(self.scene.render.threads)]
         engine.update_stats("", "Reading the scene")

@@ -1,8 +1,8 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
-The last argument is a JSON object: the file, the names of scene, view layer and its material override (or null), the frame, the size of
-baked images, whether slabs of glass become sheets, the output folder, the name of the files in it, and the file of the result, with `gltf`, `environment` (or null) and
-`warnings`.
+The last argument is a JSON object: the file, the names of scene, view layer and its material override (or
+null), the frame, the size of baked images, whether slabs of glass become sheets, the output folder, the name
+of the files in it, and the file of the result, with `gltf`, `environment` (or null) and `warnings`.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
 modifiers, instances and particles. Area lights become emitting meshes, the world becomes an image.
@@ -20,10 +20,11 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bake  # noqa: E402
 import flatten  # noqa: E402
 import lights  # noqa: E402
-import notes as notes_  # noqa: E402
 import panes  # noqa: E402
 import surfaces  # noqa: E402
 import world  # noqa: E402
+from notes import Notes  # noqa: E402
+
 
 def load(what):
     """Opens the scene, alone, so that everything keeps its name."""
@@ -182,12 +183,12 @@ def export(path):
 
 def main():
     what = json.loads(sys.argv[-1])
-    notes = notes_.Notes()
+    notes = Notes()
     scene = load(what)
     layer = bpy.context.window.view_layer
     wanted = show_as_rendered(scene, layer)
     flat = bpy.data.scenes.new('lull')
-    # Poses are those of the frame only where it is set in a graph that is up to date.
+    # A pose is evaluated at the frame only in a graph that is up to date.
     bpy.context.evaluated_depsgraph_get()
     scene.frame_set(what["frame"], subframe=what["subframe"])
     check_camera(scene)

@@ -15,7 +15,7 @@ def flatten(flat, wanted, override, notes):
 
     Returns: its objects. Lights and cameras are left to others.
     """
-    made, meshes = [], {}
+    made, meshes, shown = [], {}, set()
     graph = bpy.context.evaluated_depsgraph_get()
     # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
     listed = {i.parent.original for i in graph.object_instances if i.is_instance}
@@ -33,8 +33,9 @@ def flatten(flat, wanted, override, notes):
             meshes[key] = _mesh(o, instance.is_instance, graph, override)
         if meshes[key] is not None:
             made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
-    for o in made:
-        _note_of(o, notes)
+            shown.add(o.original)
+    for original in shown:
+        _note_of(original, notes)
     return made
 
 
@@ -87,15 +88,12 @@ def _place(flat, original, mesh, matrix):
     return o
 
 
-def _note_of(o, notes):
-    original = bpy.data.objects[o["lull_source"]]
+def _note_of(original, notes):
     for system in original.particle_systems:
         settings = system.settings
         if settings.type == 'HAIR' and settings.render_type == 'PATH' or settings.render_type in ('LINE', 'HALO'):
             notes.add("without hair", original.name)
     if original.is_shadow_catcher or original.is_holdout:
         notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
-    unseen = [name for name in ("camera", "diffuse", "glossy", "transmission", "shadow")
-              if not getattr(original, "visible_" + name, True)]
-    if unseen:
+    if not all(getattr(original, "visible_" + name, True) for name in ("camera", "diffuse", "glossy", "transmission", "shadow")):
         notes.add("visible to all rays", original.name)

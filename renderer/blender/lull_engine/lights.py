@@ -4,6 +4,8 @@ import math
 import bpy
 from bpy_extras.object_utils import world_to_camera_view
 
+import surfaces
+
 
 def find(scene, wanted):
     """Returns the lights of the objects `wanted` and where they are, instances too."""
@@ -151,8 +153,7 @@ def _shining(name, color, radiance):
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     material.use_backface_culling = True
-    nodes = material.node_tree.nodes
-    principled = next(n for n in nodes if n.type == 'BSDF_PRINCIPLED')
+    principled = surfaces.principled(material)
     principled.inputs['Base Color'].default_value = (0, 0, 0, 1)
     for specular in 'Specular', 'Specular IOR Level':  # until and from Blender 4
         if specular in principled.inputs:

@@ -6,7 +6,7 @@ import tempfile
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .engine import export, look_arguments
+from .engine import arguments, export
 from .process import Failure
 
 _REPORT = "lull: differences"
@@ -53,10 +53,8 @@ class LULL_OT_export(bpy.types.Operator, ExportHelper):
         for line in done["warnings"]:
             self.report({'WARNING'}, line)
         scale = scene.render.resolution_percentage / 100
-        size = "%dx%d" % (int(scene.render.resolution_x * scale), int(scene.render.resolution_y * scale))
-        command = ["lull", "render", done["gltf"], "--resolution", size, *look_arguments(scene), *scene.lull.arguments()]
-        if done["environment"]:
-            command += ["--environment", done["environment"]]
+        size = int(scene.render.resolution_x * scale), int(scene.render.resolution_y * scale)
+        command = ["lull", "render", *arguments(scene, done, size)]
         self.report({'INFO'}, shlex.join(command))
         return {'FINISHED'}
 

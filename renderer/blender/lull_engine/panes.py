@@ -2,6 +2,8 @@
 import bpy
 import numpy as np
 
+import surfaces
+
 _LEAST_WIDTHS = 20  # of the thickness, that a pane has both ways
 _SMOOTH = 0.03  # roughness
 
@@ -20,10 +22,8 @@ def prepare(made, notes):
 
 def _glass(material):
     """Returns the surface of smooth clear glass; None for other materials."""
-    if material is None or not material.use_nodes or material.get("lull_absorbs"):
-        return None
-    surface = next((n for n in material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED'), None)
-    if surface is None:
+    surface = surfaces.principled(material)
+    if surface is None or material.get("lull_absorbs"):
         return None
     inputs = surface.inputs
     transmission = inputs.get('Transmission') or inputs['Transmission Weight']

@@ -74,15 +74,22 @@ def _convert(material, meshes, baker, notes):
     surface = _Surface(material, notes)
     if surface.parameters is None:
         return _of_viewport(material)
-    if surface.place != 'mesh':
+    if not surface.needs_mesh:
         return surface.write(baker, None)
     return {mesh: _Surface(material, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
 
 
-def _of_colour(name, colour, alpha=1):
+def principled(material):
+    """Returns the node of the surface of a converted material; None for other materials."""
+    if material is None or not material.use_nodes:
+        return None
+    return next((n for n in material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED'), None)
+
+
+def _of_colour(name, colour):
     material = bpy.data.materials.new(name)
     material.use_nodes = True
-    node = next(n for n in material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED')
+    node = principled(material)
     _input(node, 'Base Color').default_value = (*colour, 1)
     _input(node, 'Roughness').default_value = 1
     _input(node, 'Specular').default_value = 0
@@ -157,8 +164,7 @@ class _Surface:
     """A material as parameters: plain values, or outputs of nodes of a copy of its tree."""
 
     def __init__(self, material, notes):
-        self.name, self.notes = material.name, notes
-        self.viewport = material.diffuse_color[:3]
+        self.name, self.original, self.notes = material.name, material, notes
         self.copy = material.copy()
         self.tree = self.copy.node_tree
         groups.inline(self.tree)
@@ -167,17 +173,15 @@ class _Surface:
         if output.inputs['Displacement'].links:
             notes.add("without displacement", self.name, "materials")
         self.parameters = self._closure(output.inputs['Surface'])
-        self.place = 'all'
+        self.needs_mesh = False  # then all that is baked is, over the same UVs
         if self.parameters is None:
             notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
             return
         for name, value in self.parameters.items():
             if name == 'Normal':
-                places = ['uv' if self._is_known_normal(value) else 'mesh']
-            else:
-                places = [_place_of(value)] if self._is_output(value) and not self._is_known(name, value) else []
-            if 'mesh' in places:
-                self.place = 'mesh'
+                self.needs_mesh |= not self._is_known_normal(value)
+            elif self._is_output(value) and not self._is_known(name, value):
+                self.needs_mesh |= _place_of(value) == 'mesh'
 
     # Surfaces
 
@@ -295,7 +299,7 @@ class _Surface:
         return dict(first, Radiance=self._plus(first['Radiance'], other['Radiance']))
 
     def _absorption(self, output):
-        """Returns what a homogeneous absorbing volume takes of light, per metre; None for none."""
+        """Returns the absorption coefficient of a homogeneous volume, per metre; None without one."""
         source = _source(output.inputs['Volume'])
         if source is None:
             return None
@@ -355,7 +359,7 @@ class _Surface:
         mixed = tuple(x + factor * (y - x) for x, y in zip(_triple(a), _triple(b)))
         return mixed if isinstance(a, tuple) else mixed[0]
 
-    # What the exporter writes as it is
+    # Values that the exporter writes unchanged
 
     def _is_known(self, name, value):
         """Returns whether the exporter finds the image of a parameter, and nothing else changes it."""
@@ -458,12 +462,12 @@ class _Surface:
         place = _place_of(value)
         if place == 'all':
             return self.baker.plain(self.copy, value)
-        if place == 'uv':
+        if not self.needs_mesh:
             return self.baker.over_uvs(self.copy, value, self._layers(value), self._size(value))[:, :, :3]
         return self._over_mesh(value)
 
     def _over_mesh(self, value, kind='EMIT'):
-        return self.baker.over_mesh(self.copy, value, self.object, kind)[:, :, :3]
+        return self.baker.over_mesh(self.copy, value, self.object, self.original, kind)[:, :, :3]
 
     def _even(self, name):
         pixels = self._pixels(name)
@@ -493,7 +497,7 @@ class _Surface:
         node = self.tree.nodes.new('ShaderNodeTexImage')
         node.image = image
         layers = {layer for v in self.parameters.values() if self._is_output(v) for layer in self._layers(v)}
-        name = "lull" if self.place == 'mesh' else next(iter(layers)) if len(layers) == 1 else None
+        name = "lull" if self.needs_mesh else next(iter(layers)) if len(layers) == 1 else None
         if name:
             uv = self.tree.nodes.new('ShaderNodeUVMap')
             uv.uv_map = name
@@ -594,9 +598,7 @@ def _keep_used_colours(mesh):
     """Leaves the colours that its materials read: glTF multiplies by any."""
     wanted = set()
     for material in mesh.materials:
-        if material is None or not material.use_nodes:
-            continue
-        node = next((n for n in material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED'), None)
+        node = principled(material)
         source = _source(_input(node, 'Base Color')) if node else None
         if source is not None:
             wanted |= {n.layer_name for n in _upstream(source) if n.type == 'VERTEX_COLOR'}
