@@ -62,11 +62,11 @@ def _mesh(o, is_instance, graph, override):
     if mesh is None or not mesh.polygons:
         return None
     materials = [slot.material.original if slot.material else None for slot in o.material_slots]
-    mesh.materials.clear()
+    last = max(len(materials) - 1, 0)
+    indices = [min(p.material_index, last) for p in mesh.polygons]
+    mesh.materials.clear()  # and the indices
     for material in materials or [None]:
         mesh.materials.append(override or material)
-    last = len(mesh.materials) - 1
-    indices = [min(p.material_index, last) for p in mesh.polygons]
     mesh.polygons.foreach_set("material_index", indices)
     return mesh
 
