@@ -24,7 +24,9 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
 CLI::Option* AddCautionOption(CLI::App& app, double* caution) {
     const std::string rules = RuleNames([](const RuleEntry& rule) { return rule.takesCaution; });
     return app
-        .add_option("--caution", *caution, "Divide the noise threshold of " + rules + " by X")
+        .add_option("--caution", *caution,
+                    "Allow 1/X of the noise with " + rules +
+                        ": multiply the noise that networks receive by X, divide limits by X")
         ->check(Between(0.01, 100.0))
         ->type_name("X")
         ->capture_default_str();

@@ -72,7 +72,7 @@ class Stopper:
             block: side of the blocks in pixels.
             pass_spp: spp between two images; 0: any.
             cap: maximum spp, if above 10,000.
-            caution: divisor of the visible-noise threshold.
+            caution: 2 allows half as much visible noise.
 
         Raises: ValueError for invalid arguments, OSError for a model that cannot be read.
         """

@@ -276,7 +276,7 @@ void BindStopper(py::module_& module) {
         "    block: pixels a side of the blocks, 40 or more.\n"
         "    pass_spp: the samples per pixel (spp) between two pictures; 0: they come at any spp.\n"
         "    cap: the most spp, if above 10,000; 0: not known.\n"
-        "    caution: from 0.01 to 100; divides the threshold of visible noise.\n\n"
+        "    caution: from 0.01 to 100; 2 allows half as much visible noise.\n\n"
         "Raises:\n"
         "    ValueError: for a setting out of its range, or an unknown rule.\n"
         "    OSError: for a model or a file that cannot be read.")

@@ -138,8 +138,9 @@ struct RuleContext {
     int cap = 0;                 // spp that no block exceeds; 0: not known
     std::string sceneName = {};  // the row that `thresholds:FILE` takes; may be empty
     std::string models = {};     // the folder of installed models, NAME.h5; may be empty
-    // Divides the threshold of visible noise: 2 lets half as much of it be. Above 0; others than 1
-    // only for rules that have such a threshold.
+    // 2 allows half as much visible noise: multiplies the noise that a network receives, divides
+    // thresholds and the limit of peak noise. Above 0; others than 1 only for rules that measure
+    // visible noise.
     double caution = 1;
     // Whether views come with half means. Otherwise rules whose number needs none ask for none, and
     // limit peak noise only where a view has one.

@@ -126,8 +126,8 @@ void CheckCaution(const RuleEntry& rule, double caution) {
         throw std::invalid_argument("caution must be above 0");
     if (caution != 1 && !rule.takesCaution)
         throw std::invalid_argument(
-            "caution divides a threshold of visible noise, and this rule has none; " +
-            RuleNames(TakesCaution) + " have one");
+            "caution scales visible noise, which this rule does not measure; others do: " +
+            RuleNames(TakesCaution));
 }
 
 std::string FormOf(const RuleEntry& rule) { return std::string(rule.name).append(rule.argument); }

@@ -35,7 +35,7 @@ struct RuleEntry {
     // Ends "a block stops"; '@' stands for the argument where none is given.
     std::string_view stops;
     RuleTrend::Kind compares;  // kind of its number
-    bool takesCaution;         // whether its threshold is one of visible noise
+    bool takesCaution;         // whether it measures visible noise, which caution scales
     Replay replay;
     RuleSweep sweep;
     // Returns all but the rule's text, and the kind and votes of its trend. Throws as ParseRule()

@@ -40,7 +40,7 @@ class LullSettings(bpy.types.PropertyGroup):
     rule: StringProperty(name="Rule", default="lnoise:0.3",
                          description="Rule of lull render --stop, e.g. lnoise:0.3")
     caution: FloatProperty(name="Caution", default=1, min=0.01, max=100,
-                           description="Divide the visible-noise threshold; 2: half as much noise")
+                           description="2 allows half as much visible noise")
     cap: IntProperty(name="Max Samples", default=10000, min=1, max=1 << 24,
                      description="Maximum samples per pixel of a block")
     time: StringProperty(name="Time Limit", description="End after this wall-clock time, e.g. 90s, 10m or 1h30m; "

@@ -82,8 +82,9 @@ typedef struct lull_settings {
     int pass;
     int cap;        /* The most spp that the picture can have, if above 10,000; 0: not known. Like
                        `pass`, at most 16,777,216 */
-    double caution; /* Divides the threshold of visible noise of "entropy", "noise" and the rules
-                       `entropy` and `lnoise`: 2 stops later, 0.5 sooner; from 0.01 to 100, 0: 1 */
+    double caution; /* Multiplies the noise that "entropy" and "noise" receive, and divides the
+                       thresholds of the rules `entropy` and `lnoise` and all limits of peak noise:
+                       2 stops later, 0.5 sooner; from 0.01 to 100, 0: 1 */
 } lull_settings;
 
 /* Points to pixels, which are read only during the call. Strides are in bytes and may be negative;
