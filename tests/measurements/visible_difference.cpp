@@ -3,10 +3,13 @@
 //   visible_difference DISPLAY WIDTH HEIGHT BLOCK   reads a reference and any number of pictures
 //       (linear RGB, 32-bit floats, row by row), and prints for each the visible difference of the
 //       whole and of each block, row by row, in a line
+//   visible_difference moments DISPLAY WIDTH HEIGHT POWER...   prints for each picture the mean
+//       powers of the difference of the whole, in lines of a channel of a band, and an empty line
 //   visible_difference sensitivity   reads lines of cycles per degree, square degrees and cd/m2,
 //       and prints the sensitivities of the three channels
 #include <fmt/core.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -28,13 +31,14 @@ static void PrintSensitivities() {
     }
 }
 
+static bool ReadPicture(std::vector<float>* values) {
+    return std::fread(values->data(), sizeof(float), values->size(), stdin) == values->size();
+}
+
 static void PrintDifferences(const DisplayModel& display, int width, int height, int block) {
     std::vector<float> reference(size_t(width) * size_t(height) * 3), picture(reference.size());
-    const auto read = [](std::vector<float>* values) {
-        return std::fread(values->data(), sizeof(float), values->size(), stdin) == values->size();
-    };
-    if (!read(&reference)) return;
-    while (read(&picture)) {
+    if (!ReadPicture(&reference)) return;
+    while (ReadPicture(&picture)) {
         const VisibleDifference difference =
             FindVisibleDifference(picture, reference, width, height, display);
         fmt::print("{:.6g}", PooledDifference(difference));
@@ -49,10 +53,36 @@ static void PrintDifferences(const DisplayModel& display, int width, int height,
     }
 }
 
+static void PrintMoments(const DisplayModel& display, int width, int height,
+                         const std::vector<double>& powers) {
+    std::vector<float> reference(size_t(width) * size_t(height) * 3), picture(reference.size());
+    if (!ReadPicture(&reference)) return;
+    const VisibleReference prepared = PrepareReference(reference, width, height, display);
+    while (ReadPicture(&picture)) {
+        for (const VisibleBand& band : FindVisibleDifference(picture, prepared).bands)
+            for (const Plane& plane : band.difference) {
+                for (const double power : powers) {
+                    double sum = 0;
+                    for (const float v : plane.values) sum += std::pow(double(v), power);
+                    fmt::print("{:.6g} ", sum / double(plane.values.size()));
+                }
+                fmt::print("\n");
+            }
+        fmt::print("\n");
+    }
+}
+
 int main(int count, char** arguments) {
     try {
         if (count == 2 && arguments[1] == std::string("sensitivity")) {
             PrintSensitivities();
+            return 0;
+        }
+        if (count > 5 && arguments[1] == std::string("moments")) {
+            std::vector<double> powers;
+            for (int i = 5; i < count; ++i) powers.push_back(std::atof(arguments[i]));
+            PrintMoments(ParseDisplay(arguments[2]), std::atoi(arguments[3]),
+                         std::atoi(arguments[4]), powers);
             return 0;
         }
         if (count != 5) throw Error("see the first lines of visible_difference.cpp");
