@@ -11,7 +11,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/number_option.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/render/progress.h"
+#include "renderer/progress/progress.h"
 #include "stopping/rules/learned.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/hard_cases/heavy_tails.h"

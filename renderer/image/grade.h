@@ -24,6 +24,10 @@ struct Grade {
 // a plain one.
 std::string TextOf(const Grade&);
 
+// Brightens linear R, G, B of each pixel and maps them by the view or the tone map. Returns whether
+// they are encoded now, as a view does.
+bool MapColors(const Grade&, std::span<float> rgb);
+
 // Replaces linear R, G, B of each pixel by those that an sRGB display shows in the graded picture:
 // finite, at least 0, above 1 only without tone map and view, and not rounded.
 void ApplyGrade(const Grade&, std::span<float> rgb);

@@ -1,7 +1,7 @@
 #include "renderer/render/block_criteria_internal.h"
 
 #include "renderer/base/thread_clock.h"
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/guide_learning.h"
 #include "renderer/render/peers.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/signals/lightness_noise.h"

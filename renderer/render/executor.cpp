@@ -6,8 +6,8 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
-#include "renderer/render/guide_learning.h"
-#include "renderer/render/light_rounds.h"
+#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/light_rounds.h"
 
 namespace lull {
 

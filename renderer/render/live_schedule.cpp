@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "renderer/render/guide_learning.h"
-#include "renderer/render/light_rounds.h"
+#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/light_rounds.h"
 
 namespace lull {
 

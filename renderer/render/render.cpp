@@ -5,9 +5,9 @@
 
 #include <stdexcept>
 
+#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/light_rounds.h"
 #include "renderer/render/executor_internal.h"
-#include "renderer/render/guide_learning.h"
-#include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/rank.h"
 #include "stopping/base/parallel.h"
 

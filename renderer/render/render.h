@@ -6,7 +6,7 @@
 #include "renderer/film/display.h"
 #include "renderer/film/film.h"
 #include "renderer/render/render_events.h"
-#include "renderer/render/schedule.h"
+#include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/rules/criterion.h"
 #include "stopping/rules/trend.h"

@@ -5,10 +5,10 @@
 
 #include "renderer/base/error.h"
 #include "renderer/denoise/denoiser.h"
+#include "renderer/learning/light_rounds.h"
+#include "renderer/progress/time_limit.h"
 #include "renderer/render/first_look.h"
-#include "renderer/render/light_rounds.h"
 #include "renderer/render/peers.h"
-#include "renderer/render/time_limit.h"
 #include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 

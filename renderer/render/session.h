@@ -6,8 +6,8 @@
 //     const RenderResult result = session.Run();
 #pragma once
 
+#include "renderer/learning/guide_learning.h"
 #include "renderer/render/checkpoint.h"
-#include "renderer/render/guide_learning.h"
 
 namespace lull {
 

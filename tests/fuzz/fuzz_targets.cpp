@@ -14,7 +14,7 @@
 #include "renderer/scene/cameras/lens_file.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/materials/fourier_file.h"
-#include "renderer/scene/medium_table.h"
+#include "renderer/scene/media/medium_table.h"
 #include "renderer/vision/display_model.h"
 #include "stopping/base/checksum.h"
 #include "stopping/lab/evaluation/single_answers.h"

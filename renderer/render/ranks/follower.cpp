@@ -1,8 +1,8 @@
 // All ranks but the first: render their tiles, and do as they are told.
 #include <atomic>
 
-#include "renderer/render/guide_learning.h"
-#include "renderer/render/light_rounds.h"
+#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/light_rounds.h"
 #include "renderer/render/ranks/rank.h"
 
 namespace lull {

@@ -4,8 +4,8 @@
 #include <map>
 #include <numeric>
 
-#include "renderer/render/guide_learning.h"
-#include "renderer/render/light_rounds.h"
+#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/light_rounds.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/guide_learning.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 

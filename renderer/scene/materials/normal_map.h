@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/scene/interaction.h"
-#include "renderer/scene/texture.h"
+#include "renderer/scene/textures/texture.h"
 
 namespace lull {
 

@@ -2,7 +2,7 @@
 // elsewhere, given by their coefficients ("subsurface") or their appearance ("kdsubsurface").
 #pragma once
 
-#include "renderer/scene/diffusion_profile.h"
+#include "renderer/bsdf/diffusion_profile.h"
 #include "renderer/scene/materials/glass.h"
 
 namespace lull {

@@ -1,8 +1,8 @@
 // Looks up image files.
 #pragma once
 
-#include "renderer/scene/image_lookup.h"
 #include "renderer/scene/textures/filtered_imagemap.h"
+#include "renderer/scene/textures/image_lookup.h"
 #include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/texture_image.h"
 

@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "renderer/render/guide_learning.h"
-#include "renderer/render/light_rounds.h"
+#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/light_rounds.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/messages.h"
