@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "renderer/learning/guide_learning.h"
-#include "renderer/learning/light_rounds.h"
+#include "renderer/learning/learners.h"
+#include "renderer/render/light_rounds.h"
 
 namespace lull {
 
@@ -12,12 +12,16 @@ namespace {
 ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(context.secondsLeft);
-    if (context.learner) schedule.roundEnd = context.learner->RoundEnd();
-    if (context.light) schedule.roundEnd = context.light->End();
+    schedule.roundEnd = RoundEndOf(context);
     return schedule;
 }
 
 }  // namespace
+
+int RoundEndOf(const RenderContext& context) {
+    return std::min(context.learners ? context.learners->RoundEnd() : kNoRoundEnd,
+                    context.light ? context.light->End() : kNoRoundEnd);
+}
 
 LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,
                            std::span<const BlockStart> starts, RankTiles given)

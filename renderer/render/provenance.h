@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "renderer/base/enum_names.h"
-#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/learning.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/rules/trend.h"

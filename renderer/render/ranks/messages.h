@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/film/film.h"
-#include "renderer/learning/light_rounds.h"
+#include "renderer/render/light_rounds.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"
 

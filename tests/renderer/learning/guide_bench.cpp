@@ -11,7 +11,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
-#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/learners.h"
 #include "renderer/render/render.h"
 #include "tests/renderer/bench_scenes.h"
 
@@ -63,13 +63,13 @@ void BenchGuide(benchmark::State& state, const std::string& file) {
         return state.SkipWithError(why->c_str());
     const PixelRect region{{0, 0}, {side, side}};
     for (auto _ : state) {
-        GuideLearner learner(*scene, {.megabytes = FromEnvironment("LULL_BENCH_MEMORY", 64)},
-                             region.Area());
+        Learners learner(*scene, {.megabytes = FromEnvironment("LULL_BENCH_MEMORY", 64)},
+                         region.Area());
         RenderOptions render;
         render.schedule.cap = FromEnvironment("LULL_BENCH_SPP", 252);
         render.sampler = SamplerKind::Random;
         Film film(region, {.grid = GridOf(render.schedule)});
-        Render({.source = SamplesOf(*scene, learner), .film = &film, .learner = &learner}, render);
+        Render({.source = SamplesOf(*scene, learner), .film = &film, .learners = &learner}, render);
         Images plain, guided, recorded;
         const PathOptions records = learner.Paths();
         for (uint64_t i = 0; i < kImages; ++i) {

@@ -1,11 +1,12 @@
-// Renders scenes with a learner for tests.
+// Renders scenes with learners for tests.
 #pragma once
 
 #include <atomic>
 #include <optional>
 #include <vector>
 
-#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/learners.h"
+#include "renderer/render/light_rounds.h"
 #include "renderer/render/render.h"
 #include "tests/renderer/scene_of.h"
 
@@ -25,50 +26,56 @@ struct LearningRender {
         : scene(scene),
           options(std::move(given)),
           learner(scene, how, RegionOf(scene).Area()),
-          film(RegionOf(scene), {.grid = GridOf(options.schedule)}),
-          source(SamplesOf(scene, learner)) {}
+          film(RegionOf(scene), {.grid = GridOf(options.schedule),
+                                 .withSpreads = IsBidirectional(scene.integrator)}) {
+        if (IsBidirectional(scene.integrator))
+            light = std::make_unique<LightRounds>(scene, film, options.sampler, options.seed);
+        source = SamplesOf(scene, learner, light.get());
+    }
     RenderResult Run(const RenderState* interrupted = nullptr) {
         return Render({.source = source,
                        .film = &film,
                        .interrupted = interrupted,
-                       .learner = &learner,
+                       .learners = &learner,
+                       .light = light.get(),
                        .checkpoints = checkpoints},
                       options);
     }
     const Guide& TheGuide() const { return *learner.Paths().guide; }
     double Mean() const { return MeanOf(film); }
+    // Returns all that was learned, without the time that it took.
+    std::vector<std::byte> Learned() const {
+        std::vector<std::byte> bytes = learner.Save();
+        bytes.resize(bytes.size() - sizeof(double));
+        return bytes;
+    }
 
     const Scene& scene;
     RenderOptions options;
     Checkpointing checkpoints;
-    GuideLearner learner;
+    Learners learner;
     Film film;
+    std::unique_ptr<LightRounds> light;
     SampleSource source;
 };
 
 // Renders with interruptions, each after some tiles; every part, which make() returns, continues
-// the one before. Calls use(part, isDone) after each and returns the number of parts.
-template <typename Make, typename Use>
-int RenderInParts(const Make& make, const Use& use) {
+// the one before. Returns the last part, and how many there were.
+template <typename Make>
+auto RenderInParts(const Make& make, int* parts) {
     RenderState state;
-    std::optional<Film> film;
-    std::vector<std::byte> kept;
-    int parts = 0;
-    for (bool isDone = false; !isDone; ++parts) {
-        auto part = make();
-        if (film) {
-            part.film = *film;
-            part.learner.Take(kept, part.film);
-        }
+    auto part = make();
+    for (*parts = 1;; ++*parts) {
         std::atomic<int> asked = 0;
-        part.options.isCancelled = [&] { return ++asked > 23; };
-        part.checkpoints.write = [&](const RenderState& s) { state = s; };
-        isDone = !part.Run(film ? &state : nullptr).cancelled;
-        film = part.film;
-        kept = part.learner.Save();
-        use(part, isDone);
+        part->options.isCancelled = [&] { return ++asked > 23 + *parts; };
+        part->checkpoints.write = [&](const RenderState& s) { state = s; };
+        const RenderState before = state;
+        if (!part->Run(*parts > 1 ? &before : nullptr).cancelled) return part;
+        auto next = make();
+        next->film = part->film;
+        next->learner.Take(part->learner.Save(), next->film);
+        part = std::move(next);
     }
-    return parts;
 }
 
 }  // namespace lull

@@ -1,15 +1,11 @@
 // Checks renders that learn a guide as they go on: the same mean, less variance, the same bits.
-#include "renderer/learning/guide_learning.h"
+#include "renderer/learning/direction_learner.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include "renderer/film/layers.h"
-#include "renderer/learning/guide_learning_state.h"
 #include "renderer/render/render.h"
-#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/learning/learning_render.h"
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
@@ -66,13 +62,6 @@ RenderOptions RenderFor(int cap, uint64_t seed = 0, int threads = 2) {
     options.seed = seed;
     options.threads = threads;
     return options;
-}
-
-// Returns all but the time it took.
-std::vector<std::byte> BytesOf(const GuideLearner& learner) {
-    Learning learning = RestoreLearning(learner.Save());
-    learning.figures.seconds = 0;
-    return SaveLearning(learning);
 }
 
 struct Estimate {
@@ -265,116 +254,6 @@ AttributeEnd)");
     const Estimate e = Measure(*scene, SamplesOf(*scene, render.TheGuide()), 20, 2);
     EXPECT_EQ(e.rejected, 0);
     EXPECT_TRUE(std::isfinite(e.mean) && std::isfinite(e.variance));
-}
-
-// Four blocks, which stop at different times, one of them within the first rounds.
-RenderOptions BlocksThatStop(int threads) {
-    RenderOptions options = RenderFor(400, 0, threads);
-    options.schedule.blockSize = 12;
-    options.makeCriterion = [](const BlockInfo& block) {
-        return std::make_unique<ScriptedCriterion>(20 + 40 * block.index * block.index);
-    };
-    return options;
-}
-
-// How long a trial takes depends on variances, which processors round differently.
-void ExpectRounds(GuideMode mode, int rounds) {
-    if (mode == GuideMode::On) {
-        EXPECT_EQ(rounds, 6);
-    } else {
-        EXPECT_GE(rounds, 3);
-    }
-}
-
-TEST(Learning, IsTheSameOnAnyNumberOfThreads) {
-    const auto scene = MakeScene(kRoom, 24);
-    for (const GuideMode mode : {GuideMode::On, GuideMode::Auto}) {
-        std::optional<Film> film;
-        std::vector<std::byte> learned;
-        for (const int threads : {1, 2, 4}) {
-            LearningRender render(*scene, BlocksThatStop(threads), {.mode = mode});
-            const RenderResult result = render.Run();
-            EXPECT_EQ(result.progress.stoppedBlocks, 4);
-            EXPECT_EQ(result.blocks[2].block.spp, 180);
-            if (!film) {
-                film = render.film;
-                learned = BytesOf(render.learner);
-                ExpectRounds(mode, render.learner.Figures().rounds);
-            }
-            EXPECT_TRUE(SamePixels(render.film, *film)) << threads;
-            EXPECT_TRUE(BytesOf(render.learner) == learned) << threads;
-        }
-    }
-}
-
-// Nothing but the ends of rounds decides what a sample is, passes of any length end there too.
-TEST(Learning, DoesNotDependOnPasses) {
-    const auto scene = MakeScene(kRoom);
-    LearningRender render(*scene, RenderFor(70));
-    render.Run();
-    for (const int passLength : {1, 7, 70}) {
-        RenderOptions options = RenderFor(70);
-        options.schedule.passLength = passLength;
-        options.schedule.blockSize = 8;
-        LearningRender other(*scene, options);
-        other.Run();
-        EXPECT_TRUE(SamePixels(render.film, other.film)) << passLength;
-    }
-}
-
-TEST(Learning, GoesOnToTheSameBits) {
-    const auto scene = MakeScene(kRoom, 24);
-    for (const GuideMode mode : {GuideMode::On, GuideMode::Auto}) {
-        LearningRender whole(*scene, BlocksThatStop(1), {.mode = mode});
-        whole.Run();
-        int rounds = 0;
-        const int parts =
-            RenderInParts([&] { return LearningRender(*scene, BlocksThatStop(2), {.mode = mode}); },
-                          [&](const LearningRender& part, bool isDone) {
-                              rounds = std::max(rounds, part.learner.Figures().rounds);
-                              if (!isDone) return;
-                              EXPECT_TRUE(SamePixels(part.film, whole.film));
-                              EXPECT_TRUE(BytesOf(part.learner) == BytesOf(whole.learner));
-                          });
-        EXPECT_GT(parts, 5);
-        ExpectRounds(mode, rounds);
-    }
-}
-
-TEST(Learning, SavedStateIsChecked) {
-    const auto scene = MakeScene(kRoom);
-    LearningRender render(*scene, RenderFor(12));
-    render.Run();
-    const std::vector<std::byte> bytes = render.learner.Save();
-    EXPECT_NO_THROW(RestoreLearning(bytes));
-    for (const size_t size : {size_t(0), size_t(3), size_t(40), bytes.size() / 2, bytes.size() - 1})
-        EXPECT_THROW(RestoreLearning(std::span(bytes).first(size)), std::runtime_error) << size;
-    // A learner that compares has as many tiles as the film.
-    LearningRender other(*scene, RenderFor(12), {.mode = GuideMode::Auto});
-    EXPECT_THROW(other.learner.Take(bytes, other.film), std::runtime_error);
-    // What is taken nevertheless can be walked through.
-    uint64_t state = 1;
-    int refused = 0;
-    for (int i = 0; i < 300; ++i) {
-        std::vector<std::byte> damaged = bytes;
-        for (int k = 0; k < 4; ++k) {
-            state = state * 6364136223846793005ull + 1442695040888963407ull;
-            damaged[(state >> 20) % damaged.size()] = std::byte(state >> 56);
-        }
-        try {
-            const Guide guide = RestoreLearning(damaged).state.guide;
-            for (int k = 0; k < 50 && !guide.space.nodes.empty(); ++k) {
-                const float u = float(k) / 50;
-                const GuideLeaf& leaf = guide.Leaf(guide.Find({u, -u, u}));
-                float pdf;
-                const Vec3f w = guide.Sample(leaf, {u, 1 - 0.9f * u}, &pdf);
-                EXPECT_TRUE(guide.Pdf(leaf, w) >= 0);
-            }
-        } catch (const std::runtime_error&) {
-            ++refused;
-        }
-    }
-    EXPECT_GT(refused, 0);
 }
 
 TEST(Learning, KeepsToItsMemory) {

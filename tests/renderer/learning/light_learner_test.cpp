@@ -1,6 +1,6 @@
 // Checks renders that learn which lights and tiles of the environment each place sees: the same
-// mean, less variance, the same bits.
-#include "renderer/learning/direct_light_learning.h"
+// mean, less variance.
+#include "renderer/learning/light_learner.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,12 +9,11 @@
 
 #include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
-#include "renderer/learning/guide_learning_state.h"
 #include "tests/renderer/learning/learning_render.h"
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
 
-namespace lull::direct_light_learning_test {
+namespace lull::light_learner_test {
 namespace {
 
 // A box that is open on one side, where the sky of a studio comes in, seen from there.
@@ -207,79 +206,6 @@ Shape "trianglemesh" "integer indices" [0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 
     EXPECT_LT(brightest.load(), 10 * brightestWithout);
 }
 
-TEST(DirectLightLearning, IsTheSameOnAnyNumberOfThreadsAndForAnyPasses) {
-    for (const bool hasSky : {false, true}) {
-        const auto scene = MakeLampRoom(24, hasSky);
-        for (const GuideMode mode : {GuideMode::Off, GuideMode::On}) {
-            DirectLightRender one(*scene, OptionsFor(90, 3, 1), mode);
-            one.Run();
-            EXPECT_TRUE(one.learner.Paths().learned.lights);
-            EXPECT_EQ(one.learner.Paths().learned.environment != nullptr, hasSky);
-            for (const int threads : {2, 4}) {
-                RenderOptions options = OptionsFor(90, 3, threads, 10);
-                options.schedule.passLength = 7 * threads;
-                DirectLightRender other(*scene, options, mode);
-                other.Run();
-                EXPECT_TRUE(SamePixels(one.film, other.film)) << threads;
-            }
-        }
-    }
-}
-
-TEST(DirectLightLearning, GoesOnToTheSameBits) {
-    for (const bool hasSky : {false, true}) {
-        const auto scene = MakeLampRoom(24, hasSky);
-        DirectLightRender whole(*scene, OptionsFor(90, 0, 1, 10));
-        whole.Run();
-        const int parts =
-            RenderInParts([&] { return DirectLightRender(*scene, OptionsFor(90, 0, 2, 10)); },
-                          [&](const DirectLightRender& part, bool isDone) {
-                              if (!isDone) return;
-                              EXPECT_TRUE(SamePixels(part.film, whole.film));
-                          });
-        EXPECT_GT(parts, 3);
-    }
-}
-
-TEST(DirectLightLearning, SavedStateIsChecked) {
-    const auto scene = MakeLampRoom(8, true);
-    DirectLightRender render(*scene, OptionsFor(20, 0));
-    render.Run();
-    const std::vector<std::byte> bytes = render.learner.Save();
-    EXPECT_NO_THROW(RestoreLearning(bytes));
-    // A learner that learns no direct light does not take it, and the other way round.
-    GuideLearner guide(*scene, {}, 64), both(*scene, {.directLight = true}, 64);
-    EXPECT_THROW(guide.Take(bytes, render.film), std::runtime_error);
-    EXPECT_THROW(both.Take(guide.Save(), render.film), std::runtime_error);
-    // Trees and probabilities that lead nowhere are refused.
-    uint64_t random = 1;
-    int refused = 0;
-    for (int i = 0; i < 100; ++i) {
-        std::vector<std::byte> damaged = bytes;
-        for (int k = 0; k < 4; ++k) {
-            random = random * 6364136223846793005ull + 1442695040888963407ull;
-            damaged[(random >> 20) % damaged.size()] = std::byte(random >> 56);
-        }
-        try {
-            const EnvironmentGuide read = RestoreLearning(damaged).directLight.environment.guide;
-            for (int k = 0; k < 50 && !read.IsEmpty(); ++k) {
-                const float u = float(k) / 50;
-                Vec2f place(u, 1 - u);
-                place = place.cwiseMin(kOneMinusEpsilon);
-                const int tile = read.Find({u, -u, u}, k % 7).Choose(&place);
-                EXPECT_TRUE(tile >= 0 && tile < TileShares::kCount);
-            }
-        } catch (const std::runtime_error&) {
-            ++refused;
-        }
-    }
-    EXPECT_GT(refused, 0);
-    // So are those of a scene with other lights.
-    const auto other = MakeRoom(8);
-    GuideLearner without(*other, {.mode = GuideMode::Off, .directLight = true}, 64);
-    EXPECT_THROW(without.Take(bytes, render.film), std::runtime_error);
-}
-
 TEST(DirectLightLearning, NeedsAMapOrLightsByPlaceThatAreNotSampledAsByPbrt) {
     const auto room = MakeRoom(8);
     EXPECT_TRUE(LearnsDirectLight(*room, Estimator::Combined));
@@ -302,4 +228,4 @@ TEST(DirectLightLearning, NeedsAMapOrLightsByPlaceThatAreNotSampledAsByPbrt) {
 }
 
 }  // namespace
-}  // namespace lull::direct_light_learning_test
+}  // namespace lull::light_learner_test

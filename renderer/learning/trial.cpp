@@ -1,6 +1,7 @@
-#include "renderer/learning/guide_tally.h"
+#include "renderer/learning/trial.h"
 
 #include "renderer/base/color.h"
+#include "renderer/learning/learner_state.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {
@@ -99,6 +100,45 @@ double VarianceOf(std::span<const TileNoise> noise, const Film& film, const Pixe
     const NoiseRatio r = RatioOf(of);
     if (r.tiles < kTilesEnough) return 1;
     return std::clamp(Sqr(r.ratio) + 2 * r.ratio * r.error, 1e-3, 1.);
+}
+
+void Trial::Begin(const Film& film) {
+    tally.unguided = tally.guided = std::vector<SampleSpread>(film.TileCount());
+}
+
+Verdict Trial::Decide(const Film& film, double perSample, double perVertex) {
+    std::vector<TileNoise> tiles = tally.Noise(film);
+    const GuideComparison c = comparison = tally.Compare(tiles);
+    const double work = perVertex > 0 ? c.vertices * perVertex : perSample;
+    if ((c.variance + 2 * c.error) * work < 1) {
+        noise = std::move(tiles);
+        End();
+        return Verdict::Pays;
+    }
+    tally.guided.assign(tally.guided.size(), {});
+    return (c.variance - 2 * c.error) * work > 1 ? Verdict::DoesNotPay : Verdict::Open;
+}
+
+void Trial::Put(StateWriter* writer) const {
+    writer->PutVector(tally.unguided);
+    writer->PutVector(tally.guided);
+    writer->PutVector(noise);
+    writer->Put(comparison);
+}
+
+void Trial::Get(StateReader* reader, bool isUnderWay, bool pays, size_t tiles, const char* damaged,
+                const char* foreign) {
+    tally.unguided = reader->GetVector<SampleSpread>(damaged);
+    tally.guided = reader->GetVector<SampleSpread>(damaged);
+    noise = reader->GetVector<TileNoise>(damaged);
+    comparison = reader->Get<GuideComparison>();
+    for (const TileNoise& tile : noise)
+        Require(tile.unguided >= 0 && tile.guided >= 0 && tile.unguided + tile.guided < kInfinity,
+                damaged);
+    const size_t compared = isUnderWay ? tiles : 0;
+    Require(tally.unguided.size() == compared && tally.guided.size() == compared &&
+                noise.size() == (pays ? tiles : 0),
+            foreign);
 }
 
 }  // namespace lull

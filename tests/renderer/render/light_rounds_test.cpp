@@ -1,5 +1,5 @@
 // Renders with light paths: the same bits however they are cut, with the mean that paths have.
-#include "renderer/learning/light_rounds.h"
+#include "renderer/render/light_rounds.h"
 
 #include <gtest/gtest.h>
 

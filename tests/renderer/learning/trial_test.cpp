@@ -1,4 +1,4 @@
-#include "renderer/learning/guide_tally.h"
+#include "renderer/learning/trial.h"
 
 #include <gtest/gtest.h>
 
