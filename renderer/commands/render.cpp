@@ -8,12 +8,11 @@
 #include <sstream>
 
 #include "renderer/base/seconds_since.h"
-#include "renderer/commands/aov_options.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/grading.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
-#include "renderer/commands/light_group_options.h"
+#include "renderer/commands/layer_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/commands/render_options.h"

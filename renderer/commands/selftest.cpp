@@ -9,7 +9,7 @@
 #include "renderer/base/say.h"
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/progress/progress.h"
 #include "stopping/rules/learned.h"

@@ -13,7 +13,7 @@
 #include "renderer/render/checkpoint.h"
 #include "renderer/scene/cameras/lens_file.h"
 #include "renderer/scene/geometry/shape_table.h"
-#include "renderer/scene/materials/fourier_file.h"
+#include "renderer/scene/materials/fourier.h"
 #include "renderer/scene/media/medium_table.h"
 #include "renderer/vision/display_model.h"
 #include "stopping/base/checksum.h"

@@ -29,12 +29,8 @@
 #include "renderer/base/visit.h"
 #include "renderer/scene/lights/area.h"
 #include "renderer/scene/lights/distant.h"
-#include "renderer/scene/lights/goniometric.h"
 #include "renderer/scene/lights/infinite.h"
 #include "renderer/scene/lights/point.h"
-#include "renderer/scene/lights/projection.h"
-#include "renderer/scene/lights/spot.h"
-#include "renderer/scene/lights/sun.h"
 
 namespace lull {
 

@@ -3,23 +3,14 @@
 #include <fmt/format.h>
 
 #include "renderer/scene/kinds.h"
-#include "renderer/scene/materials/bump_map.h"
+#include "renderer/scene/materials/basic.h"
 #include "renderer/scene/materials/disney.h"
 #include "renderer/scene/materials/fourier.h"
-#include "renderer/scene/materials/glass.h"
 #include "renderer/scene/materials/hair.h"
-#include "renderer/scene/materials/interface.h"
-#include "renderer/scene/materials/matte.h"
-#include "renderer/scene/materials/metal.h"
 #include "renderer/scene/materials/metallic_roughness.h"
-#include "renderer/scene/materials/mirror.h"
 #include "renderer/scene/materials/mix.h"
-#include "renderer/scene/materials/normal_map.h"
-#include "renderer/scene/materials/plastic.h"
-#include "renderer/scene/materials/substrate.h"
 #include "renderer/scene/materials/subsurface.h"
-#include "renderer/scene/materials/translucent.h"
-#include "renderer/scene/materials/uber.h"
+#include "renderer/scene/materials/tilt.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

@@ -25,7 +25,7 @@
 
 #include "renderer/bsdf/bsdf.h"
 #include "renderer/scene/interaction.h"
-#include "renderer/scene/materials/normal_map.h"
+#include "renderer/scene/materials/tilt.h"
 #include "renderer/scene/textures/texture.h"
 
 namespace lull {

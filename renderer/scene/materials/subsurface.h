@@ -3,7 +3,7 @@
 #pragma once
 
 #include "renderer/bsdf/diffusion_profile.h"
-#include "renderer/scene/materials/glass.h"
+#include "renderer/scene/materials/basic.h"
 
 namespace lull {
 

@@ -3,18 +3,9 @@
 #include <fmt/core.h>
 
 #include "renderer/scene/kinds.h"
-#include "renderer/scene/textures/bilerp.h"
-#include "renderer/scene/textures/checkerboard.h"
-#include "renderer/scene/textures/constant.h"
-#include "renderer/scene/textures/dots.h"
-#include "renderer/scene/textures/filtered_imagemap.h"
 #include "renderer/scene/textures/imagemap.h"
-#include "renderer/scene/textures/marble.h"
-#include "renderer/scene/textures/mix.h"
-#include "renderer/scene/textures/octaves.h"
-#include "renderer/scene/textures/scale.h"
-#include "renderer/scene/textures/uv.h"
-#include "renderer/scene/textures/windy.h"
+#include "renderer/scene/textures/noise_textures.h"
+#include "renderer/scene/textures/patterns.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

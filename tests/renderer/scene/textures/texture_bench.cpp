@@ -5,9 +5,9 @@
 #include <random>
 
 #include "renderer/image/image_io.h"
-#include "renderer/scene/textures/checkerboard.h"
 #include "renderer/scene/textures/imagemap.h"
-#include "renderer/scene/textures/marble.h"
+#include "renderer/scene/textures/noise_textures.h"
+#include "renderer/scene/textures/patterns.h"
 
 namespace lull {
 namespace {

@@ -1,4 +1,4 @@
-#include "renderer/scene/textures/marble.h"
+#include "renderer/scene/textures/noise_textures.h"
 
 namespace lull {
 

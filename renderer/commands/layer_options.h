@@ -1,13 +1,24 @@
-// Options of light groups.
+// Options of layers: AOVs and groups of lights.
 #pragma once
 
 #include <CLI/App.hpp>
 
+#include "renderer/film/film.h"
 #include "renderer/film/layer.h"
 #include "renderer/scene/scene.h"
 
 namespace lull {
 
+// Options of AOVs.
+//
+// Adds --aov and --aov-through-specular.
+void AddAovOptions(CLI::App& app, AovSet* wanted);
+
+// Throws Error where the memory cannot hold these layers.
+void CheckLayersFit(const LayerOptions&, const PixelRect& region);
+
+// Options of light groups.
+//
 // Adds --light-groups.
 void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names);
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/textures/checkerboard.h"
+#include "renderer/scene/textures/patterns.h"
 
 #include <fmt/core.h>
 
