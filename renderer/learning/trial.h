@@ -55,7 +55,7 @@ struct GuideTally {
 double VarianceOf(std::span<const TileNoise> noise, const Film&, const PixelRect& part);
 inline constexpr int kTilesEnough = 8;
 
-// Variance times work, with its standard error of two, is below that without; above; or neither.
+// Variance times work is significantly below that without; above; or neither.
 enum class Verdict { Pays, DoesNotPay, Open };
 
 struct Trial {
