@@ -4,7 +4,7 @@
 
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/textures/imagemap.h"
-#include "renderer/scene/textures/noise_textures.h"
+#include "renderer/scene/textures/noise.h"
 #include "renderer/scene/textures/patterns.h"
 #include "stopping/base/input_file.h"
 

@@ -6,7 +6,7 @@
 
 #include "renderer/image/image_io.h"
 #include "renderer/scene/textures/imagemap.h"
-#include "renderer/scene/textures/noise_textures.h"
+#include "renderer/scene/textures/noise.h"
 #include "renderer/scene/textures/patterns.h"
 
 namespace lull {

@@ -1,11 +1,45 @@
-#include "stopping/lab/evaluation/probit.h"
+#include "stopping/lab/evaluation/statistics.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 
 namespace lull {
+
+namespace {
+
+constexpr int kDraws = 2000;
+constexpr unsigned kSeed = 1;
+
+// Returns a number below `count`; the same everywhere, unlike std::uniform_int_distribution.
+size_t Draw(std::mt19937& generator, size_t count) {
+    return size_t(uint64_t(generator()) * count >> 32);
+}
+
+}  // namespace
+
+Interval BootstrapInterval(std::span<const std::vector<double>> values) {
+    if (values.empty() || std::ranges::any_of(values, &std::vector<double>::empty))
+        throw std::invalid_argument("bootstrap: viewpoints with blocks are needed");
+    std::mt19937 generator(kSeed);
+    std::vector<double> means;
+    for (int draw = 0; draw < kDraws; ++draw) {
+        double mean = 0;
+        for (size_t v = 0; v < values.size(); ++v) {
+            const std::vector<double>& blocks = values[Draw(generator, values.size())];
+            double sum = 0;
+            for (size_t i = 0; i < blocks.size(); ++i)
+                sum += blocks[Draw(generator, blocks.size())];
+            mean += sum / double(blocks.size()) / double(values.size());
+        }
+        means.push_back(mean);
+    }
+    std::ranges::sort(means);
+    return {means[kDraws / 40], means[kDraws - 1 - kDraws / 40]};
+}
 
 namespace {
 
@@ -72,6 +106,37 @@ ProbitFit FitProbit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& answers,
         if (gain < kLeastGain) break;
     }
     return fit;
+}
+
+namespace {
+
+// Returns twice the rank of each number less their mean, so that all are whole numbers.
+std::vector<double> CentredRanks(std::span<const double> values) {
+    std::vector<double> ranks;
+    for (const double v : values) {
+        if (std::isnan(v)) throw std::invalid_argument("rank correlation: not a number");
+        double rank = 0;
+        for (const double other : values) rank += (other < v) - (other > v);
+        ranks.push_back(rank);
+    }
+    return ranks;
+}
+
+double Product(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+}  // namespace
+
+std::optional<double> RankCorrelation(std::span<const double> a, std::span<const double> b) {
+    if (a.size() != b.size())
+        throw std::invalid_argument("rank correlation: the lengths of both sides differ");
+    const std::vector<double> x = CentredRanks(a), y = CentredRanks(b);
+    const double scale = std::sqrt(Product(x, x) * Product(y, y));
+    if (a.size() < 3 || scale == 0) return std::nullopt;
+    return Product(x, y) / scale;
 }
 
 }  // namespace lull
