@@ -18,8 +18,9 @@ function(lull_room_headers target folder)
 endfunction()
 
 # lull_room(TARGET FOLDER LINKED...): makes a library of all that is in FOLDER, seen from the calling
-# CMakeLists.txt, on top of other targets. Headers in folders within it, or named *_internal.h, are
-# for the room alone (tests/rooms_test.cpp checks that).
+# CMakeLists.txt, on top of other targets. Headers in folders within it, unless a header beside
+# these folders includes them, and headers named *_internal.h are for the room alone
+# (tests/rooms_test.cpp checks that).
 function(lull_room target folder)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/embedding/") # libraries of their own

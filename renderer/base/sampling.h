@@ -12,8 +12,8 @@ struct SineCosine {
     float sine, cosine;
 };
 
-// Returns those of an angle in [-pi/4, pi/4], with errors below 1e-7 (the polynomials of Cephes,
-// Moshier 1989).
+// Returns sine and cosine of an angle in [-pi/4, pi/4], with errors below 1e-7 (the polynomials of
+// Cephes, Moshier 1989).
 inline SineCosine SineCosineOf(float angle) {
     const float z = Sqr(angle);
     const float s = (-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f;
@@ -21,7 +21,7 @@ inline SineCosine SineCosineOf(float angle) {
     return {angle + angle * z * s, 1 - 0.5f * z + Sqr(z) * c};
 }
 
-// Returns those of 2 pi u, u in [0, 1].
+// Returns sine and cosine of 2 pi u, u in [0, 1].
 inline SineCosine SineCosineOfTurn(float u) {
     const int quarter = int(4 * u + 0.5f);
     const SineCosine in = SineCosineOf((4 * u - float(quarter)) * (kPi / 2));

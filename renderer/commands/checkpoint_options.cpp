@@ -9,7 +9,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/files/file_io.h"
 #include "stopping/base/input_file.h"
 

@@ -8,7 +8,7 @@
 
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
-#include "renderer/render/time_limit.h"
+#include "renderer/progress/time_limit.h"
 
 namespace lull {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "renderer/commands/talk.h"
-#include "renderer/render/progress.h"
+#include "renderer/progress/progress.h"
 
 namespace lull {
 

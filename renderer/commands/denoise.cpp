@@ -9,7 +9,7 @@
 #include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/denoise/dependence.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/film_picture.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "renderer/base/say.h"
+#include "renderer/progress/progress.h"
 #include "renderer/render/film_picture.h"
-#include "renderer/render/progress.h"
 
 namespace lull {
 

@@ -5,8 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "renderer/base/error.h"
-#include "renderer/commands/choice_option.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 
 namespace lull {
 

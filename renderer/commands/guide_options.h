@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/learning.h"
 
 namespace lull {
 

@@ -10,7 +10,7 @@
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/scene_options.h"
 #include "renderer/files/file_contents.h"
-#include "renderer/render/progress.h"
+#include "renderer/progress/progress.h"
 #include "renderer/results/report.h"
 #include "renderer/scene/scene_names.h"
 #include "renderer/scene/slabs.h"

@@ -7,7 +7,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/scene/scene_names.h"
 
 namespace lull {

@@ -7,8 +7,7 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
-#include "renderer/commands/choice_option.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/image/color_view.h"
 
 namespace lull {

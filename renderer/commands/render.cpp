@@ -8,20 +8,19 @@
 #include <sstream>
 
 #include "renderer/base/seconds_since.h"
-#include "renderer/commands/aov_options.h"
 #include "renderer/commands/denoising.h"
+#include "renderer/commands/grading.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
-#include "renderer/commands/light_group_options.h"
+#include "renderer/commands/layer_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/commands/render_options.h"
 #include "renderer/commands/render_talk.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
-#include "renderer/render/graded_criterion.h"
-#include "renderer/render/half_buffer.h"
 #include "renderer/results/denoiser_channels.h"
+#include "renderer/schedule/half_buffer.h"
 #include "stopping/base/input_file.h"
 #include "stopping/rules/denoised.h"
 
@@ -56,26 +55,6 @@ int PassLengthFor(const Rule& rule, const PixelRect& region, const ScheduleOptio
         if (const int stop = rule.stopAt({.index = i}); stop < std::min(length, schedule.cap))
             length = std::gcd(length, stop);
     return std::max(1, length);
-}
-
-// Returns them for the denoiser.
-std::vector<Grading> GradingsOf(const std::vector<Grade>& grades) {
-    std::vector<Grading> gradings;
-    for (const Grade& grade : grades)
-        gradings.push_back(grade.IsPlain() ? Grading() : [grade](std::span<float> rgb) {
-            ApplyGrade(grade, rgb);
-        });
-    return gradings;
-}
-
-// Returns them in words.
-std::string NamesOf(const std::vector<Grade>& grades) {
-    std::string text;
-    for (const Grade& grade : grades) {
-        const std::string own = TextOf(grade);
-        text += (text.empty() ? "" : "; ") + (own.empty() ? "sRGB" : own);
-    }
-    return text;
 }
 
 // Reads the rule and lets the schedule suit it.
@@ -231,24 +210,10 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     return p;
 }
 
-using MakeCriterion = std::function<std::unique_ptr<Criterion>(const BlockInfo&)>;
-
-// Makes the criteria of blocks as the grades show them, unless the rule sees to that itself, or
-// only counts.
-MakeCriterion MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& grades) {
-    MakeCriterion criteriaOf = CriteriaOf(rule);
-    if (grades.empty() || rule.stopAt || rule.need == ViewNeed::Measured) return criteriaOf;
-    return [criteriaOf, grades](const BlockInfo& info) {
-        std::vector<GradedJudge> judges;
-        for (const Grade& grade : grades) judges.push_back({grade, criteriaOf(info)});
-        return std::make_unique<GradedCriterion>(std::move(judges));
-    };
-}
-
 // Makes the criteria; for a page, they also keep the curves of each block.
-MakeCriterion MakeCriteria(const Rule& rule, const std::vector<Grade>& grades, bool withCurves,
-                           std::vector<BlockHistory>* histories) {
-    MakeCriterion criteriaOf = MakeGradedCriteria(rule, grades);
+CriterionMaker MakeCriteria(const Rule& rule, const std::vector<Grade>& grades, bool withCurves,
+                            std::vector<BlockHistory>* histories) {
+    CriterionMaker criteriaOf = MakeGradedCriteria(rule, grades);
     if (!withCurves) return criteriaOf;
     return [criteriaOf, histories](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;

@@ -5,11 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "renderer/commands/aov_options.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
-#include "renderer/commands/light_group_options.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/layer_options.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/render/film_picture.h"
 #include "stopping/rules/denoised.h"

@@ -7,9 +7,8 @@
 #include <filesystem>
 
 #include "renderer/base/memory.h"
-#include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "renderer/base/say.h"
-#include "renderer/render/progress.h"
+#include "renderer/progress/progress.h"
 #include "renderer/results/report.h"
 #include "renderer/results/shortfall.h"
 

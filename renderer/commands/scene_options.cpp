@@ -7,9 +7,8 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
-#include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
 #include "renderer/render/provenance.h"

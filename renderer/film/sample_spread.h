@@ -12,6 +12,7 @@ struct SampleSpread {
     int64_t vertices = 0;  // of paths, without the camera
     int64_t samples = 0;
     double connected = 0;  // squares of the luminance that connections have found
+    double light = 0;      // of that of light paths, one by one, in the round
 };
 
 }  // namespace lull

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "renderer/base/memory.h"
+#include "renderer/base/tile_shares.h"
 #include "renderer/guiding/sides.h"
 #include "renderer/guiding/space_tree.h"
 #include "renderer/guiding/square_sum.h"
-#include "renderer/scene/tile_shares.h"
 
 namespace lull {
 

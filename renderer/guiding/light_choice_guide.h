@@ -8,7 +8,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/guiding/sides.h"
 #include "renderer/guiding/square_sum.h"
-#include "renderer/scene/light_table.h"
+#include "renderer/scene/lights/light_table.h"
 
 namespace lull {
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,19 +19,22 @@ std::string TextOf(const Grade& grade) {
     return fmt::format("{}{}{:+g} stops", text, text.empty() ? "" : ", ", grade.exposure);
 }
 
-void ApplyGrade(const Grade& grade, std::span<float> rgb) {
-    if (grade.IsPlain()) return;
+bool MapColors(const Grade& grade, std::span<float> rgb) {
     const float scale = std::exp2(grade.exposure);
     for (float& v : rgb) v *= scale;
-    if (grade.view) grade.view->Apply(rgb.data(), rgb.size() / 3);
-    for (float& v : rgb) {
-        if (grade.view)
-            v = LinearFromSrgb(v > 0 ? std::min(v, 1.f) : 0);
-        else if (grade.toneMap == ToneMap::Filmic)
-            v = FilmicToneMap(v);
-        else
-            v = v > 0 ? std::min(v, std::numeric_limits<float>::max()) : 0;
-    }
+    if (grade.view)
+        grade.view->Apply(rgb.data(), rgb.size() / 3);
+    else if (grade.toneMap == ToneMap::Filmic)
+        std::ranges::transform(rgb, rgb.begin(), FilmicToneMap);
+    return grade.view != nullptr;
+}
+
+void ApplyGrade(const Grade& grade, std::span<float> rgb) {
+    if (grade.IsPlain()) return;
+    const bool isEncoded = MapColors(grade, rgb);
+    for (float& v : rgb)
+        v = isEncoded ? LinearFromSrgb(v > 0 ? std::min(v, 1.f) : 0)
+                      : (v > 0 ? std::min(v, std::numeric_limits<float>::max()) : 0);
 }
 
 }  // namespace lull

@@ -6,7 +6,7 @@
 
 #include "renderer/denoise/denoiser.h"
 #include "renderer/film/film.h"
-#include "renderer/render/schedule.h"
+#include "renderer/schedule/schedule.h"
 #include "stopping/rules/rule.h"
 
 namespace lull {

@@ -17,9 +17,9 @@ namespace lull {
 
 namespace {
 
-constexpr std::string_view kFormat = "lull checkpoint 3";
-constexpr std::array<std::string_view, 2> kOlderFormats = {"lull checkpoint 1",
-                                                           "lull checkpoint 2"};
+constexpr std::string_view kFormat = "lull checkpoint 4";
+constexpr std::array<std::string_view, 3> kOlderFormats = {"lull checkpoint 1", "lull checkpoint 2",
+                                                           "lull checkpoint 3"};
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 

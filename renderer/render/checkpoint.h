@@ -10,7 +10,7 @@
 namespace lull {
 
 // Writes film and state to an HDF5 file, whole or not at all, and the learned state, if any
-// (GuideLearner::Save()). Throws Error.
+// (Learners::Save()). Throws Error.
 void WriteCheckpoint(const std::string& path, const RenderIdentity&, const RenderState&,
                      const Film&, std::span<const std::byte> guide = {});
 

@@ -6,7 +6,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/thread_clock.h"
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 
 namespace lull {
@@ -41,7 +41,10 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
                 spread->connected += Sqr(y * double(sample.connected));
                 ++spread->samples;
             }
-            if (light && end > first) light->End(pixel, first, &sums);
+            if (light && end > first) {
+                light->End(pixel, first, &sums);
+                if (spread) spread->light += light->SquaresAt(pixel);
+            }
             pixels.Set(pixel, sums);
             if (spread && end > first) {
                 spread->squares += std::max(0., squares - Sqr(sum) / (end - first));
@@ -97,26 +100,24 @@ bool Executor::IsPauseDue() const {
 }
 
 void Executor::BeginLight() {
-    context.light->Begin(schedule.Unlocked());
+    context.learners->Begin(schedule.Unlocked());
+    context.light->Begin(schedule.Unlocked(), context.learners->Paths().shares);
     // With a larger cap this round would be a longer one: whoever goes on begins it again.
     if (context.light->IsCutShort() && !isLastRound) WriteCheckpoint();
     isLastRound = context.light->IsCutShort();
-    schedule.BeginRound(context.light->End());
+    schedule.BeginRound(RoundEndOf(context));
     isLit = context.light->Trace([this] { return IsCancelled(); });
 }
 
 bool Executor::EndRound() {
-    GuideLearner* learner = context.learner;
-    if (context.light && schedule.Unlocked().NoPassUnderWay()) {
-        // Also in the end: whoever goes on from the checkpoint has to know what was learned.
-        context.light->Learn(context.film);
-        if (IsCancelled() || !schedule.IsRoundOver()) return false;
+    if (!context.learners || !schedule.Unlocked().NoPassUnderWay()) return false;
+    const bool goesOn = !IsCancelled() && schedule.IsRoundOver();
+    context.learners->EndRound(context.film, {schedule.Unlocked().Options().roundEnd, goesOn});
+    if (!goesOn) return false;
+    if (context.light)
         BeginLight();
-        return true;
-    }
-    if (!learner || IsCancelled() || !schedule.IsRoundOver()) return false;
-    learner->EndRound(*context.film);
-    schedule.BeginRound(learner->RoundEnd());
+    else
+        schedule.BeginRound(RoundEndOf(context));
     return true;
 }
 
@@ -146,8 +147,8 @@ void Executor::RunTile() {
 int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     Film* film = context.film;
-    SampleSpread* spread = context.learner ? context.learner->SpreadOf(*film, tile.pixels)
-                                           : film->SpreadOf(tile.pixels);
+    SampleSpread* spread =
+        context.learners ? context.learners->SpreadOf(film, tile.pixels) : nullptr;
     const auto render = [&](const auto& take) {
         if (!context.light) return RenderTile(take, tile, sampler, film, spread, nullptr);
         RoundLight light(*context.light, film);

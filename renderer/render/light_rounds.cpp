@@ -3,6 +3,7 @@
 #include <atomic>
 #include <limits>
 
+#include "renderer/learning/strategy_learner.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {
@@ -11,23 +12,6 @@ namespace {
 
 constexpr uint32_t kChunk = 1024;  // light paths that a thread takes
 
-// Shares below which no strategy falls: it has to be seen where it would bring much.
-constexpr float kLeastPaths = 0.05f, kLeastConnections = 0.03f;
-// With few connections the weights leave to other strategies all that these can find as well: only
-// the rest makes them more.
-constexpr BdptShares kFirst{.lightPaths = 0.3f, .connections = 0.05f};
-// Costs of a light path, and of a subpath from a light with its connections, in camera's subpaths
-// with the light that is sampled at their vertices (renderer/docs/transport.md).
-constexpr double kCostOfPath = 1, kCostOfConnections = 2.5;
-
-// Moves a share half of the way, on a scale of ratios, to where `variance` at a share of 1, over
-// `cost`, has it beside the variance of camera's subpaths, whose cost is 1.
-float Moved(float share, double variance, double cost, double ofCamera, float least) {
-    if (!(ofCamera > 0)) return share;
-    const double best = std::sqrt(variance / cost / ofCamera);
-    return std::clamp(float(std::sqrt(double(share) * best)), least, 1.f);
-}
-
 }  // namespace
 
 LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind, uint64_t seed)
@@ -35,7 +19,6 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind,
       region(film.Region()),
       kind(kind),
       seed(seed),
-      learned(kFirst),
       unit(FindUnit()),
       groups(film.layers.Options().groups) {}
 
@@ -43,12 +26,13 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind,
 double LightRounds::FindUnit() const {
     constexpr uint32_t kMost = 1 << 16;
     constexpr int kEnough = 256;
-    if (LightPathCount(scene, learned) == 0) return 1;
+    constexpr BdptShares shares = StrategyLearner::kFirst;
+    if (LightPathCount(scene, shares) == 0) return 1;
     Sampler sampler(kind, seed);
     double sum = 0;
     int count = 0;
     for (uint32_t i = 0; i < kMost && count < kEnough; ++i)
-        TraceLightPath(scene, learned, sampler, 0, i, [&](const Splat& splat) {
+        TraceLightPath(scene, shares, sampler, 0, i, [&](const Splat& splat) {
             const double y = double(Luminance(splat.radiance));
             if (!(y > 0)) return;
             sum += y;
@@ -58,21 +42,13 @@ double LightRounds::FindUnit() const {
     return std::exp2(std::round(std::log2(std::clamp(sum / count, 1e-30, 1e30))));
 }
 
-// Blocks that have stopped in the round were active when it began.
-void LightRounds::Begin(const Schedule& schedule) {
+void LightRounds::Begin(const Schedule& schedule, const BdptShares& shares) {
     const int first = schedule.LeastSpp();
     ScheduleOptions uncapped = schedule.Options();
     uncapped.cap = std::numeric_limits<int>::max();
     isCutShort = !schedule.Done() &&
                  PassEndAfter(first, uncapped) != PassEndAfter(first, schedule.Options());
-    int64_t active = 0;
-    for (const Block& block : schedule.Blocks())
-        if (!block.stopped || block.spp > first) active += block.pixels.Area();
-    const double part = double(active) / double(std::max<int64_t>(1, region.Area()));
-    LightRound next{first, PassEndAfter(first, schedule.Options()), learned};
-    next.shares.lightPaths =
-        std::clamp(learned.lightPaths * float(std::sqrt(part)), kLeastPaths, 1.f);
-    Begin(next);
+    Begin({first, PassEndAfter(first, schedule.Options()), shares});
 }
 
 void LightRounds::Begin(const LightRound& begun) {
@@ -163,54 +139,6 @@ void RoundLight::End(const Vec2i& p, uint32_t first, FilmPixel* sums) const {
     film->layers.ForEach([&](auto& layer) {
         if constexpr (requires { layer.AddSplats(p, splats); }) layer.AddSplats(p, splats);
     });
-}
-
-void LightRounds::Learn(Film* film) {
-    const std::vector<SampleSpread> spreads = film->Spreads();
-    film->ForgetSpreads();
-    // Sums over tiles, by the square of their brightness.
-    std::vector<double> light(spreads.size(), 0), brightness(spreads.size(), 0);
-    std::vector<int> pixels(spreads.size(), 0);
-    double mean = 0;
-    for (int y = region.min.y(); y < region.max.y(); ++y)
-        for (int x = region.min.x(); x < region.max.x(); ++x) {
-            const size_t tile = film->TileAt({x, y});
-            const double l = double(Luminance(film->MeanAt({x, y})));
-            light[tile] += planes[0].SumsAt({x, y}).squares;
-            brightness[tile] += l;
-            ++pixels[tile];
-            mean += l / double(region.Area());
-        }
-    double ofCamera = 0, ofConnections = 0, ofPaths = 0;  // variances of a sample
-    for (size_t i = 0; i < spreads.size(); ++i) {
-        const SampleSpread& spread = spreads[i];
-        if (spread.freedom <= 0) continue;
-        const double l = brightness[i] / pixels[i] + 0.1 * mean, weight = pixels[i] / (l * l);
-        if (!(weight > 0 && weight < double(kInfinity))) continue;
-        const double samples = double(spread.samples);
-        ofCamera += weight * spread.squares / double(spread.freedom);
-        ofConnections += weight * spread.connected / samples;
-        ofPaths += weight * light[i] / samples;
-    }
-    if (!(ofCamera > 0)) return;
-    const double rest = std::max(ofCamera - ofConnections, 0.1 * ofCamera);
-    learned.connections =
-        Moved(learned.connections, ofConnections * double(round.shares.connections),
-              kCostOfConnections, rest, kLeastConnections);
-    learned.lightPaths = Moved(learned.lightPaths, ofPaths * double(round.shares.lightPaths),
-                               kCostOfPath, ofCamera, kLeastPaths);
-}
-
-std::vector<std::byte> LightRounds::Save() const {
-    StateWriter writer;
-    writer.Put(learned);
-    return std::move(writer.bytes);
-}
-
-void LightRounds::Take(std::span<const std::byte> bytes) {
-    StateReader reader(bytes);
-    learned = reader.Get<BdptShares>();
-    reader.Finish();
 }
 
 }  // namespace lull

@@ -8,17 +8,14 @@
 // integers. So film, checkpoints and rules see nothing but samples, an interrupted round's light
 // is traced again to the same bits, and the memory is that of one image.
 //
-// How many samples the strategies take follows from the variance that they had in the round before,
-// as in stratified sampling (Neyman 1934): in proportion to the root of the variance over the cost.
-// A round's shares depend on samples before it alone, so that the mean stays as it is.
+// How many samples the strategies take is learned (learning/strategy_learner.h).
 #pragma once
 
 #include <functional>
-#include <span>
 
 #include "renderer/film/film.h"
 #include "renderer/film/splat_plane.h"
-#include "renderer/render/schedule.h"
+#include "renderer/schedule/schedule.h"
 #include "renderer/transport/bdpt.h"
 
 namespace lull {
@@ -43,9 +40,8 @@ class LightRounds {
     int End() const { return round.end; }
     bool IsCutShort() const { return isCutShort; }
 
-    // Begins the round that the active blocks are in, or come to next. Light paths are the fewer,
-    // the fewer pixels are left that wait for them.
-    void Begin(const Schedule&);
+    // Begins the round that the active blocks are in, or come to next.
+    void Begin(const Schedule&, const BdptShares&);
     // Begins this one, of which no light has been traced.
     void Begin(const LightRound&);
     // Traces one of `parts` of its light, on all threads of the task arena. Returns false if
@@ -54,15 +50,6 @@ class LightRounds {
     // The light that has been traced, to be merged where others trace the other parts: all of it
     // and that of each light group.
     std::vector<SplatPlane>& Planes() { return planes; }
-
-    // At the end of a round: chooses the shares of those to come by the spreads of the film, which
-    // it forgets.
-    void Learn(Film*);
-
-    // Return what has to be kept to go on with the round, and take it. Take() throws
-    // std::runtime_error for other bytes.
-    std::vector<std::byte> Save() const;
-    void Take(std::span<const std::byte>);
 
   private:
     friend class RoundLight;
@@ -75,7 +62,6 @@ class LightRounds {
     const PixelRect region;
     SamplerKind kind;
     uint64_t seed;
-    BdptShares learned;  // for all pixels
     LightRound round;
     bool isCutShort = false;
     double unit = 1;
@@ -92,6 +78,8 @@ class RoundLight {
     // the samples from `first` on, and in the layers; the film has the pixel without them.
     void Begin(const Vec2i& p);
     void End(const Vec2i& p, uint32_t first, FilmPixel* sums) const;
+    // Returns the squares of luminance of the round's light paths in a pixel, one by one.
+    double SquaresAt(const Vec2i& p) const { return rounds.planes[0].SumsAt(p).squares; }
 
   private:
     const LightRounds& rounds;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 
 namespace lull {
@@ -12,12 +12,16 @@ namespace {
 ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(context.secondsLeft);
-    if (context.learner) schedule.roundEnd = context.learner->RoundEnd();
-    if (context.light) schedule.roundEnd = context.light->End();
+    schedule.roundEnd = RoundEndOf(context);
     return schedule;
 }
 
 }  // namespace
+
+int RoundEndOf(const RenderContext& context) {
+    return std::min(context.learners ? context.learners->RoundEnd() : kNoRoundEnd,
+                    context.light ? context.light->End() : kNoRoundEnd);
+}
 
 LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,
                            std::span<const BlockStart> starts, RankTiles given)
@@ -101,6 +105,23 @@ void LiveSchedule::ShowStops() {
         if (options.display) options.display->ShowStop(blocks[i].pixels);
         if (options.events.onStop) options.events.onStop(int(i), blocks[i]);
     }
+}
+
+void PassUndo::Keep(int block, const std::vector<PixelRect>& tiles, const Film& film) {
+    StateWriter writer;
+    for (const PixelRect& tile : tiles) PutPlanes(film, tile, &writer);
+    kept[block] = {tiles, std::move(writer.bytes)};
+}
+
+std::vector<int> PassUndo::UndoAll(Film* film) {
+    std::vector<int> blocks;
+    for (const auto& [block, pixels] : kept) {
+        StateReader reader(pixels.planes);
+        for (const PixelRect& tile : pixels.tiles) GetPlanes(&reader, tile, film);
+        blocks.push_back(block);
+    }
+    kept.clear();
+    return blocks;
 }
 
 }  // namespace lull

@@ -2,18 +2,42 @@
 // values of their pixels, and a viewer that shows where blocks have stopped.
 #pragma once
 
+#include <map>
 #include <mutex>
 
 #include "renderer/render/render.h"
-#include "renderer/render/undo.h"
 
 namespace lull {
+
+// The pixels of blocks whose pass is under way. A pass is undone as a whole, so that all
+// pixels of a block have the same samples.
+class PassUndo {
+  public:
+    bool Has(int block) const { return kept.contains(block); }
+    // Copies the pixels of the block that are in these tiles.
+    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&);
+    // The pass has come to its end.
+    void Forget(int block) { kept.erase(block); }
+    // Puts all that is kept back. Returns the blocks.
+    std::vector<int> UndoAll(Film*);
+
+  private:
+    struct Pixels {
+        std::vector<PixelRect> tiles;
+        std::vector<std::byte> planes;  // tile by tile, by PutPlanes()
+    };
+    std::map<int, Pixels> kept;
+};
 
 // Decision on a block after a pass.
 struct BlockAnswer {
     bool stop = false;
     double noise = kUnknownNoise;
 };
+
+// Returns the spp at which the round ends that learners and light paths are in; kNoRoundEnd: there
+// are no rounds.
+int RoundEndOf(const RenderContext&);
 
 // Costs a lock a call, a few for each tile.
 class LiveSchedule {

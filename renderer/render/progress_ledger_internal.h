@@ -4,8 +4,8 @@
 #include <chrono>
 #include <mutex>
 
+#include "renderer/progress/forecast.h"
 #include "renderer/render/block_criteria_internal.h"
-#include "renderer/render/forecast.h"
 
 namespace lull {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "renderer/base/enum_names.h"
-#include "renderer/render/guide_learning.h"
-#include "renderer/render/schedule.h"
+#include "renderer/learning/learning.h"
+#include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/rules/trend.h"
 

@@ -5,8 +5,8 @@
 
 #include <stdexcept>
 
+#include "renderer/learning/learners.h"
 #include "renderer/render/executor_internal.h"
-#include "renderer/render/guide_learning.h"
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/rank.h"
 #include "stopping/base/parallel.h"
@@ -51,21 +51,13 @@ SampleSource SamplesOf(const Scene& scene, const PathOptions& options) {
     };
 }
 
-SampleSource SamplesOf(const Scene& scene, const GuideLearner& learner, bool throughSpecular) {
-    return [&, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                const SampleDetail& detail) {
-        PathOptions options = learner.Paths();
+SampleSource SamplesOf(const Scene& scene, const Learners& learners, const LightRounds* light,
+                       bool throughSpecular) {
+    return [&, light, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                       const SampleDetail& detail) {
+        PathOptions options = learners.Paths();
         options.throughSpecular = throughSpecular;
-        return RenderSample(scene, options, sampler, pixel, index, detail);
-    };
-}
-
-SampleSource SamplesOf(const Scene& scene, const LightRounds& light, bool throughSpecular) {
-    return [&, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                const SampleDetail& detail) {
-        PathOptions options = Estimator::Combined;
-        options.throughSpecular = throughSpecular;
-        options.shares = light.Round().shares;
+        if (light) options.shares = light->Round().shares;
         return RenderSample(scene, options, sampler, pixel, index, detail);
     };
 }

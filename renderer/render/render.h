@@ -6,7 +6,7 @@
 #include "renderer/film/display.h"
 #include "renderer/film/film.h"
 #include "renderer/render/render_events.h"
-#include "renderer/render/schedule.h"
+#include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/rules/criterion.h"
 #include "stopping/rules/trend.h"
@@ -37,7 +37,7 @@ struct RenderState {
     double seconds = 0;  // since the start of the first run
 };
 
-class GuideLearner;
+class Learners;
 class LightRounds;
 class Peers;
 
@@ -98,11 +98,11 @@ struct RenderContext {
     // Where an interrupted render left film and state; null: from the start. A block whose
     // `stopped` is set in a state without samples is left out.
     const RenderState* interrupted = nullptr;
-    // Learns from the samples, in rounds; the source samples by its guide (guide_learning.h). Null:
+    // Learn from the samples, in rounds; the source samples as was learned (learners.h). Null:
     // nothing is learned.
-    GuideLearner* learner = nullptr;
-    // Traces light paths in rounds; the source takes its shares of samples (light_rounds.h). Not
-    // with a learner. The film keeps spreads. Null: none.
+    Learners* learners = nullptr;
+    // Traces light paths in rounds, with the shares that learners have found (light_rounds.h). The
+    // film keeps spreads. Null: none.
     LightRounds* light = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
@@ -122,9 +122,9 @@ RenderResult Render(const RenderContext&, const RenderOptions&);
 // Returns the scene as a source of samples; it, and the guide if there is one, must outlive the
 // source.
 SampleSource SamplesOf(const Scene&, const PathOptions&);
-// The same, traced as the learner says at the time, which must outlive it too. For
-// `throughSpecular` see PathOptions.
-SampleSource SamplesOf(const Scene&, const GuideLearner&, bool throughSpecular = false);
-SampleSource SamplesOf(const Scene&, const LightRounds&, bool throughSpecular = false);
+// The same, traced as learners say at the time, and as the round of light paths needs it where
+// there is one; they must outlive it too. For `throughSpecular` see PathOptions.
+SampleSource SamplesOf(const Scene&, const Learners&, const LightRounds* = nullptr,
+                       bool throughSpecular = false);
 
 }  // namespace lull

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/render/progress.h"
-#include "renderer/render/schedule.h"
+#include "renderer/progress/progress.h"
+#include "renderer/schedule/schedule.h"
 
 namespace lull {
 

@@ -5,10 +5,11 @@
 
 #include "renderer/base/error.h"
 #include "renderer/denoise/denoiser.h"
+#include "renderer/learning/learners.h"
+#include "renderer/progress/time_limit.h"
 #include "renderer/render/first_look.h"
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/peers.h"
-#include "renderer/render/time_limit.h"
 #include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 
@@ -48,17 +49,11 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
             std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
         context.light = light.get();
     }
-    const GuideOptions& guide = options.guide;
-    LearningOptions how{.mode = guide.mode,
-                        .megabytes = guide.megabytes,
-                        .isShort = bool(options.clock),
-                        .directLight = guide.mode == GuideMode::Auto && !options.clock &&
-                                       LearnsDirectLight(scene, options.estimator)};
-    if (guide.mode == GuideMode::Off || WhyNotGuided(scene, options.estimator))
-        how.mode = GuideMode::Off;
-    if (how.mode == GuideMode::Off && !how.directLight) return;
-    learner.emplace(scene, how, region.Area());
-    context.learner = &*learner;
+    learners = std::make_unique<Learners>(
+        scene, LearningFor(scene, options.guide, options.estimator, bool(options.clock)),
+        region.Area());
+    if (learners->IsEmpty()) learners.reset();
+    context.learners = learners.get();
 }
 
 Session::~Session() = default;
@@ -73,12 +68,12 @@ void Session::Resume() {
         Tell(onResume, "there is no {} yet: from the start", checkpoint.file);
         return;
     }
-    std::vector<std::byte> guide;
+    std::vector<std::byte> learned;
     interrupted =
-        ReadCheckpoint(checkpoint.file, options.identity, &film, &guide, checkpoint.mayDiffer);
+        ReadCheckpoint(checkpoint.file, options.identity, &film, &learned, checkpoint.mayDiffer);
     context.interrupted = &*interrupted;
-    if (learner || light) try {
-            learner ? learner->Take(guide, film) : light->Take(guide);
+    if (learners) try {
+            learners->Take(learned, film);
         } catch (const std::runtime_error& e) {
             throw Error(checkpoint.file + ": " + e.what());
         }
@@ -88,9 +83,10 @@ void Session::Resume() {
 
 GuideFigures Session::Guidance() const {
     GuideFigures figures;
-    if (learner) figures = learner->Figures();
+    if (learners) figures = learners->Figures();
     const auto whyNot = WhyNotGuided(scene, options.estimator);
-    if (!learner || whyNot) figures.why = whyNot.value_or("not requested");
+    if (options.guide.mode == GuideMode::Off || whyNot)
+        figures.why = whyNot.value_or("not requested");
     return figures;
 }
 
@@ -131,9 +127,8 @@ void Session::SetClock() {
 void Session::SetSource() {
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.film.layers.ThroughSpecular();
-    context.source = learner ? SamplesOf(scene, *learner, paths.throughSpecular)
-                     : light ? SamplesOf(scene, *light, paths.throughSpecular)
-                             : SamplesOf(scene, paths);
+    context.source = learners ? SamplesOf(scene, *learners, light.get(), paths.throughSpecular)
+                              : SamplesOf(scene, paths);
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the
@@ -150,9 +145,7 @@ void Session::KeepCheckpoints() {
 // warning `said` is not repeated: a disk stays full for more than one attempt.
 std::string Session::TryToWrite(const RenderState& state, const std::string& said) try {
     WriteCheckpoint(options.checkpoint.file, options.identity, state, film,
-                    learner ? learner->Save()
-                    : light ? light->Save()
-                            : std::vector<std::byte>());
+                    learners ? learners->Save() : std::vector<std::byte>());
     return "";
 } catch (const Error& e) {
     if (e.what() != said) Tell(options.render.events.onWarning, "no checkpoint: {}", e.what());

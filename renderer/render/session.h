@@ -6,8 +6,8 @@
 //     const RenderResult result = session.Run();
 #pragma once
 
+#include "renderer/learning/learning.h"
 #include "renderer/render/checkpoint.h"
-#include "renderer/render/guide_learning.h"
 
 namespace lull {
 
@@ -80,7 +80,7 @@ class Session {
     SessionOptions options;
     Film film;
     std::optional<RenderState> interrupted;
-    std::optional<GuideLearner> learner;
+    std::unique_ptr<Learners> learners;  // null: nothing is learned
     std::unique_ptr<LightRounds> light;
     RenderContext context;
 };

@@ -4,7 +4,7 @@
 #include "renderer/denoise/denoiser.h"
 #include "renderer/image/image_io.h"
 #include "renderer/image/rgb_image.h"
-#include "renderer/render/schedule.h"
+#include "renderer/schedule/schedule.h"
 
 namespace lull {
 

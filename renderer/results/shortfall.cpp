@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/render/forecast.h"
+#include "renderer/progress/forecast.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

@@ -5,15 +5,18 @@
 
 #include "renderer/base/sampler.h"
 #include "renderer/scene/cameras/camera.h"
-#include "renderer/scene/film_settings.h"
-#include "renderer/scene/filter.h"
+#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/film_settings.h"
+#include "renderer/scene/cameras/filter.h"
+#include "renderer/scene/cameras/footprint.h"
 #include "renderer/scene/geometry/accelerator.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/integrator.h"
-#include "renderer/scene/light_emission.h"
-#include "renderer/scene/material.h"
-#include "renderer/scene/medium_table.h"
-#include "renderer/scene/texture.h"
+#include "renderer/scene/lights/light_emission.h"
+#include "renderer/scene/lights/light_table.h"
+#include "renderer/scene/materials/material.h"
+#include "renderer/scene/media/medium_table.h"
+#include "renderer/scene/textures/texture.h"
 
 namespace lull {
 

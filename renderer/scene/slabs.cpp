@@ -4,6 +4,8 @@
 #include <map>
 #include <numeric>
 
+#include "renderer/scene/geometry/shapes/mesh.h"
+
 namespace lull {
 namespace {
 

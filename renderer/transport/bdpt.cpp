@@ -1,8 +1,8 @@
 #include "renderer/transport/bdpt.h"
 
 #include "renderer/base/color.h"
-#include "renderer/scene/camera_view.h"
-#include "renderer/scene/footprint.h"
+#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/footprint.h"
 #include "renderer/transport/group_recorder_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_media.h"

@@ -1,4 +1,4 @@
-#include "renderer/scene/footprint.h"
+#include "renderer/scene/cameras/footprint.h"
 #include "renderer/transport/direct_light.h"
 #include "renderer/transport/group_recorder_internal.h"
 #include "renderer/transport/integrator_internal.h"

@@ -2,7 +2,7 @@
 // unit, world.
 #pragma once
 
-#include "renderer/scene/phase.h"
+#include "renderer/bsdf/phase.h"
 #include "renderer/scene/scene.h"
 
 namespace lull {

@@ -14,7 +14,7 @@
 // that it connects scatters into one direction only.
 #pragma once
 
-#include "renderer/scene/light_emission.h"
+#include "renderer/scene/lights/light_emission.h"
 #include "renderer/transport/path_vertex.h"
 
 namespace lull {

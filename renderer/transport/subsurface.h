@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "renderer/scene/diffusion_profile.h"
+#include "renderer/bsdf/diffusion_profile.h"
 #include "renderer/scene/scene.h"
 
 namespace lull {

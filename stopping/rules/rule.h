@@ -12,16 +12,41 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "stopping/base/state.h"
+#include "stopping/features/model_inputs.h"
 #include "stopping/features/recorded_measures.h"
-#include "stopping/rules/checks.h"
 #include "stopping/rules/criterion.h"
-#include "stopping/rules/signals.h"
 #include "stopping/rules/trend.h"
 
 namespace lull {
+
+// A rule checks a block at first, first + every, first + 2 every, ... spp; or, where pictures come
+// at any spp, at whatever comes `every` spp or more after the last check.
+struct Checks {
+    int first = 1;      // the least spp of a check, > 0
+    int every = 1;      // spp from one to the next, > 0
+    double growth = 1;  // of the spp from one to the next, at the least
+    bool any = false;   // pictures come at any spp
+
+    // Returns whether a check is due at `spp` > 0, after one at `last` spp; 0: there was none.
+    bool AreDue(int spp, int last = 0) const {
+        if (spp < first || spp < growth * last) return false;
+        return any ? last == 0 || spp - last >= every : (spp - first) % every == 0;
+    }
+};
+
+// A number for each pixel, row by row.
+struct PixelErrors {
+    int width = 0;
+    std::vector<double> errors = {};
+};
+
+// What a rule gets after a pass of a block, measured in a render or recorded: nothing but the
+// spp; one number of the block; one of each pixel; inputs of networks.
+using Signals = std::variant<std::monostate, double, PixelErrors, BlockMeasures>;
 
 // Computes the number of one block from its signals, and stores the state this needs.
 class Statistic {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <new>
 #include <optional>
@@ -125,23 +124,12 @@ T EncodeLinear(float value) {
     return T(most * std::clamp(value > 0 ? value : 0, 0.f, 1.f) + 0.5f);
 }
 
-// Maps the colours of a row, whose pixels have `components` values, by a view.
-void ApplyView(const ViewTransform& view, size_t components, std::span<float> row) {
-    const size_t pixels = row.size() / components;
-    if (components == 3) return view.Apply(row.data(), pixels);
-    for (size_t x = 0; x < pixels; ++x) view.Apply(&row[components * x], 1);
-}
-
-// Scales the colours of a row, whose pixels have `components` values.
-void Brighten(float scale, size_t components, std::span<float> row) {
-    for (size_t i = 0; i < row.size(); ++i)
-        if (i % components != 3) row[i] *= scale;
-}
-
-// Divides the colours of a row R, G, B, A by alpha; transparent pixels are black.
-void DivideByAlpha(std::span<float> row) {
-    for (size_t i = 0; i + 3 < row.size(); i += 4)
-        for (size_t c = i; c < i + 3; ++c) row[c] = row[i + 3] > 0 ? row[c] / row[i + 3] : 0;
+// Returns the colours of R, G, B, A divided by alpha; transparent pixels are black.
+void DivideByAlpha(std::span<const float> rgba, std::span<float> rgb) {
+    for (size_t i = 0; i < rgb.size(); ++i) {
+        const float* pixel = &rgba[i / 3 * 4];
+        rgb[i] = pixel[3] > 0 ? pixel[i % 3] / pixel[3] : 0;
+    }
 }
 
 // Writes linear RGB, or RGBA.
@@ -151,21 +139,17 @@ void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
     writer->WriteHeader(width, height, 8 * int(sizeof(T)),
                         format.hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                         format.text, false);
-    const Grade& grade = format.grade;
     const size_t components = format.hasAlpha ? 4 : 3;
-    std::vector<float> linear(size_t(width) * components);
-    std::vector<T> row(linear.size());
+    std::vector<float> rgb(size_t(width) * 3), rgba(format.hasAlpha ? size_t(width) * 4 : 0);
+    std::vector<T> row(size_t(width) * components);
     for (int y = 0; y < height; ++y) {
-        rows(y, linear);
-        if (format.hasAlpha) DivideByAlpha(linear);
-        if (grade.exposure != 0) Brighten(std::exp2(grade.exposure), components, linear);
-        if (grade.view) ApplyView(*grade.view, components, linear);
-        for (size_t i = 0; i < row.size(); ++i) {
-            const bool isMapped = grade.toneMap == ToneMap::Filmic;
-            row[i] = i % components == 3 || grade.view
-                         ? EncodeLinear<T>(linear[i])
-                         : EncodeSrgb<T>(isMapped ? FilmicToneMap(linear[i]) : linear[i]);
-        }
+        rows(y, format.hasAlpha ? rgba : rgb);
+        if (format.hasAlpha) DivideByAlpha(rgba, rgb);
+        const bool isEncoded = MapColors(format.grade, rgb);
+        for (size_t i = 0; i < rgb.size(); ++i)
+            row[i / 3 * components + i % 3] =
+                isEncoded ? EncodeLinear<T>(rgb[i]) : EncodeSrgb<T>(rgb[i]);
+        for (size_t i = 3; i < rgba.size(); i += 4) row[i] = EncodeLinear<T>(rgba[i]);
         writer->WriteRow(row.data());
     }
     writer->End();

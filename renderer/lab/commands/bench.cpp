@@ -7,15 +7,15 @@
 #include <filesystem>
 
 #include "renderer/base/seconds_since.h"
-#include "renderer/commands/aov_options.h"
-#include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
+#include "renderer/commands/layer_options.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/files/result_files.h"
 #include "renderer/input/scene_hash.h"
-#include "renderer/lab/commands/viewing_option.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/comparison/bench.h"
 #include "renderer/lab/comparison/compared_files.h"
 #include "renderer/lab/pages/bench_page.h"

@@ -4,9 +4,9 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 
-#include "renderer/commands/aov_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
+#include "renderer/commands/layer_options.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/lab/commands/compare_options.h"
 #include "renderer/lab/commands/comparison_table.h"

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
-#include "renderer/lab/commands/viewing_option.h"
+#include "renderer/commands/option_values.h"
+#include "renderer/lab/commands/lab_options.h"
 
 namespace lull::compare {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/picture_options.h"
 #include "renderer/lab/comparison/compared_files.h"

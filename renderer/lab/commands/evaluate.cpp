@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <iterator>
 
-#include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/input_files.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/answers_table.h"
 #include "renderer/lab/commands/evaluation_table.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/commands/picture_options.h"
-#include "renderer/lab/commands/split_option.h"
 #include "renderer/lab/pages/curves_figure.h"
 #include "stopping/lab/evaluation/constants.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"

@@ -1,5 +1,5 @@
 #include "renderer/lab/commands/picture_options.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 
 #include <fmt/format.h>
 

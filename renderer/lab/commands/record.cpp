@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/files/result_files.h"
 #include "renderer/lab/commands/picture_options.h"

@@ -2,9 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "renderer/commands/choice_option.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/number_option.h"
+#include "renderer/commands/option_values.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 
 namespace lull::study {

@@ -9,9 +9,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "renderer/commands/choice_option.h"
-#include "renderer/commands/number_option.h"
-#include "renderer/lab/commands/split_option.h"
+#include "renderer/commands/option_values.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "stopping/lab/training/training_preset.h"
 
 namespace lull::train {

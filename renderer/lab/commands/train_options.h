@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/files/outputs.h"
-#include "renderer/render/progress.h"
+#include "renderer/progress/progress.h"
 #include "stopping/lab/training/training_plan.h"
 
 namespace lull::train {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "renderer/render/progress.h"
+#include "renderer/progress/progress.h"
 #include "stopping/lab/training/training.h"
 
 namespace lull {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/image/rgb_image.h"
-#include "renderer/render/schedule.h"
+#include "renderer/schedule/schedule.h"
 
 namespace lull {
 

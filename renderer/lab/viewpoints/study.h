@@ -6,7 +6,7 @@
 
 #include "renderer/lab/viewpoints/picture_folder.h"
 #include "renderer/lab/viewpoints/picture_ladder.h"
-#include "renderer/render/schedule.h"
+#include "renderer/schedule/schedule.h"
 
 namespace lull {
 

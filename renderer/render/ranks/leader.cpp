@@ -4,7 +4,7 @@
 #include <map>
 #include <numeric>
 
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
@@ -103,7 +103,8 @@ class Leader {
             if (std::exchange(hasGivenUp, false)) return TakeOver();
             LearnLight();
         }
-        light.Begin(schedule.Unlocked());
+        context.learners->Begin(schedule.Unlocked());
+        light.Begin(schedule.Unlocked(), context.learners->Paths().shares);
         if (light.IsCutShort() && !executor.isLastRound) WriteCheckpoint();
         executor.isLastRound = light.IsCutShort();
         splats.clear();
@@ -121,7 +122,7 @@ class Leader {
         for (size_t i = 0; i < light.Planes().size(); ++i)
             channel.PostToAll(PackSplats(int(i), light.Planes()[i]));
         channel.PostToAll(Pack(RankWord::Lit));
-        schedule.BeginRound(light.End());
+        schedule.BeginRound(RoundEndOf(context));
     }
 
     // Learns from the samples of all ranks, which are here, once a round: whoever goes on from the
@@ -129,7 +130,7 @@ class Leader {
     void LearnLight() {
         LightRounds& light = *context.light;
         if (light.End() == 0 || std::exchange(learnedEnd, light.End()) == light.End()) return;
-        light.Learn(film);
+        context.learners->EndRound(film, {light.End(), false});
     }
 
     // Traces a rank's part, and gives signs of life meanwhile.
@@ -159,8 +160,8 @@ class Leader {
 
     // Sends the learner's state to the others, which have no tiles before that.
     void TellGuide() {
-        if (context.learner && !IsLearning(context))
-            channel.PostToAll(PackGuide(context.learner->Save()));
+        if (context.learners && !IsLearning(context))
+            channel.PostToAll(PackGuide(context.learners->Save()));
     }
 
     double Seconds() const { return executor.ledger.Seconds(); }

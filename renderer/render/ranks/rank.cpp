@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/learners.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 
@@ -24,7 +24,7 @@ RankHooks WithFailures(RankHooks hooks, Rank* rank) {
 }  // namespace
 
 bool IsLearning(const RenderContext& context) {
-    return context.learner && !context.learner->IsDone();
+    return context.learners && !context.learners->IsDone();
 }
 
 std::vector<int> FirstDeal(const RenderContext& context, const RenderOptions& options) {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "renderer/input/description.h"
+#include "renderer/scene/cameras/film_settings.h"
 #include "renderer/scene/cameras/lens_system.h"
-#include "renderer/scene/film_settings.h"
 #include "renderer/scene/geometry/animated_transform.h"
 
 namespace lull {

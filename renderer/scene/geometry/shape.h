@@ -34,12 +34,13 @@
 //         bounds the normals that samples and hits have.
 #pragma once
 
+#include "renderer/base/rounding.h"
 #include "renderer/base/visit.h"
 #include "renderer/scene/geometry/shapes/curves.h"
 #include "renderer/scene/geometry/shapes/mesh.h"
 #include "renderer/scene/geometry/shapes/quadric.h"
 #include "renderer/scene/geometry/shapes/revolved.h"
-#include "renderer/scene/texture.h"
+#include "renderer/scene/textures/texture.h"
 
 namespace lull {
 
@@ -72,9 +73,10 @@ struct Coverage {
     bool secondUv = false, vertexAlpha = false;
     bool openBehind = false;  // rays from behind pass
 
-    // Returns whether rays from the front meet all of it.
+    // Returns whether rays from the front meet all of it: a factor of 1 that was rounded is no
+    // reason to let light through.
     bool IsWhole() const {
-        const float least = cutoff >= 0 ? cutoff : 1;
+        const float least = cutoff >= 0 ? cutoff : 1 - float(kRounding);
         return alpha.IsConstant() && !vertexAlpha && factor * alpha.constant >= least;
     }
 };

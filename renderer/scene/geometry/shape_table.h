@@ -6,7 +6,7 @@
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
 #include "renderer/scene/geometry/shape.h"
-#include "renderer/scene/material.h"
+#include "renderer/scene/materials/material.h"
 
 namespace lull {
 

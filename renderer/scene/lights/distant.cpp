@@ -1,5 +1,8 @@
 #include "renderer/scene/lights/distant.h"
 
+#include <numbers>
+
+#include "renderer/base/sampling.h"
 #include "renderer/scene/lights/light_color.h"
 
 namespace lull {
@@ -19,6 +22,29 @@ DistantLight DistantLight::Make(const LightReader& in) {
 std::optional<LightSample> DistantLight::Sample(const Vec3f&, const Vec2f&) const {
     return LightSample{
         .L = L, .wi = w, .pdf = 1, .isDelta = true, .isHidden = false, .isAtInfinity = true};
+}
+
+// The disc's irradiance is pi sin^2 of its radius times L.
+SunLight::SunLight(const DistantLight& parallel, double angle)
+    : w(parallel.w),
+      L(parallel.L / float(std::numbers::pi * Sqr(std::sin(angle / 2)))),
+      height(float(2 * Sqr(std::sin(angle / 4)))),
+      solidAngle(2 * kPi * height),
+      power(parallel.Power()) {}
+
+std::optional<LightSample> SunLight::Sample(const Vec3f&, const Vec2f& u) const {
+    // A point of the unit disk, whose area is that of the cap.
+    const Vec2f d = SampleConcentricDisk(u);
+    const float h = height * std::min(d.squaredNorm(), 1.f);
+    const float across = std::sqrt(height * (2 - h));
+    Vec3f s, t;
+    CoordinateSystem(w, &s, &t);
+    return LightSample{.L = L,
+                       .wi = ((1 - h) * w + across * (d.x() * s + d.y() * t)).normalized(),
+                       .pdf = 1 / solidAngle,
+                       .isDelta = false,
+                       .isHidden = false,
+                       .isAtInfinity = true};
 }
 
 }  // namespace lull

@@ -4,7 +4,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/memory.h"
-#include "renderer/scene/image_lookup.h"
+#include "renderer/scene/textures/image_lookup.h"
 
 namespace lull {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "renderer/base/block_distribution.h"
 #include "renderer/image/image.h"
-#include "renderer/scene/environment_tiles.h"
+#include "renderer/scene/lights/environment_tiles.h"
 
 namespace lull {
 

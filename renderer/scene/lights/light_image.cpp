@@ -1,7 +1,7 @@
 #include "renderer/scene/lights/light_image.h"
 
 #include "renderer/image/image_io.h"
-#include "renderer/scene/image_lookup.h"
+#include "renderer/scene/textures/image_lookup.h"
 
 namespace lull {
 

@@ -1,5 +1,7 @@
 #include "renderer/scene/lights/point.h"
 
+#include <fmt/format.h>
+
 #include "renderer/scene/lights/light_color.h"
 
 namespace lull {
@@ -25,6 +27,125 @@ std::optional<LightSample> PointLight::Sample(const Vec3f& from, const Vec2f&) c
 }
 
 std::optional<LightBounds> PointLight::Bounds() const {
+    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+}
+
+SpotLight SpotLight::Make(const LightReader& in) {
+    const Parameters& params = in.entity.parameters;
+    const Rgb I = LightColor(in.entity, "I", in.warnings);
+    const float cone = params.GetFloat("coneangle", 30);
+    const float delta = params.GetFloat("conedeltaangle", 5);
+    const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
+    const Vec3f to = params.GetPoint3("to", Vec3f(0, 0, 1));
+    const Vec3f axis = TransformVector(in.entity.worldFromLight, (to - from).normalized());
+    if (!(axis.norm() > 0))
+        throw Error(in.entity.loc, "the spot light's \"from\" and \"to\" coincide");
+    return {TransformPoint(in.entity.worldFromLight, from),
+            axis.normalized(),
+            I,
+            std::cos(cone * kPi / 180),
+            std::cos((cone - delta) * kPi / 180),
+            in.entity.name == "spot-squared"};
+}
+
+std::optional<LightSample> SpotLight::Sample(const Vec3f& from, const Vec2f&) const {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0)) return {};
+    const Vec3f wi = d / std::sqrt(distance2);
+    const float cosTheta = -wi.dot(axis);
+    if (cosTheta < cosTotalWidth) return {};
+    const float x = cosTheta >= cosFalloffStart
+                        ? 1.f
+                        : (cosTheta - cosTotalWidth) / (cosFalloffStart - cosTotalWidth);
+    const Rgb L = I * ((isSquared ? Sqr(x) : Sqr(Sqr(x))) / distance2);
+    if (!IsFinite(L)) return {};
+    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
+}
+
+// Within the cone the light is taken as bright as a point light of this intensity; it leaves along
+// "normals" up to where it begins to fall off.
+std::optional<LightBounds> SpotLight::Bounds() const {
+    const float start = std::acos(std::clamp(cosFalloffStart, -1.f, 1.f));
+    const float total = std::acos(std::clamp(cosTotalWidth, -1.f, 1.f));
+    return LightBounds{.box = {p, p},
+                       .axis = axis,
+                       .cosNormals = std::cos(std::clamp(start, 0.f, total)),
+                       .cosEmission = std::cos(std::clamp(total - start, 0.f, total) + 1e-3f),
+                       .power = BoundedPower(4 * kPi * I)};
+}
+
+GoniometricLight GoniometricLight::Make(const LightReader& in) {
+    const Rgb I = LightColor(in.entity, "I", in.warnings);
+    return {TransformPoint(in.entity.worldFromLight, Vec3f::Zero()), I,
+            in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(),
+            ReadLightImage(in)};
+}
+
+std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from, const Vec2f&) const {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0)) return {};
+    const Vec3f wi = d / std::sqrt(distance2);
+    Rgb L = I / distance2;
+    if (image) {
+        const Vec3f w = (lightFromWorld * -wi).normalized();
+        const float phi = std::atan2(w.z(), w.x());
+        L *= image->Lookup({(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
+                            std::acos(std::clamp(w.y(), -1.f, 1.f)) * kInvPi});
+    }
+    if (!IsFinite(L)) return {};
+    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
+}
+
+std::optional<LightBounds> GoniometricLight::Bounds() const {
+    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+}
+
+ProjectionLight ProjectionLight::Make(const LightReader& in) {
+    const Parameters& params = in.entity.parameters;
+    ProjectionLight light;
+    light.p = TransformPoint(in.entity.worldFromLight, Vec3f::Zero());
+    light.I = LightColor(in.entity, "I", in.warnings);
+    light.lightFromWorld = in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
+    const float fov = params.GetFloat("fov", 45);
+    if (!(fov > 0 && fov < 180))
+        throw Error(in.entity.loc,
+                    fmt::format("the projection light's \"fov\" is {} degrees; it has "
+                                "to lie between 0 and 180",
+                                fov));
+    light.perTangent = 1 / std::tan(fov * kPi / 360);
+    light.image = ReadLightImage(in);
+    const float aspect =
+        light.image ? float(light.image->image.width) / float(light.image->image.height) : 1;
+    light.screen = aspect > 1 ? Vec2f(aspect, 1) : Vec2f(1, 1 / aspect);
+    return light;
+}
+
+std::optional<LightSample> ProjectionLight::Sample(const Vec3f& from, const Vec2f&) const {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0)) return {};
+    const Vec3f wi = d / std::sqrt(distance2);
+    const Vec3f w = lightFromWorld * -wi;
+    constexpr float kHither = 1e-3f;  // pbrt-v3's near plane
+    if (!(w.z() >= kHither)) return {};
+    const Vec2f q = w.head<2>() * (perTangent / w.z());
+    if (!(q.cwiseAbs().array() <= screen.array()).all()) return {};
+    Rgb L = I / distance2;
+    if (image) L *= image->Lookup((q + screen).cwiseQuotient(2 * screen));
+    if (!IsFinite(L)) return {};
+    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
+}
+
+Rgb ProjectionLight::Power() const {
+    // The cone to the corner of the image, as if that were filled (pbrt-v3).
+    const float cosCorner = 1 / std::sqrt(1 + (screen / perTangent).squaredNorm());
+    const Rgb mean = image ? image->mean : Rgb(Rgb::Ones());
+    return 2 * kPi * (1 - cosCorner) * I * mean;
+}
+
+std::optional<LightBounds> ProjectionLight::Bounds() const {
     return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
 }
 

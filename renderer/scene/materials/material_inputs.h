@@ -25,8 +25,8 @@
 
 #include "renderer/bsdf/bsdf.h"
 #include "renderer/scene/interaction.h"
-#include "renderer/scene/materials/normal_map.h"
-#include "renderer/scene/texture.h"
+#include "renderer/scene/materials/tilt.h"
+#include "renderer/scene/textures/texture.h"
 
 namespace lull {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "renderer/scene/media/presets.h"
+#include "renderer/bsdf/medium_presets.h"
 
 namespace lull {
 namespace {

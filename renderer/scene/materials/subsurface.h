@@ -2,8 +2,8 @@
 // elsewhere, given by their coefficients ("subsurface") or their appearance ("kdsubsurface").
 #pragma once
 
-#include "renderer/scene/diffusion_profile.h"
-#include "renderer/scene/materials/glass.h"
+#include "renderer/bsdf/diffusion_profile.h"
+#include "renderer/scene/materials/basic.h"
 
 namespace lull {
 

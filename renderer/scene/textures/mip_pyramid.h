@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "renderer/base/math.h"
-#include "renderer/scene/image_lookup.h"
+#include "renderer/scene/textures/image_lookup.h"
 
 namespace lull {
 

@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "renderer/input/description.h"
-#include "renderer/scene/texture.h"
+#include "renderer/scene/textures/texture.h"
 #include "renderer/scene/textures/texture_image.h"
 
 namespace lull {

@@ -8,9 +8,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "stopping/lab/evaluation/probit.h"
 #include "stopping/lab/evaluation/roc.h"
 #include "stopping/lab/evaluation/simulation.h"
+#include "stopping/lab/evaluation/statistics.h"
 #include "stopping/lab/recordings/extension.h"
 #include "stopping/network/human_range.h"
 #include "stopping/rules/rule_table.h"

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "stopping/lab/evaluation/rank_correlation.h"
 #include "stopping/lab/evaluation/roc.h"
+#include "stopping/lab/evaluation/statistics.h"
 
 namespace lull {
 

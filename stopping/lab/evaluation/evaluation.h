@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/lab/evaluation/bootstrap.h"
+#include "stopping/lab/evaluation/statistics.h"
 #include "stopping/network/human_range.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "renderer/image/tone_map.h"
+#include "renderer/image/grade.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <ctime>
 #include <memory>
 
+#include "renderer/progress/time_limit.h"
 #include "renderer/render/render.h"
-#include "renderer/render/time_limit.h"
 #include "stopping/rules/lnoise.h"
 #include "tests/renderer/render/synthetic_samples.h"
 

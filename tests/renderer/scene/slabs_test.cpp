@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/scene/geometry/shapes/mesh.h"
+
 namespace lull::slabs_test {
 namespace {
 

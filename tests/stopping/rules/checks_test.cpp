@@ -1,4 +1,4 @@
-#include "stopping/rules/checks.h"
+#include "stopping/rules/rule.h"
 
 #include <gtest/gtest.h>
 

@@ -42,6 +42,7 @@ bool HasArea(const Revolved&);
 std::optional<float> Intersect(const Revolved&, const Ray&);
 void Interact(const Revolved&, const Ray&, const Hit&, SurfaceNeeds, SurfaceInteraction*);
 std::optional<ShapeSample> Sample(const Revolved&, const Vec3f& from, const Vec2f& u);
+ShapeSample SampleArea(const Revolved&, const Vec2f& u);
 float Pdf(const Revolved&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
 
 }  // namespace lull

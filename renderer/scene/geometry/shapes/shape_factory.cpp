@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/rounding.h"
 #include "renderer/input/loop_subdivision.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/scene/geometry/shapes/curve_reader.h"
@@ -223,12 +222,9 @@ std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEn
         textures.GetFloat(entity, "coverage", 1), params.GetFloat("coveragefactor", 1),
         params.GetFloat("alphacutoff", -1),       params.GetInt("coverageuv", 0) == 1,
         params.GetBool("coveragecolors", false),  params.GetBool("openbehind", false)};
-    const bool isConstant = coverage.alpha.IsConstant() && !coverage.vertexAlpha;
-    // A factor of 1 that was rounded is no reason to let light through.
-    const float enough = coverage.cutoff >= 0 ? coverage.cutoff : 1 - float(kRounding);
-    const bool isWhole = isConstant && coverage.factor * coverage.alpha.constant >= enough;
-    if (isWhole && !coverage.openBehind) return {};
-    if (isWhole) coverage.factor = 1;
+    if (!coverage.IsWhole()) return coverage;
+    if (!coverage.openBehind) return {};
+    coverage.factor = 1;
     return coverage;
 }
 

@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "renderer/render/guide_learning.h"
+#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/peers.h"
 #include "renderer/render/ranks/deal.h"
@@ -512,14 +512,14 @@ TEST(Ranks, LearnTheSame) {
     const auto scene = MakeSphere();
     const auto render = [&](int ranks, const Shared* before, std::vector<std::byte>* learned,
                             const Habits& how = {}, int64_t tilesOfFirst = 1 << 30) {
-        std::vector<std::unique_ptr<GuideLearner>> learners;
+        std::vector<std::unique_ptr<Learners>> learners;
         for (int rank = 0; rank < std::max(1, ranks); ++rank)
-            learners.push_back(std::make_unique<GuideLearner>(
-                *scene, LearningOptions{.isShort = true}, kImage.Area()));
+            learners.push_back(std::make_unique<Learners>(*scene, LearningOptions{.isShort = true},
+                                                          kImage.Area()));
         if (before) learners[0]->Take(*learned, *before->film);
         std::atomic<int64_t> left = tilesOfFirst;
         const auto change = [&](RenderSetup* o, int rank) {
-            o->learner = learners[size_t(rank)].get();
+            o->learners = learners[size_t(rank)].get();
             o->rankPatience = 1;
             o->schedule.cap = 120;
             if (rank == 0) o->isCancelled = [&] { return --left < 0; };
@@ -569,19 +569,27 @@ TEST(Ranks, ShareLightPaths) {
                             std::vector<std::byte>* learned = nullptr, const Habits& how = {},
                             int64_t tilesOfFirst = 1 << 30) {
         std::vector<std::unique_ptr<LightRounds>> lights;
-        for (int rank = 0; rank < std::max(1, ranks); ++rank)
+        std::vector<std::unique_ptr<Learners>> learners;
+        for (int rank = 0; rank < std::max(1, ranks); ++rank) {
             lights.push_back(std::make_unique<LightRounds>(*scene, whole, SamplerKind::Random, 0));
-        if (before) lights[0]->Take(*learned);
+            learners.push_back(std::make_unique<Learners>(
+                *scene, LearningOptions{.mode = GuideMode::Off}, kImage.Area()));
+        }
+        if (before) learners[0]->Take(*learned, *before->film);
         std::atomic<int64_t> left = tilesOfFirst;
         const auto change = [&](RenderSetup* o, int rank) {
             o->light = lights[size_t(rank)].get();
+            o->learners = learners[size_t(rank)].get();
             o->rankPatience = 1;
             if (rank == 0) o->isCancelled = [&] { return --left < 0; };
         };
         Shared shared = RenderShared(
             ranks, change, before,
-            [&](int rank) { return SamplesOf(*scene, *lights[size_t(rank)]); }, how, true);
-        if (learned) *learned = lights[0]->Save();
+            [&](int rank) {
+                return SamplesOf(*scene, *learners[size_t(rank)], lights[size_t(rank)].get());
+            },
+            how, true);
+        if (learned) *learned = learners[0]->Save();
         return shared;
     };
     const Shared reference = render(0);

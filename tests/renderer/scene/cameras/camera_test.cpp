@@ -4,7 +4,7 @@
 
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
-#include "tests/renderer/scene/texture_builder.h"
+#include "tests/renderer/scene/textures/texture_builder.h"
 
 namespace lull {
 namespace {

@@ -7,7 +7,7 @@
 #include "renderer/scene/geometry/shapes/curve_reader.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
-#include "tests/renderer/scene/texture_builder.h"
+#include "tests/renderer/scene/textures/texture_builder.h"
 
 namespace lull {
 namespace {

@@ -1,0 +1,38 @@
+#include "renderer/lab/commands/lab_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+void AddSplitOption(CLI::App& app, std::string* file, const std::string& help) {
+    const std::string kind = "paper:";
+    app.add_option_function<std::string>(
+           "--split",
+           [=](const std::string& text) {
+               if (!text.starts_with(kind) || text.size() == kind.size())
+                   throw CLI::ValidationError("--split", text + " is not paper:FILE");
+               *file = text.substr(kind.size());
+           },
+           help)
+        ->type_name("paper:FILE");
+}
+
+void AddViewingOption(CLI::App& app, DisplayModel* display) {
+    app.add_option_function<std::string>(
+           "--viewing",
+           [display](const std::string& text) {
+               try {
+                   *display = ParseDisplay(text);
+               } catch (const Error& e) {
+                   throw CLI::ValidationError("--viewing", e.what());
+               }
+           },
+           "Display for visible differences: peak luminance in cd/m2, pixels per degree\n"
+           "and ambient light in lux [" +
+               NameOf(DisplayModel()) + "]")
+        ->type_name("Lcd,Nppd,Elux");
+}
+
+}  // namespace lull

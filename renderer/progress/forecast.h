@@ -1,0 +1,83 @@
+// Predicts when blocks will stop, from how the number that their rule compares has gone so far.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "renderer/schedule/schedule.h"
+#include "stopping/rules/criterion.h"
+#include "stopping/rules/trend.h"
+
+namespace lull {
+
+// Follows the number that a rule compares for one block, as its level above the threshold: the
+// logarithm of the ratio of both or, of probabilities, of their odds; of the noise that a network
+// looks at, where that is all. Takes 2.3 KiB, however long the render.
+class StopTrend {
+  public:
+    explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
+
+    // Adds a decision of the criterion at `spp` > 0, which increases. `variance` is that of the
+    // BlockView; a change of it discards all earlier decisions. `noise` is
+    // Criterion::NoiseTold(): for a rule that has it, a decision without it (one from a
+    // checkpoint) is ignored.
+    void Add(int spp, const Decision& decision, double variance = 1,
+             std::optional<double> noise = {});
+
+    // Describes the last two doublings by a straight line of the level over Abscissa(). Levels
+    // above `certain` are left out: a network that is as sure as it can be does not say by how
+    // much.
+    struct Line {
+        double level = 0;  // at the last spp
+        double slope = 0;  // 0: not to be seen yet
+        int points = 0;    // that the slope is seen in, eight a doubling
+    };
+    Line Fit(double certain) const;
+    double HighestLevel() const { return highest; }  // so far
+
+    const RuleTrend& Rule() const { return rule; }
+    // Returns whether a level is of odds, which fall as fast as a network likes.
+    bool IsOfOdds() const { return rule.kind == RuleTrend::Probability && rule.undecided == 0; }
+
+    // Converts spp to the abscissa over which levels are straight lines, and back: -log(1/spp -
+    // 1/N) for a rule that compares with a picture at N spp, else log(spp).
+    double Abscissa(double spp) const;
+    double SppAt(double abscissa) const;
+
+    int LastSpp() const { return lastSpp; }  // 0: the block has not been checked
+    double Threshold() const { return threshold; }
+    // Returns the spp that the votes in a row still take, at the least.
+    int VotesLeft() const;
+
+  private:
+    double Reference() const { return variance * rule.reference; }
+
+    static constexpr int kBinsPerOctave = 8, kBins = 24 * kBinsPerOctave;
+    static int PlaceOf(int spp);
+
+    struct Bin {
+        float abscissa = 0, level = 0, count = 0;  // sums
+    };
+
+    RuleTrend rule;
+    double variance = 1;
+    std::array<Bin, kBins> bins = {};
+    int lastSpp = 0, spacing = 0, votes = 0;
+    double threshold = 0, highest = 0;
+};
+
+// Returns the spp at which each block stops: its own where it has stopped, a predicted one between
+// its spp and the cap where it has not, its leader's where it does not vote. Blocks without a
+// prediction take at least the median of the others; nothing is returned if there is none at all.
+// `trends` has one for each block.
+//
+// The error of a Monte Carlo estimate falls as a power of the samples, with the exponent -1/2 if
+// they are independent: in logarithms a line. It is fitted by the median of the slopes between any
+// two points (Theil 1950, Sen 1968), so that no single pass matters; where a block has shown little
+// of it, the slope of the other blocks counts for more.
+std::optional<std::vector<double>> PredictStops(std::span<const StopTrend> trends,
+                                                std::span<const Block> blocks, int cap);
+
+}  // namespace lull

@@ -1,0 +1,167 @@
+#include "renderer/progress/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/base/say.h"
+
+namespace lull {
+
+namespace {
+
+struct TimeLeft {
+    // The end of all work, the predicted end, the end of blocks that all go to the cap, or a time
+    // limit, at which adaptive renders end at the latest.
+    enum class End { Work, Prediction, Cap, Limit };
+
+    double seconds;
+    End end;
+
+    bool IsBound() const { return end == End::Cap || end == End::Limit; }
+};
+
+// Returns how long it takes from here; nothing where nobody knows.
+std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool adaptive) {
+    using End = TimeLeft::End;
+    std::optional<TimeLeft> left;
+    if (p.samplesToCap == 0)
+        left = {0, adaptive ? End::Cap : End::Work};
+    else if (adaptive && p.predictedSeconds)
+        left = {*p.predictedSeconds, End::Prediction};
+    else if (rate > 0)
+        left = {double(p.samplesToCap) / rate, adaptive ? End::Cap : End::Work};
+    if (!p.secondsLeft) return left;
+    const double clock = std::max(0.0, *p.secondsLeft);
+    if (!left || clock < left->seconds) left = {clock, adaptive ? End::Limit : End::Work};
+    return left;
+}
+
+std::string TextOf(const TimeLeft& left) {
+    const std::string time = FormatDuration(left.seconds);
+    switch (left.end) {
+        case TimeLeft::End::Prediction:
+            return "about " + time + " left";
+        case TimeLeft::End::Cap:
+            return time + " to the cap";
+        case TimeLeft::End::Limit:
+            return "at most " + time + " left";
+        default:
+            return time + " left";
+    }
+}
+
+// Returns the columns of a terminal.
+int ColumnsOf(std::FILE* stream) {
+    constexpr int usual = 80;
+    winsize size = {};
+    return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+}
+
+}  // namespace
+
+void RateMeter::Add(const RenderProgress& p) {
+    history.push_back(p);
+    // Keep one entry from before the window, so that it is always covered.
+    while (history.size() > 2 && history[1].seconds <= p.seconds - window) history.pop_front();
+}
+
+double RateMeter::SamplesPerSecond() const {
+    if (history.empty()) return 0;
+    const RenderProgress& last = history.back();
+    // Measure from the start until the window has moved off it.
+    const bool fromStart = last.seconds <= window || history.size() < 2;
+    const double seconds = last.seconds - (fromStart ? 0 : history.front().seconds);
+    const int64_t samples = last.samples - (fromStart ? 0 : history.front().samples);
+    return seconds > 0 ? double(samples) / seconds : 0;
+}
+
+std::string FormatDuration(double seconds) {
+    if (!(seconds >= 0)) seconds = 0;
+    if (seconds < 59.95) return fmt::format("{:.1f}s", seconds);
+    const int64_t s = int64_t(std::min(seconds, 1e15) + 0.5);
+    if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
+    return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+std::string FormatCount(double count) {
+    static constexpr const char* units[] = {"", "k", "M", "G", "T"};
+    int unit = 0;
+    while (count >= 999.5 && unit < 4) {
+        count /= 1000;
+        ++unit;
+    }
+    const int decimals = unit == 0 || count >= 99.95 ? 0 : count >= 9.995 ? 1 : 2;
+    return fmt::format("{:.{}f}{}{}", count, decimals, unit > 0 ? " " : "", units[unit]);
+}
+
+double ShareDone(const RenderProgress& p) {
+    const double all = double(p.samples) + p.predictedSamples.value_or(double(p.samplesToCap));
+    return all > 0 ? double(p.samples) / all : 1;
+}
+
+std::string ProgressText(const ProgressState& state, int columns) {
+    const RenderProgress& p = state.progress;
+    // Rounded down, so that 100 means done.
+    const std::string percent = fmt::format("{:3}%", int(100 * state.share));
+    const std::string blocks = fmt::format("{}/{}", p.stoppedBlocks, p.blocks);
+    const std::string rate = FormatCount(state.rate), time = FormatDuration(p.seconds);
+    std::string left;
+    if (const auto l = Remaining(p, state.rate, state.adaptive); p.samplesToCap > 0 && l)
+        left = "  " + TextOf(*l);
+    const std::string forms[] = {
+        fmt::format("{}  {} blocks done  median {} spp  {} samples/s  {} elapsed{}", percent,
+                    blocks, p.medianSpp, rate, time, left),
+        fmt::format("{}  {} blocks  {} spp  {}/s  {}{}", percent, blocks, p.medianSpp, rate, time,
+                    left),
+        fmt::format("{}  {} blocks  {}{}", percent, blocks, time, left),
+        fmt::format("{}  {}{}", percent, time, left), percent};
+    for (const std::string& form : forms)
+        if (columns <= 0 || int(form.size()) <= columns) return form;
+    return percent.substr(0, size_t(columns));
+}
+
+std::string ProgressJson(const ProgressState& state) {
+    const RenderProgress& p = state.progress;
+    const std::optional<TimeLeft> left = Remaining(p, state.rate, state.adaptive);
+    const std::string remaining = p.samplesToCap == 0 ? "0"
+                                  : left              ? fmt::format("{:.3f}", left->seconds)
+                                                      : "null";
+    return fmt::format(
+        R"({{"event":"progress","percent":{:.2f},"blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
+        R"("medianSpp":{},"samples":{},"samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},)"
+        R"("remainingSeconds":{},"remainingIsUpperBound":{}}})",
+        100 * state.share, p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp,
+        p.samples, state.rate, p.seconds, remaining, left ? left->IsBound() : state.adaptive);
+}
+
+void ProgressPrinter::Print(const RenderProgress& p) {
+    if (style == ProgressStyle::Silent) return;
+    rate.Add(p);
+    share = std::max(share, ShareDone(p));
+    const ProgressState state{p, share, rate.SamplesPerSecond(), adaptive};
+    if (style == ProgressStyle::Plain && p.seconds < nextPlainLine) return;
+    last = p;
+    if (style == ProgressStyle::Json) {
+        SayTo(stream, "{}\n", ProgressJson(state));
+    } else if (style == ProgressStyle::Line) {
+        // Return to the start of the line and, at its end, erase the earlier text. A line that is
+        // full would continue in the next.
+        SayTo(stream, "\r{}\x1b[K", ProgressText(state, ColumnsOf(stream) - 1));
+    } else {
+        SayTo(stream, "{}\n", ProgressText(state));
+        nextPlainLine = p.seconds + 30;
+    }
+    std::fflush(stream);
+}
+
+void ProgressPrinter::Finish(const RenderProgress& p) {
+    nextPlainLine = 0;
+    if (last != p) Print(p);
+    if (style == ProgressStyle::Line) SayTo(stream, "\n");
+    std::fflush(stream);
+}
+
+}  // namespace lull

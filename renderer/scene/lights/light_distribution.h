@@ -1,0 +1,126 @@
+// Chooses a light for a point: uniformly, by power, or by its contribution near the point.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <span>
+
+#include "renderer/base/memory.h"
+#include "renderer/base/sampling.h"
+#include "renderer/scene/lights/light_hierarchy.h"
+#include "renderer/scene/lights/light_probes.h"
+#include "renderer/scene/lights/voxel_grid.h"
+
+namespace lull {
+
+// The probabilities of choosing each light: as running sums, the last of which is 1, or as
+// those of a hierarchy for a receiver.
+class LightChoice {
+  public:
+    explicit LightChoice(std::span<const float> sums) : sums(sums) {}
+    LightChoice(const LightHierarchy& hierarchy, const Receiver& receiver)
+        : hierarchy(&hierarchy), receiver(receiver) {}
+    LightChoice() = default;
+
+    // Chooses a light with u in [0, 1); `pmf` receives its probability, which is positive except
+    // for hierarchies in which no light reaches the receiver.
+    int Sample(float u, float* pmf) const {
+        if (hierarchy) [[unlikely]]
+            return hierarchy->Sample(receiver, u, pmf);
+        // Count the sums that u has passed; for short tables this is fastest without a branch.
+        constexpr size_t kShort = 32;
+        int i = 0;
+        if (sums.size() <= kShort)
+            for (const float s : sums) i += s <= u;
+        else
+            i = int(std::upper_bound(sums.begin(), sums.end(), u) - sums.begin());
+        *pmf = Pmf(i);
+        return i;
+    }
+    float Pmf(int i) const {
+        if (hierarchy) [[unlikely]]
+            return hierarchy->Pmf(receiver, i);
+        return i == 0 ? sums[0] : sums[i] - sums[i - 1];
+    }
+
+  private:
+    std::span<const float> sums;
+    const LightHierarchy* hierarchy = nullptr;
+    Receiver receiver;
+};
+
+// Follows pbrt-v3's light sampling strategies; "spatial", with a table for every voxel of the
+// scene, is its default.
+class LightDistribution {
+  public:
+    // Chooses by fixed nonnegative weights, one per light.
+    explicit LightDistribution(std::span<const float> weights);
+
+    // Chooses among `count` lights by the voxel of p within the scene's bounds.
+    LightDistribution(int count, const Bounds3f& bounds);
+
+    // Returns the choice for a voxel, which stays valid as long as this object. The table of a
+    // voxel is made when first needed; it depends on the voxel alone, so that the order of threads
+    // cannot change it. contribution(light, probes, places) returns what Contribution() does.
+    template <typename Contribution>
+    LightChoice Lookup(size_t voxel, const Contribution& contribution) const {
+        const std::span<float> sums(tables + voxel * lightCount, lightCount);
+        // A table that has not been made is all zeros; its last sum is written last, and shows it.
+        std::atomic_ref<float> last(sums.back());
+        if (last.load(std::memory_order_acquire) == 0) [[unlikely]]
+            MakeTable(voxel, contribution, sums);
+        return LightChoice(sums);
+    }
+
+    // Starts to load the table of a voxel, which is usually far away in memory: its first sums and
+    // the last one, which Lookup() looks at.
+    void Prefetch(size_t voxel) const {
+        const float* table = tables + voxel * lightCount;
+        lull::Prefetch(table);
+        lull::Prefetch(table + lightCount - 1);
+    }
+
+    // Returns the probes of tables of places; there are none of fixed weights.
+    const LightProbes& Probes() const { return *probes; }
+    // Returns the voxels that the tables are for; of fixed weights it is one.
+    const VoxelGrid& Grid() const { return grid; }
+
+  private:
+    static constexpr int kMaxVoxels = 64;  // along the longest axis
+    static constexpr int kLocks = 64;
+
+    // Makes the table of the voxel, unless another thread has by now. Separate, as Lookup() would
+    // be too long to be inlined with it.
+    template <typename Contribution>
+    [[gnu::noinline]] void MakeTable(size_t voxel, const Contribution& contribution,
+                                     std::span<float> sums) const {
+        std::lock_guard lock(locks[voxel % kLocks]);
+        std::atomic_ref<float> last(sums.back());
+        if (last.load(std::memory_order_relaxed) != 0) return;
+        const std::vector<float> made = Compute(voxel, contribution);
+        std::copy(made.begin(), made.end() - 1, sums.begin());
+        last.store(made.back(), std::memory_order_release);
+    }
+
+    template <typename Contribution>
+    std::vector<float> Compute(size_t voxel, const Contribution& contribution) const {
+        const LightProbes::Places places = probes->PlacesIn(grid.BoundsOf(voxel));
+        std::vector<float> sums(lightCount);
+        for (int k = 0; k < lightCount; ++k) sums[k] = contribution(k, *probes, places);
+        return RunningSums(std::move(sums));
+    }
+    std::vector<float> RunningSums(std::vector<float> contributions) const;
+    void AllocateTables();
+
+    int lightCount = 0;
+    VoxelGrid grid;
+    std::unique_ptr<const LightProbes> probes;  // null: fixed weights
+    // One table after another, voxels in x, y, z order. Only pages of voxels that paths visit take
+    // memory.
+    LazyZeros memory;
+    float* tables = nullptr;
+    mutable std::array<std::mutex, kLocks> locks;
+};
+
+}  // namespace lull

@@ -1,0 +1,140 @@
+#include "renderer/scene/lights/light_emission.h"
+
+namespace lull {
+namespace {
+
+constexpr float kUniformSphere = 1 / (4 * kPi);
+
+// A cone of directions about an axis.
+struct Cone {
+    Vec3f axis = Vec3f::UnitZ();
+    float cosAngle = -1;
+
+    float Density() const { return 1 / (2 * kPi * (1 - cosAngle)); }
+    bool Has(const Vec3f& w) const { return w.dot(axis) >= cosAngle; }
+    Vec3f Sample(const Vec2f& u) const {
+        const float cosine = Lerp(u.x(), cosAngle, 1.f), sine = SafeSqrt(1 - Sqr(cosine));
+        const float phi = 2 * kPi * u.y();
+        Vec3f s, t;
+        CoordinateSystem(axis, &s, &t);
+        return (sine * std::cos(phi) * s + sine * std::sin(phi) * t + cosine * axis).normalized();
+    }
+};
+
+// Return the cones that lights of one place shine into.
+Cone ConeOf(const PointLight&) { return {}; }
+Cone ConeOf(const GoniometricLight&) { return {}; }
+Cone ConeOf(const SpotLight& light) {
+    return {light.axis, std::clamp(light.cosTotalWidth, -1.f, 1 - 1e-6f)};
+}
+// A transform that stretches the picture could make the cone wider: then all directions do.
+Cone ConeOf(const ProjectionLight& light) {
+    const Mat3f& m = light.lightFromWorld;
+    const Mat3f square = m * m.transpose();
+    const float scale2 = square.trace() / 3;
+    if (!((square - scale2 * Mat3f::Identity()).norm() <= 1e-3f * scale2)) return {};
+    const float tangent = light.screen.norm() / light.perTangent;
+    return {Vec3f(m.transpose().col(2)).normalized(),
+            std::min(1 / std::sqrt(1 + Sqr(1.001f * tangent)), 1 - 1e-6f)};
+}
+
+// Returns the luminance of a light's power, for its choice; 0 if float cannot hold it. Of the sky
+// it is that from one steradian, as in pbrt-v3: paths from the camera find it anyway.
+float Weight(const Light& light) {
+    const float power = Luminance(std::visit([](const auto& l) { return l.Power(); }, light));
+    return power > 0 && std::isfinite(power) ? power : 0;
+}
+
+float CosineDensity(const AreaLight& light, const Vec3f& n, const Vec3f& w) {
+    const float cosine = n.dot(w) * kInvPi;
+    return light.twoSided ? 0.5f * std::abs(cosine) : std::max(0.f, cosine);
+}
+
+}  // namespace
+
+LightEmission::LightEmission(const LightTable& lights, const Bounds3f& bounds) : lights(lights) {
+    if (!bounds.IsEmpty()) {
+        center = 0.5f * (bounds.lower + bounds.upper);
+        // Farther out than the scene's own corners, by more than rounding.
+        radius = std::max(1.001f * (bounds.upper - center).norm(), 1e-10f);
+    }
+    std::vector<float> weights;
+    for (int i = 0; i < lights.Count(); ++i) weights.push_back(Weight(lights[i]));
+    choice = Distribution1D(weights);
+    anyPower = choice.Integral() > 0;
+}
+
+std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
+                                                const Vec2f& direction) const {
+    if (!anyPower) return {};
+    EmittedRay ray;
+    float pmf;
+    ray.light = choice.SampleDiscrete(u, &pmf);
+    const Light& light = lights[ray.light];
+    const bool isLit = Visit(light, [&]<typename L>(const L& l) {
+        if constexpr (L::kType == LightType::Area) {
+            const ShapeSample s =
+                VisitEmitter(l.surface, [&](const auto& e) { return SampleArea(e, origin); });
+            ray.p = s.p, ray.pError = s.pError, ray.n = s.n;
+            Vec2f v = direction;
+            float side = 1;
+            if (l.twoSided) {
+                side = v.x() < 0.5f ? 1.f : -1.f;
+                v.x() = std::min(v.x() < 0.5f ? 2 * v.x() : 2 * v.x() - 1, kOneMinusEpsilon);
+            }
+            const Vec3f local = SampleCosineHemisphere(v);
+            Frame frame{{}, {}, side * s.n};
+            CoordinateSystem(frame.n, &frame.s, &frame.t);
+            ray.w = frame.FromLocal(local).normalized();
+            ray.L = l.Le(s.n, ray.w);
+            if (l.map) {
+                const Vec2f b = SampleUniformTriangle(origin);  // as the triangle does
+                ray.L *= l.map->Covered(l.triangle, b.y(), 1 - b.x() - b.y());
+            }
+        } else if constexpr (L::kType == LightType::DeltaPosition) {
+            ray.p = l.p;
+            ray.w = ConeOf(l).Sample(direction);
+            // At a distance of the scene's size, rounding does not turn the direction.
+            const auto lit = l.Sample(l.p + radius * ray.w, Vec2f::Zero());
+            if (!lit) return false;
+            ray.L = lit->L * Sqr(radius);
+        } else {
+            const auto lit = l.Sample(center, direction);
+            if (!lit) return false;
+            ray.w = -lit->wi;
+            ray.L = lights.Radiance(ray.light, *lit);
+            ray.isAtInfinity = true;
+            const Vec2f d = radius * SampleConcentricDisk(origin);
+            Vec3f s, t;
+            CoordinateSystem(ray.w, &s, &t);
+            ray.p = center - radius * ray.w + d.x() * s + d.y() * t;
+        }
+        return true;
+    });
+    if (!isLit || IsBlack(ray.L) || !IsFinite(ray.L)) return {};
+    ray.density = Density(ray.light, ray.n, ray.w);
+    if (!(ray.density.origin > 0 && ray.density.onward > 0)) return {};
+    return ray;
+}
+
+EmissionDensity LightEmission::Density(int index, const Vec3f& n, const Vec3f& w) const {
+    const float pmf = Pmf(index);
+    if (!(pmf > 0)) return {};
+    return Visit(lights[index], [&]<typename L>(const L& l) -> EmissionDensity {
+        if constexpr (L::kType == LightType::Area) {
+            return {pmf / l.Area(), CosineDensity(l, n, w)};
+        } else if constexpr (L::kType == LightType::DeltaPosition) {
+            const Cone cone = ConeOf(l);
+            if (cone.cosAngle == -1) return {pmf, kUniformSphere};
+            return {pmf, cone.Has(w) ? cone.Density() : 0};
+        } else {
+            const float across = 1 / (kPi * Sqr(radius));
+            if constexpr (L::kType == LightType::Infinite)
+                return {pmf * l.LeAndPdf(-w).pdf, across};
+            else
+                return {pmf, across};
+        }
+    });
+}
+
+}  // namespace lull

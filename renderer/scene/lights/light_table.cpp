@@ -1,0 +1,237 @@
+#include "renderer/scene/lights/light_table.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "renderer/base/rounding.h"
+#include "renderer/scene/geometry/shape_table.h"
+#include "renderer/scene/kinds.h"
+#include "renderer/scene/light_groups.h"
+#include "renderer/scene/lights/light_color.h"
+#include "stopping/base/input_file.h"
+
+namespace lull {
+namespace {
+
+// More lights than these are chosen by a hierarchy. At 100 lamps both have the same variance, and
+// tables, which sample every light 128 times for each voxel, take longer than many a render.
+constexpr size_t kMostTableLights = 100;
+
+struct WorldSphere {
+    Vec3f center;
+    float radius;
+};
+
+WorldSphere BoundingSphere(const Bounds3f& bounds) {
+    if (bounds.IsEmpty()) return {Vec3f::Zero(), 1};
+    const Vec3f center = 0.5f * (bounds.lower + bounds.upper);
+    return {center, std::max((bounds.upper - center).norm(), 1e-10f)};
+}
+
+// Adapts makers to the table of kinds.
+template <typename L>
+Light Make(const LightReader& in) {
+    return L::Make(in);
+}
+
+// Makes a parallel light, or one with an "angle" across, degrees.
+Light MakeDistant(const LightReader& in) {
+    const DistantLight parallel = DistantLight::Make(in);
+    const float angle = in.entity.parameters.GetFloat("angle", 0);
+    const auto across = InRange(double(angle), 0, 180);
+    if (!across)
+        throw Error(in.entity.loc,
+                    fmt::format("the distant light's \"angle\" is {:g}; it has to be "
+                                "from 0 to 180 degrees",
+                                angle));
+    // Below, directions of float are all the same.
+    if (*across < 1e-3) return parallel;
+    return SunLight(parallel, *across * std::numbers::pi / 180);
+}
+
+constexpr Kind<Light(const LightReader&)> kLights[] = {
+    {"point", Make<PointLight>},
+    {"spot", Make<SpotLight>},
+    {"spot-squared", Make<SpotLight>},
+    {"distant", MakeDistant},
+    {"infinite", Make<InfiniteLight>},
+    {"exinfinite", Make<InfiniteLight>},
+    {"goniometric", Make<GoniometricLight>},
+    {"projection", Make<ProjectionLight>},
+};
+
+// Makes the light of one LightSource directive; nothing substitutes an unknown kind.
+std::optional<Light> MakeLight(const LightReader& in) {
+    const LightEntity& entity = in.entity;
+    entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
+    entity.parameters.GetInt("nsamples", 1);
+    LightGroupOf(entity);
+    const auto* kind = FindKind(kLights, entity.name);
+    if (!kind) {
+        in.warnings.Substitute(entity.loc,
+                               fmt::format("LightSource \"{}\" is not supported; {} are",
+                                           Printable(entity.name), NamesOf(kLights)),
+                               "it is left out");
+        return {};
+    }
+    const Light light = kind->make(in);
+    entity.parameters.ReportUnused("LightSource \"" + entity.name + "\"", in.warnings);
+    return light;
+}
+
+// Refuses lights to whose place no ray is traced.
+void CheckReach(const Light& light, const LightEntity& entity, float reach) {
+    std::visit(
+        [&]<typename L>(const L& l) {
+            if constexpr (L::kType == LightType::DeltaPosition)
+                if (!(l.p.template cast<double>().norm() <= double(reach)))
+                    throw Error(entity.loc, fmt::format("LightSource \"{}\" lies farther than "
+                                                        "{:.3g} from the origin, where no ray is "
+                                                        "traced; scale the scene down",
+                                                        entity.name, reach));
+        },
+        light);
+}
+
+// Returns false, with a warning, where another kind of light is to be left out; throws Error where
+// it is not.
+bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
+    if (entity.name == "diffuse" || entity.name == "area") return true;
+    warnings.Substitute(entity.loc,
+                        fmt::format("AreaLightSource \"{}\" is not supported; only \"diffuse\" is",
+                                    Printable(entity.name)),
+                        "it gives no light");
+    return false;
+}
+
+AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
+    const Parameters& params = entity.parameters;
+    AreaLight light;
+    light.L = LightColor(entity, "L", warnings);
+    light.twoSided = params.GetBool("twosided", false);
+    params.GetInt("samples", 1);
+    params.GetInt("nsamples", 1);
+    LightGroupOf(entity);
+    params.ReportUnused("AreaLightSource \"" + entity.name + "\"", warnings);
+    light.isHidden = shape.IsInvisible();
+    return light;
+}
+
+size_t CountLights(const Description& description, const ShapeTable& shapes) {
+    size_t count = description.lights.size();
+    for (size_t i = 0; i < size_t(shapes.worldShapeCount); ++i)
+        if (description.shapes[i].areaLight) count += shapes.shapes[i].PrimitiveCount();
+    return count;
+}
+
+std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
+    std::vector<LightBounds> bounds;
+    bounds.reserve(lights.size());
+    std::vector<int> unbounded;
+    for (const Light& light : lights) {
+        const auto placed = std::visit([](const auto& l) { return l.Bounds(); }, light);
+        if (!placed) unbounded.push_back(int(&light - lights.data()));
+        bounds.push_back(placed.value_or(LightBounds{}));
+    }
+    return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
+}
+
+// Reads the textures of a mesh's emission: "emission", multiplying L, looked up with the second
+// texture coordinates where "emissionuv" is 1, and the alpha textures of the mesh. Returns null
+// where neither is.
+std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const Shape& shape,
+                                                   const TextureTable& textures) {
+    const SpectrumTexture emission = textures.GetSpectrum(entity, "emission", Rgb::Ones());
+    const bool secondUv = entity.parameters.GetInt("emissionuv", 0) == 1;
+    const bool vertexColors = entity.parameters.GetBool("emissioncolors", false);
+    const bool isPlain = !vertexColors && emission.IsConstant() && (emission.constant == 1).all();
+    const bool isWhole = !shape.coverage || shape.coverage->IsWhole();
+    if (!shape.IsMesh() || (isPlain && isWhole)) return {};
+    return std::make_unique<const EmissionMap>(
+        EmissionMap{&textures, &shape, emission, secondUv, vertexColors});
+}
+
+}  // namespace
+
+void LightTable::ChooseByPlace(const Bounds3f& bounds) {
+    distribution = std::make_unique<LightDistribution>(Count(), bounds);
+    evenContributions.assign(lights.size(), -1);
+    const LightProbes& probes = distribution->Probes();
+    for (int i = 0; i < Count(); ++i)
+        if (const LightType type = TypeOf(lights[i]);
+            type == LightType::Infinite || type == LightType::DeltaDirection)
+            evenContributions[i] = Contribution(lights[i], probes, probes.unit);
+}
+
+LightTable::LightTable(const Description& description, ShapeTable& shapes,
+                       const TextureTable& textures, bool asPbrtV3, Warnings& warnings) {
+    const WorldSphere world = BoundingSphere(shapes.bounds);
+    lights.reserve(CountLights(description, shapes));
+    for (const LightEntity& entity : description.lights) {
+        std::optional<Light> light;
+        warnings.Try([&] {
+            light = MakeLight({description, entity, world.radius, !asPbrtV3, warnings});
+            if (light) CheckReach(*light, entity, shapes.reach);
+        });
+        if (!light) continue;
+        entities.push_back(int(&entity - description.lights.data()));
+        lights.push_back(std::move(*light));
+        if (TypeOf(lights.back()) == LightType::Infinite) infinite.push_back(Count() - 1);
+        const auto* sky = std::get_if<InfiniteLight>(&lights.back());
+        if (environment < 0 && sky && sky->Tiles()) environment = Count() - 1;
+    }
+    for (int i = 0; i < shapes.worldShapeCount; ++i) {
+        const auto& entity = description.shapes[i].areaLight;
+        if (!entity || !IsKnownAreaLight(*entity, warnings)) continue;
+        Shape& shape = shapes.shapes[i];
+        std::unique_ptr<const EmissionMap> map = MakeEmissionMap(*entity, shape, textures);
+        AreaLight light = MakeAreaLight(*entity, shape, warnings);
+        light.map = map.get();
+        if (map) emissionMaps.push_back(std::move(map));
+        if (shape.PrimitiveCount() == 0) {
+            warnings.Add(description.shapes[i].loc, "area light without area", "it gives no light");
+            continue;
+        }
+        shape.firstLight = Count();
+        for (uint32_t k = 0; k < shape.PrimitiveCount(); ++k) {
+            light.surface = EmitterOf(shape.geometry, k);
+            if (light.map) {
+                light.triangle = k;
+                light.meanFactor = light.map->Mean(k);
+            }
+            lights.push_back(light);
+        }
+    }
+    if (lights.empty()) return;
+    anyVisible = std::any_of(lights.begin(), lights.end(), IsVisible);
+
+    const Entity& integrator = description.integrator;
+    std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
+    if (strategy != "uniform" && strategy != "power" && strategy != "spatial" &&
+        strategy != "bvh") {
+        warnings.Add(integrator.loc, "unknown lightsamplestrategy, \"spatial\" is used",
+                     Printable(strategy));
+        strategy = "spatial";
+    }
+    const bool isMany = !asPbrtV3 && lights.size() > kMostTableLights;
+    if (strategy == "bvh" || (strategy == "spatial" && isMany)) {
+        hierarchy = MakeHierarchy(lights);
+        return;
+    }
+    std::vector<float> weights(lights.size(), 1.f);
+    if (strategy == "power")
+        for (int i = 0; i < Count(); ++i)
+            weights[i] =
+                Luminance(std::visit([](const auto& light) { return light.Power(); }, lights[i]));
+    if (strategy != "spatial" || lights.size() == 1 || shapes.bounds.IsEmpty())
+        distribution = std::make_unique<LightDistribution>(weights);
+    else
+        ChooseByPlace(shapes.bounds);
+}
+
+std::optional<LightSample> LightTable::Sample(int i, const Vec3f& from, const Vec2f& u) const {
+    return Visit(lights[i], [&](const auto& light) { return light.Sample(from, u); });
+}
+
+}  // namespace lull

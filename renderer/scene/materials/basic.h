@@ -1,0 +1,127 @@
+// pbrt-v3's materials that are a few textures and a few lobes.
+#pragma once
+
+#include "renderer/scene/materials/material_inputs.h"
+#include "renderer/scene/materials/roughness.h"
+
+namespace lull {
+
+// Represents no surface, only the boundary of two media: "none". Paths go straight through.
+struct Interface {
+    explicit Interface(const MaterialReader&) {}
+
+    MaterialTraits Traits(const MaterialReader&) const { return {.needs = kIsInterface}; }
+    // A bump map has nothing to tilt.
+    SurfaceTilt Tilt(const MaterialReader& in) const { return in.BumpMap(), SurfaceTilt(); }
+    void AddLobes(const MaterialInputs&, Bsdf*) const {}
+};
+
+// Represents a diffuse surface.
+struct Matte {
+    SpectrumTexture kd;
+    FloatTexture sigma;  // degrees, clamped to [0, 90]; 0: Lambertian, else Oren-Nayar
+
+    explicit Matte(const MaterialReader& in)
+        : kd(in.Spectrum("Kd", 0.5f)), sigma(in.Float("sigma", 0)) {}
+
+    MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1, kd, sigma); }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Represents a perfect mirror.
+struct Mirror {
+    SpectrumTexture kr;
+
+    explicit Mirror(const MaterialReader& in) : kr(in.Spectrum("Kr", 0.9f)) {}
+
+    MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1, kr); }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Represents a dielectric, smooth or rough.
+struct Glass {
+    SpectrumTexture kr, kt;
+    FloatTexture eta;     // index of refraction
+    Roughness roughness;  // 0 both ways: smooth
+
+    explicit Glass(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
+
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(!IsAlwaysBlack(kr) + !IsAlwaysBlack(kt), kr, kt, eta, roughness);
+    }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Adds the lobes of a dielectric of index `eta`, smooth or rough, and sets the index.
+void AddDielectricLobes(const Rgb& reflected, const Rgb& transmitted, float eta, const Roughness&,
+                        const MaterialInputs&, Bsdf*);
+
+// Represents a rough conductor.
+struct Metal {
+    SpectrumTexture eta, k;  // complex index of refraction; copper's by default
+    Roughness roughness;
+
+    explicit Metal(const MaterialReader& in);
+
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(1, eta, k, roughness);
+    }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Represents a diffuse surface under a glossy coat.
+struct Plastic {
+    SpectrumTexture kd, ks;
+    Roughness roughness;
+
+    explicit Plastic(const MaterialReader& in);
+
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(!IsAlwaysBlack(kd) + !IsAlwaysBlack(ks), kd, ks, roughness);
+    }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// A diffuse base under a glossy coat, which receives the light that the coat does not reflect.
+struct Substrate {
+    SpectrumTexture kd, ks;
+    Roughness roughness;
+
+    explicit Substrate(const MaterialReader& in);
+
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(1, kd, ks, roughness);
+    }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Represents a thin sheet that scatters light to both sides, diffusely and glossily.
+struct Translucent {
+    SpectrumTexture kd, ks, reflect, transmit;
+    Roughness roughness;
+
+    explicit Translucent(const MaterialReader& in);
+
+    MaterialTraits Traits(const MaterialReader& in) const {
+        const int most = (!IsAlwaysBlack(kd) + !IsAlwaysBlack(ks)) *
+                         (!IsAlwaysBlack(reflect) + !IsAlwaysBlack(transmit));
+        return in.TraitsOf(most, kd, ks, reflect, transmit, roughness);
+    }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Represents pbrt's kitchen sink: diffuse, glossy, mirror and glass parts under one opacity.
+struct Uber {
+    SpectrumTexture kd, ks, kr, kt, opacity;
+    FloatTexture eta;  // index of refraction
+    Roughness roughness;
+
+    explicit Uber(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
+
+    MaterialTraits Traits(const MaterialReader& in) const;
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+}  // namespace lull

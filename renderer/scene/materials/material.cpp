@@ -1,0 +1,249 @@
+#include "renderer/scene/materials/material.h"
+
+#include <fmt/format.h>
+
+#include "renderer/scene/kinds.h"
+#include "renderer/scene/materials/basic.h"
+#include "renderer/scene/materials/disney.h"
+#include "renderer/scene/materials/fourier.h"
+#include "renderer/scene/materials/hair.h"
+#include "renderer/scene/materials/metallic_roughness.h"
+#include "renderer/scene/materials/mix.h"
+#include "renderer/scene/materials/subsurface.h"
+#include "renderer/scene/materials/tilt.h"
+#include "stopping/base/input_file.h"
+
+namespace lull {
+namespace {
+
+// The functions of a kind are listed in materials/material_inputs.h.
+using MaterialKind =
+    std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix, Interface,
+                 Disney, Hair, Fourier, MetallicRoughness, Subsurface, KdSubsurface>;
+
+// Adapts constructors to the table of kinds.
+template <typename K>
+MaterialKind Make(const MaterialReader& in) {
+    return K(in);
+}
+
+constexpr Kind<MaterialKind(const MaterialReader&)> kMaterials[] = {
+    {"matte", Make<Matte>},
+    {"plastic", Make<Plastic>},
+    {"metal", Make<Metal>},
+    {"glass", Make<Glass>},
+    {"mirror", Make<Mirror>},
+    {"uber", Make<Uber>},
+    {"substrate", Make<Substrate>},
+    {"translucent", Make<Translucent>},
+    {"mix", Make<Mix>},
+    {"none", Make<Interface>},
+    {"", Make<Interface>},
+    {"disney", Make<Disney>},
+    {"hair", Make<Hair>},
+    {"fourier", Make<Fourier>},
+    {"metallicroughness", Make<MetallicRoughness>},
+    {"subsurface", Make<Subsurface>},
+    {"kdsubsurface", Make<KdSubsurface>},
+};
+
+}  // namespace
+
+struct Material {
+    MaterialKind kind;
+    MaterialTraits traits;  // of the lobes
+    SurfaceTilt tilt;
+    bool isTilted = false;
+    SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of bump maps
+
+    // The lobes where they are constant, so that a hit costs no more than their copy.
+    std::vector<Lobe> constantLobes{};
+    float constantEta = 1;
+};
+
+namespace {
+
+void AddLobes(const Material& material, const MaterialInputs& in, Bsdf* bsdf) {
+    if (material.traits.isConstant) {
+        for (const Lobe& lobe : material.constantLobes) bsdf->Add(lobe);
+        bsdf->SetEta(material.constantEta);
+    } else {
+        std::visit([&](const auto& kind) { kind.AddLobes(in, bsdf); }, material.kind);
+    }
+}
+
+MaterialTraits TraitsOf(const MaterialKind& kind, const MaterialReader& in) {
+    return std::visit([&](const auto& k) { return k.Traits(in); }, kind);
+}
+
+SurfaceTilt TiltOf(const MaterialKind& kind, const MaterialReader& in) {
+    return std::visit(
+        [&](const auto& k) {
+            if constexpr (requires { k.Tilt(in); })
+                return k.Tilt(in);
+            else
+                return in.BumpMap();
+        },
+        kind);
+}
+
+SurfaceNeeds NeedsOf(const SurfaceTilt& tilt, const TextureTable& textures) {
+    SurfaceNeeds needs = kNeedsNothing;
+    if (tilt.bump)
+        needs =
+            kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint | textures.Needs(*tilt.bump);
+    if (tilt.normalMap) {
+        needs = needs | kNeedsTangents | textures.Needs(tilt.normalMap->texture);
+        if (tilt.normalMap->secondUv) needs = needs | kNeedsSecondUv;
+    }
+    return needs;
+}
+
+// Returns why the material cannot be rendered, "" if it can.
+std::string ProblemOf(const MaterialKind& kind, const MaterialReader& in) {
+    const std::string problem = std::visit(
+        [&](const auto& k) {
+            if constexpr (requires { k.Problem(in); })
+                return k.Problem(in);
+            else
+                return std::string();
+        },
+        kind);
+    if (problem.empty() && TraitsOf(kind, in).mostLobes > Bsdf::kMaxLobes)
+        return fmt::format("material \"{}\" can have more than {} lobes", in.entity.name,
+                           Bsdf::kMaxLobes);
+    return problem;
+}
+
+// Makes the lobes of a constant material once and for all.
+void FoldConstants(const MaterialReader& in, Material* m) {
+    if (!m->traits.isConstant) return;
+    Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, Vec3f::UnitZ());
+    const MaterialInputs at{in.textures, TextureContext{Vec3f::Zero(), Vec2f::Zero()}, in.made};
+    std::visit([&](const auto& kind) { kind.AddLobes(at, &bsdf); }, m->kind);
+    m->traits.mostLobes = bsdf.LobeCount(LobeSet::All);
+    for (int i = 0; i < m->traits.mostLobes; ++i) m->constantLobes.push_back(bsdf.At(i));
+    m->constantEta = bsdf.Eta();
+}
+
+Material Complete(const MaterialKind& kind, const MaterialReader& in) {
+    Material m{.kind = kind, .traits = TraitsOf(kind, in), .tilt = TiltOf(kind, in)};
+    m.isTilted = m.tilt.bump || m.tilt.normalMap;
+    m.needs = m.traits.needs | NeedsOf(m.tilt, in.textures);
+    FoldConstants(in, &m);
+    return m;
+}
+
+// Makes the material of an entity; a matte one substitutes unsupported ones.
+Material MakeMaterial(const MaterialReader& in, Warnings& warnings) {
+    const MaterialEntity& entity = in.entity;
+    entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
+    std::string problem = "material \"" + Printable(entity.name) + "\" is not supported";
+    if (const auto* named = FindKind(kMaterials, entity.name)) {
+        const MaterialKind kind = named->make(in);
+        problem = ProblemOf(kind, in);
+        if (problem.empty()) {
+            const Material m = Complete(kind, in);
+            entity.parameters.ReportUnused("material \"" + entity.name + "\"", warnings);
+            return m;
+        }
+    }
+    warnings.Substitute(entity.loc, problem, "a matte material stands in");
+    return Complete(Matte(in), in);
+}
+
+// Returns the frame with s along dpdu, which anisotropy refers to; any where dpdu is none.
+Frame TangentFrame(const SurfaceInteraction& hit) {
+    const Vec3f s = hit.dpdu - hit.ns * hit.ns.dot(hit.dpdu);
+    const float length = s.norm();
+    Frame frame{s / length, {}, hit.ns};
+    // Less is left over from rounding.
+    if (length > 1e-4f * hit.dpdu.norm() && length < kInfinity)
+        frame.t = hit.ns.cross(frame.s);
+    else
+        CoordinateSystem(hit.ns, &frame.s, &frame.t);
+    return frame;
+}
+
+}  // namespace
+
+SurfaceTilt MaterialReader::BumpMap() const {
+    const auto bump = FloatOrNone("bumpmap");
+    if (bump && bump->IsConstant() && bump->constant == 0) return {};
+    return {.bump = bump};
+}
+
+std::string ProblemOfIndex(const MaterialReader& in, const FloatTexture& index) {
+    if (!index.IsConstant() || IsIndexOfRefraction(index.constant)) return "";
+    return fmt::format("\"eta\" of material \"{}\" has to lie between 0.01 and 100; it is {}",
+                       in.entity.name, index.constant);
+}
+
+const MaterialTraits& TraitsOfOperand(int operand, std::span<const Material> materials) {
+    return materials[operand].traits;
+}
+const SurfaceTilt& TiltOfOperand(int operand, std::span<const Material> materials) {
+    return materials[operand].tilt;
+}
+void AddOperandLobes(int operand, const MaterialInputs& in, Bsdf* bsdf) {
+    AddLobes(in.materials[operand], in, bsdf);
+}
+
+MaterialTable::MaterialTable(const Description& description, const TextureTable& textures,
+                             Warnings& warnings) {
+    MaterialEntity plain;
+    plain.name = "matte";
+    materials.reserve(description.materials.size());
+    for (const MaterialEntity& entity : description.materials) {
+        const MaterialReader in{entity, textures, materials, description};
+        if (warnings.Try([&] { materials.push_back(MakeMaterial(in, warnings)); })) continue;
+        const MaterialReader other{plain, textures, materials, description};
+        materials.push_back(Complete(Matte(other), other));
+    }
+}
+
+MaterialTable::MaterialTable() = default;
+MaterialTable::~MaterialTable() = default;
+MaterialTable::MaterialTable(MaterialTable&&) noexcept = default;
+MaterialTable& MaterialTable::operator=(MaterialTable&&) noexcept = default;
+
+SurfaceNeeds MaterialTable::Needs(int material) const { return materials[material].needs; }
+
+Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const {
+    const Material& material = materials[hit->material];
+    if (material.isTilted) {
+        if (material.tilt.bump) ApplyBumpMap(*material.tilt.bump, textures, hit);
+        if (material.tilt.normalMap) ApplyNormalMap(*material.tilt.normalMap, textures, hit);
+    }
+    Frame frame;
+    if (material.traits.needs & kNeedsTangents) {
+        frame = TangentFrame(*hit);
+    } else {
+        frame.n = hit->ns;
+        CoordinateSystem(frame.n, &frame.s, &frame.t);
+    }
+    Bsdf bsdf(frame, hit->n, 1, material.isTilted);
+    AddLobes(material,
+             MaterialInputs{textures,
+                            {hit->p, hit->uv, hit->dpdx, hit->dpdy, hit->duvdx, hit->duvdy},
+                            materials,
+                            hit},
+             &bsdf);
+    return bsdf;
+}
+
+std::optional<SubsurfaceProfile> MaterialTable::Profile(const TextureTable& textures,
+                                                        const SurfaceInteraction& hit) const {
+    const MaterialInputs in{
+        textures, {hit.p, hit.uv, hit.dpdx, hit.dpdy, hit.duvdx, hit.duvdy}, materials, &hit};
+    return std::visit(
+        [&](const auto& kind) -> std::optional<SubsurfaceProfile> {
+            if constexpr (requires { kind.Profile(in); })
+                return kind.Profile(in);
+            else
+                return {};
+        },
+        materials[hit.material].kind);
+}
+
+}  // namespace lull

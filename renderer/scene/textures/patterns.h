@@ -1,0 +1,210 @@
+// Textures that are constants, mixtures of others, and patterns of these.
+#pragma once
+
+#include "renderer/scene/textures/mapping.h"
+#include "renderer/scene/textures/noise.h"
+#include "renderer/scene/textures/texture_input.h"
+
+namespace lull {
+
+// Makes "constant" textures, which leave nothing to evaluate.
+template <typename T>
+TextureHandle<T> MakeConstant(const TextureInput& input) {
+    if constexpr (std::is_same_v<T, float>)
+        return {input.entity.parameters.GetFloat("value", 1)};
+    else
+        return {input.entity.parameters.GetSpectrum("value", Rgb::Constant(1))};
+}
+
+// Multiplies two textures.
+template <typename T>
+struct Scale {
+    TextureHandle<T> tex1, tex2;
+};
+
+template <typename T>
+T Evaluate(const Scale<T>& scale, const TextureTable& table, const TextureContext& c) {
+    return table.Evaluate(scale.tex1, c) * table.Evaluate(scale.tex2, c);
+}
+
+template <typename T>
+SurfaceNeeds Needs(const Scale<T>& scale, const TextureTable& table) {
+    return table.Needs(scale.tex1) | table.Needs(scale.tex2);
+}
+
+template <typename T>
+Made<T, Scale<T>> MakeScale(const TextureInput& input) {
+    const auto tex1 = GetTexture<T>(input, "tex1", 1);
+    const auto tex2 = GetTexture<T>(input, "tex2", 1);
+    if (tex1.IsConstant() && tex2.IsConstant())
+        return TextureHandle<T>{tex1.constant * tex2.constant};
+    if (IsConstant(tex1, 1) || IsConstant(tex2, 0)) return tex2;
+    if (IsConstant(tex2, 1) || IsConstant(tex1, 0)) return tex1;
+    return Scale<T>{tex1, tex2};
+}
+
+// Interpolates between two textures by a third.
+template <typename T>
+struct Mix {
+    TextureHandle<T> tex1, tex2;
+    FloatTexture amount;  // 0: tex1; 1: tex2; not clamped
+};
+
+template <typename T>
+T Evaluate(const Mix<T>& mix, const TextureTable& table, const TextureContext& c) {
+    const float amount = table.Evaluate(mix.amount, c);
+    return (1 - amount) * table.Evaluate(mix.tex1, c) + amount * table.Evaluate(mix.tex2, c);
+}
+
+template <typename T>
+SurfaceNeeds Needs(const Mix<T>& mix, const TextureTable& table) {
+    return table.Needs(mix.tex1) | table.Needs(mix.tex2) | table.Needs(mix.amount);
+}
+
+template <typename T>
+Made<T, Mix<T>> MakeMix(const TextureInput& input) {
+    const Mix<T> mix{GetTexture<T>(input, "tex1", 0), GetTexture<T>(input, "tex2", 1),
+                     GetTexture<float>(input, "amount", 0.5f)};
+    if (IsConstant(mix.amount, 0)) return mix.tex1;
+    if (IsConstant(mix.amount, 1)) return mix.tex2;
+    if (mix.tex1.IsConstant() && mix.tex2.IsConstant()) {
+        const T &a = mix.tex1.constant, &b = mix.tex2.constant;
+        if (AllEqual(a, b)) return mix.tex1;
+        if (mix.amount.IsConstant())
+            return TextureHandle<T>{T((1 - mix.amount.constant) * a + mix.amount.constant * b)};
+    }
+    return mix;
+}
+
+// Interpolates between four values, one at each corner of the unit square of a mapping.
+template <typename T>
+struct Bilerp {
+    Mapping2D mapping;
+    T v00, v01, v10, v11;  // at (s, t) = (0, 0), (0, 1), (1, 0), (1, 1); extrapolated outside
+};
+
+template <typename T>
+T Evaluate(const Bilerp<T>& bilerp, const TextureTable&, const TextureContext& c) {
+    const Vec2f st = Map(bilerp.mapping, c);
+    const float s = st.x(), t = st.y();
+    return (1 - s) * (1 - t) * bilerp.v00 + (1 - s) * t * bilerp.v01 + s * (1 - t) * bilerp.v10 +
+           s * t * bilerp.v11;
+}
+
+template <typename T>
+SurfaceNeeds Needs(const Bilerp<T>& bilerp, const TextureTable&) {
+    return Needs(bilerp.mapping);
+}
+
+// Reads the corners, which are constants in pbrt-v3: textures are not looked up there.
+template <typename T>
+Made<T, Bilerp<T>> MakeBilerp(const TextureInput& input) {
+    const auto corner = [&](const char* name, float otherwise) -> T {
+        const Parameters& parameters = input.entity.parameters;
+        if constexpr (std::is_same_v<T, float>)
+            return parameters.GetFloat(name, otherwise);
+        else
+            return parameters.GetSpectrum(name, Rgb::Constant(otherwise));
+    };
+    return Bilerp<T>{MakeMapping2D(input), corner("v00", 0), corner("v01", 1), corner("v10", 0),
+                     corner("v11", 1)};
+}
+
+// Shows texture coordinates as red and green: for debugging parametrisations.
+struct UvColors {
+    Mapping2D mapping;
+};
+
+inline Rgb Evaluate(const UvColors& uv, const TextureTable&, const TextureContext& c) {
+    const Vec2f st = Map(uv.mapping, c);
+    return {st.x() - std::floor(st.x()), st.y() - std::floor(st.y()), 0};
+}
+
+inline SurfaceNeeds Needs(const UvColors& uv, const TextureTable&) { return Needs(uv.mapping); }
+
+inline Made<Rgb, UvColors> MakeUvColors(const TextureInput& input) {
+    return UvColors{MakeMapping2D(input)};
+}
+
+// Alternates between two textures, square by square or cube by cube.
+//
+// Without differentials pbrt-v3's "closedform" antialiasing also takes one point, so that one kind
+// serves both values of "aamode".
+template <typename T>
+struct Checkerboard {
+    std::variant<Mapping2D, Mapping3D> mapping;  // as "dimension" says
+    TextureHandle<T> tex1, tex2;
+};
+
+// Returns whether floor(x) is odd; in float, since x may exceed every integer type.
+inline bool IsOdd(float x) {
+    const float lower = std::floor(x);
+    return lower - 2 * std::floor(lower * 0.5f) != 0;
+}
+
+inline bool IsSecondColor(const Mapping2D& mapping, const TextureContext& c) {
+    const Vec2f st = Map(mapping, c);
+    return IsOdd(st.x()) != IsOdd(st.y());
+}
+
+inline bool IsSecondColor(const Mapping3D& mapping, const TextureContext& c) {
+    const Vec3f p = Map(mapping, c);
+    return (IsOdd(p.x()) != IsOdd(p.y())) != IsOdd(p.z());
+}
+
+template <typename T>
+T Evaluate(const Checkerboard<T>& board, const TextureTable& table, const TextureContext& c) {
+    const bool second =
+        std::visit([&](const auto& mapping) { return IsSecondColor(mapping, c); }, board.mapping);
+    return table.Evaluate(second ? board.tex2 : board.tex1, c);
+}
+
+template <typename T>
+SurfaceNeeds Needs(const Checkerboard<T>& board, const TextureTable& table) {
+    const auto* mapping = std::get_if<Mapping2D>(&board.mapping);
+    return (mapping ? Needs(*mapping) : kNeedsNothing) | table.Needs(board.tex1) |
+           table.Needs(board.tex2);
+}
+
+// Constant 1 substitutes a dimension other than 2 and 3.
+template <typename T>
+Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input);
+
+// Scatters discs over the unit squares of a mapping, at most one per square.
+template <typename T>
+struct Dots {
+    Mapping2D mapping;
+    TextureHandle<T> inDot, aroundDots;
+};
+
+// Returns whether the point lies in a disc of radius 0.35, placed by noise within its square.
+inline bool IsInDot(const Vec2f& st) {
+    constexpr float kRadius = 0.35f, kMaxShift = 0.5f - kRadius;
+    const float s = std::floor(st.x() + 0.5f), t = std::floor(st.y() + 0.5f);
+    const auto noise = [](float x, float y) { return Noise(Vec3f(x, y, 0.5f)); };
+    if (!(noise(s + 0.5f, t + 0.5f) > 0)) return false;
+    const Vec2f center(s + kMaxShift * noise(s + 1.5f, t + 2.8f),
+                       t + kMaxShift * noise(s + 4.5f, t + 9.8f));
+    return (st - center).squaredNorm() < Sqr(kRadius);
+}
+
+template <typename T>
+T Evaluate(const Dots<T>& dots, const TextureTable& table, const TextureContext& c) {
+    return table.Evaluate(IsInDot(Map(dots.mapping, c)) ? dots.inDot : dots.aroundDots, c);
+}
+
+template <typename T>
+SurfaceNeeds Needs(const Dots<T>& dots, const TextureTable& table) {
+    return Needs(dots.mapping) | table.Needs(dots.inDot) | table.Needs(dots.aroundDots);
+}
+
+// pbrt-v3 passes "inside" and "outside" in the wrong order, so that the dots show "outside". Scenes
+// made for pbrt-v3 rely on it, so it is kept.
+template <typename T>
+Made<T, Dots<T>> MakeDots(const TextureInput& input) {
+    const TextureHandle<T> inside = GetTexture<T>(input, "inside", 1);
+    const TextureHandle<T> outside = GetTexture<T>(input, "outside", 0);
+    return Dots<T>{MakeMapping2D(input), outside, inside};
+}
+
+}  // namespace lull

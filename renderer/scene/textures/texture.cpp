@@ -1,0 +1,204 @@
+#include "renderer/scene/textures/texture.h"
+
+#include <fmt/core.h>
+
+#include "renderer/scene/kinds.h"
+#include "renderer/scene/textures/imagemap.h"
+#include "renderer/scene/textures/noise.h"
+#include "renderer/scene/textures/patterns.h"
+#include "stopping/base/input_file.h"
+
+namespace lull {
+
+struct FloatTextureNode {
+    std::variant<Scale<float>, Mix<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
+                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>, FilteredImageMap<float>>
+        kind;
+};
+
+struct SpectrumTextureNode {
+    std::variant<Scale<Rgb>, Mix<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
+                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors, FilteredImageMap<Rgb>>
+        kind;
+};
+
+namespace {
+
+template <typename Node>
+using TypeOf = std::conditional_t<std::is_same_v<Node, FloatTextureNode>, float, Rgb>;
+
+template <typename Node>
+using Nodes = std::vector<Node>;
+
+template <typename Node>
+using TextureKind = Kind<TextureHandle<TypeOf<Node>>(const TextureInput&, Nodes<Node>*)>;
+
+// Adapts a maker to the table of kinds: puts a new texture into the nodes.
+template <auto Make, typename Node>
+TextureHandle<TypeOf<Node>> AddNode(const TextureInput& input, Nodes<Node>* nodes) {
+    using Handle = TextureHandle<TypeOf<Node>>;
+    auto made = Make(input);
+    if constexpr (std::is_same_v<decltype(made), Handle>) {
+        return made;
+    } else {
+        return std::visit(
+            [&](auto&& texture) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(texture)>, Handle>) {
+                    return texture;
+                } else {
+                    nodes->push_back({std::move(texture)});
+                    Handle handle = ConstantTexture<TypeOf<Node>>(0);
+                    handle.index = int(nodes->size()) - 1;
+                    return handle;
+                }
+            },
+            std::move(made));
+    }
+}
+
+constexpr TextureKind<FloatTextureNode> kFloatKinds[] = {
+    {"constant", AddNode<MakeConstant<float>>},
+    {"scale", AddNode<MakeScale<float>>},
+    {"mix", AddNode<MakeMix<float>>},
+    {"imagemap", AddNode<MakeImageMap<float>>},
+    {"fbm", AddNode<MakeOctaves<float, FractionalBrownianMotion>>},
+    {"checkerboard", AddNode<MakeCheckerboard<float>>},
+    {"bilerp", AddNode<MakeBilerp<float>>},
+    {"dots", AddNode<MakeDots<float>>},
+    {"windy", AddNode<MakeWindy<float>>},
+    {"wrinkled", AddNode<MakeOctaves<float, Turbulence>>},
+};
+
+constexpr TextureKind<SpectrumTextureNode> kSpectrumKinds[] = {
+    {"constant", AddNode<MakeConstant<Rgb>>},
+    {"scale", AddNode<MakeScale<Rgb>>},
+    {"mix", AddNode<MakeMix<Rgb>>},
+    {"imagemap", AddNode<MakeImageMap<Rgb>>},
+    {"fbm", AddNode<MakeOctaves<Rgb, FractionalBrownianMotion>>},
+    {"checkerboard", AddNode<MakeCheckerboard<Rgb>>},
+    {"marble", AddNode<MakeMarble>},
+    {"uv", AddNode<MakeUvColors>},
+    {"bilerp", AddNode<MakeBilerp<Rgb>>},
+    {"dots", AddNode<MakeDots<Rgb>>},
+    {"windy", AddNode<MakeWindy<Rgb>>},
+    {"wrinkled", AddNode<MakeOctaves<Rgb, Turbulence>>},
+};
+
+// Makes one texture, or a substitute for one of an unsupported kind.
+template <typename Node, size_t N>
+TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
+                                        const TextureInput& input, Nodes<Node>* nodes) {
+    const TextureEntity& entity = input.entity;
+    if (const auto* kind = FindKind(kinds, entity.name)) {
+        const auto handle = kind->make(input, nodes);
+        entity.parameters.ReportUnused(fmt::format("texture \"{}\"", Printable(entity.textureName)),
+                                       input.warnings);
+        return handle;
+    }
+    const std::string what = fmt::format("{} texture \"{}\": kind \"{}\" is not supported",
+                                         entity.isSpectrum ? "spectrum" : "float",
+                                         Printable(entity.textureName), Printable(entity.name));
+    input.warnings.Substitute(entity.loc, what, "1 stands in");
+    return ConstantTexture<TypeOf<Node>>(1);
+}
+
+// Finds the texture that a parameter names among those made so far.
+template <typename T>
+TextureHandle<T> Resolve(const std::vector<TextureHandle<T>>& made, const Parameter& parameter,
+                         const TextureRef& ref) {
+    const bool wantsFloat = std::is_same_v<T, float>;
+    const int index = wantsFloat ? ref.floatIndex : ref.spectrumIndex;
+    if (index >= 0 && size_t(index) < made.size()) return made[size_t(index)];
+    const bool isOther = (wantsFloat ? ref.spectrumIndex : ref.floatIndex) >= 0;
+    throw Error(
+        parameter.loc,
+        fmt::format("parameter \"{}\": there is no {} texture \"{}\"{}", Printable(parameter.name),
+                    wantsFloat ? "float" : "spectrum", Printable(ref.name),
+                    isOther ? ", only one of the other type"
+                            : "; with --substitute the parameter is left out"));
+}
+
+template <typename T>
+std::optional<TextureHandle<T>> Find(const std::vector<TextureHandle<T>>& made,
+                                     const Entity& entity, const std::string& name) {
+    const Parameters& parameters = entity.parameters;
+    if (const TextureRef* ref = parameters.GetTexture(name))
+        return Resolve(made, *parameters.Find(ParameterType::Texture, name), *ref);
+    // Excess values are ignored, as in pbrt-v3.
+    if constexpr (std::is_same_v<T, float>) {
+        const auto values = parameters.GetFloats(ParameterType::Float, name);
+        if (!values.empty()) return FloatTexture{values[0]};
+    } else {
+        const auto values = parameters.GetFloats(ParameterType::Spectrum, name);
+        if (values.size() >= 3) return SpectrumTexture{Rgb(values[0], values[1], values[2])};
+    }
+    return std::nullopt;
+}
+
+template <typename Node>
+SurfaceNeeds NodeNeeds(const Node& node, const TextureTable& table) {
+    return std::visit([&](const auto& kind) { return Needs(kind, table); }, node.kind);
+}
+
+}  // namespace
+
+TextureTable::TextureTable() = default;
+TextureTable::~TextureTable() = default;
+TextureTable::TextureTable(TextureTable&&) noexcept = default;
+TextureTable& TextureTable::operator=(TextureTable&&) noexcept = default;
+
+TextureTable::TextureTable(const Description& description, Warnings& warnings,
+                           TextureFiltering filtering) {
+    TextureImages images;
+    for (const TextureEntity& entity : description.textures) {
+        const TextureInput input{entity, description, *this, images, warnings, filtering};
+        // Each texture takes a place in both lists, so that its index is its place in the
+        // description; the one of the other type is never referred to.
+        auto asFloat = ConstantTexture<float>(0);
+        auto asSpectrum = ConstantTexture<Rgb>(0);
+        warnings.Try([&] {
+            if (entity.isSpectrum)
+                asSpectrum = MakeTexture(kSpectrumKinds, input, &spectra);
+            else
+                asFloat = MakeTexture(kFloatKinds, input, &floats);
+        });
+        madeFloats.push_back(asFloat);
+        madeSpectra.push_back(asSpectrum);
+    }
+    imageBytes = images.Bytes();
+}
+
+FloatTexture TextureTable::GetFloat(const Entity& entity, const std::string& name,
+                                    float otherwise) const {
+    return Find(madeFloats, entity, name).value_or(FloatTexture{otherwise});
+}
+
+SpectrumTexture TextureTable::GetSpectrum(const Entity& entity, const std::string& name,
+                                          const Rgb& otherwise) const {
+    return Find(madeSpectra, entity, name).value_or(SpectrumTexture{otherwise});
+}
+
+std::optional<FloatTexture> TextureTable::GetFloatOrNone(const Entity& entity,
+                                                         const std::string& name) const {
+    return Find(madeFloats, entity, name);
+}
+
+SurfaceNeeds TextureTable::Needs(const FloatTexture& t) const {
+    return t.IsConstant() ? kNeedsNothing : NodeNeeds(floats[size_t(t.index)], *this);
+}
+
+SurfaceNeeds TextureTable::Needs(const SpectrumTexture& t) const {
+    return t.IsConstant() ? kNeedsNothing : NodeNeeds(spectra[size_t(t.index)], *this);
+}
+
+float TextureTable::EvaluateFloat(int index, const TextureContext& c) const {
+    return std::visit([&](const auto& kind) { return lull::Evaluate(kind, *this, c); },
+                      floats[size_t(index)].kind);
+}
+
+Rgb TextureTable::EvaluateSpectrum(int index, const TextureContext& c) const {
+    return std::visit([&](const auto& kind) -> Rgb { return lull::Evaluate(kind, *this, c); },
+                      spectra[size_t(index)].kind);
+}
+
+}  // namespace lull

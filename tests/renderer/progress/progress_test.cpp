@@ -1,0 +1,178 @@
+#include "renderer/progress/progress.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/renderer/files/test_files.h"
+
+namespace lull {
+namespace {
+
+RenderProgress Halfway() {
+    return {.blocks = 16,
+            .stoppedBlocks = 9,
+            .medianSpp = 1240,
+            .samples = 5000000,
+            .samplesToCap = 5000000,
+            .seconds = 100};
+}
+
+ProgressState StateOf(const RenderProgress& p, double rate, bool adaptive) {
+    return {p, ShareDone(p), rate, adaptive};
+}
+
+// Returns what a printer writes.
+template <typename Use>
+std::string Printed(ProgressStyle style, const Use& use) {
+    const TemporaryDirectory directory;
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+        std::fopen(directory.File("out").c_str(), "w"), std::fclose);
+    ProgressPrinter printer(style, false, file.get());
+    use(printer);
+    return ReadBytes(directory.File("out"));
+}
+
+TEST(FormatDuration, IsShortAtEveryScale) {
+    EXPECT_EQ(FormatDuration(0), "0.0s");
+    EXPECT_EQ(FormatDuration(12.34), "12.3s");
+    EXPECT_EQ(FormatDuration(59.96), "1:00");
+    EXPECT_EQ(FormatDuration(245), "4:05");
+    EXPECT_EQ(FormatDuration(3599.6), "1:00:00");
+    EXPECT_EQ(FormatDuration(360000), "100:00:00");
+    EXPECT_EQ(FormatDuration(-1), "0.0s");
+    EXPECT_EQ(FormatDuration(std::numeric_limits<double>::quiet_NaN()), "0.0s");
+}
+
+TEST(FormatCount, KeepsThreeDigits) {
+    EXPECT_EQ(FormatCount(0), "0");
+    EXPECT_EQ(FormatCount(999), "999");
+    EXPECT_EQ(FormatCount(1234), "1.23 k");
+    EXPECT_EQ(FormatCount(12345), "12.3 k");
+    EXPECT_EQ(FormatCount(123456), "123 k");
+    EXPECT_EQ(FormatCount(999600), "1.00 M");
+    EXPECT_EQ(FormatCount(6.4e9), "6.40 G");
+}
+
+TEST(ProgressText, TellsTheTimeToTheCapFromAForecast) {
+    const std::string adaptive = ProgressText(StateOf(Halfway(), 50000, true));
+    EXPECT_EQ(adaptive,
+              " 50%  9/16 blocks done  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
+              "1:40 to the cap");
+    EXPECT_TRUE(ProgressText(StateOf(Halfway(), 50000, false)).ends_with("  1:40 left"));
+}
+
+TEST(ProgressText, PredictsTheEndWhereItCan) {
+    RenderProgress progress = Halfway();
+    progress.predictedSamples = 1250000;
+    progress.predictedSeconds = 30;
+    EXPECT_EQ(ProgressText(StateOf(progress, 50000, true)),
+              " 80%  9/16 blocks done  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
+              "about 30.0s left");
+    EXPECT_TRUE(Contains(ProgressJson(StateOf(progress, 50000, true)),
+                         R"("remainingSeconds":30.000,"remainingIsUpperBound":false)"));
+    // A clock can end it before.
+    progress.secondsLeft = 12;
+    EXPECT_TRUE(Contains(ProgressText(StateOf(progress, 50000, true)), "at most 12.0s left"));
+    // Nothing is left when all have stopped.
+    progress.samplesToCap = 0;
+    progress.predictedSamples = 0;
+    EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).starts_with("100%"));
+    EXPECT_FALSE(Contains(ProgressText(StateOf(progress, 50000, true)), "left"));
+}
+
+TEST(ProgressText, GuessesNothingWithoutARate) {
+    EXPECT_FALSE(Contains(ProgressText(StateOf(Halfway(), 0, true)), "left"));
+    EXPECT_TRUE(Contains(ProgressText(StateOf({}, 0, true)), "100%"));
+}
+
+TEST(ProgressJson, IsOneLineOfJson) {
+    EXPECT_EQ(
+        ProgressJson(StateOf(Halfway(), 50000, true)),
+        R"({"event":"progress","percent":50.00,"blocks":16,"stoppedBlocks":9,)"
+        R"("blocksAtCap":0,"medianSpp":1240,"samples":5000000,"samplesPerSecond":50000.0,"elapsedSeconds":100.000,)"
+        R"("remainingSeconds":100.000,"remainingIsUpperBound":true})");
+    EXPECT_TRUE(Contains(ProgressJson(StateOf(Halfway(), 0, true)), R"("remainingSeconds":null)"));
+}
+
+// Of a long render, where numbers are as long as they get.
+TEST(ProgressText, FitsTheTerminal) {
+    RenderProgress long_ = Halfway();
+    long_.blocks = 1200;
+    long_.stoppedBlocks = 1150;
+    long_.seconds = 360000;
+    long_.predictedSeconds = 400000;
+    const ProgressState state = StateOf(long_, 123456789, true);
+    EXPECT_GT(ProgressText(state).size(), 80u);
+    for (int columns = 1; columns <= 120; ++columns) {
+        const std::string text = ProgressText(state, columns);
+        EXPECT_LE(int(text.size()), columns);
+        EXPECT_TRUE(text.starts_with(std::string(" 50%").substr(0, size_t(columns)))) << text;
+    }
+    EXPECT_EQ(ProgressText(state, 79),
+              " 50%  1150/1200 blocks  1240 spp  123 M/s  100:00:00  about 111:06:40 left");
+    EXPECT_EQ(ProgressText(state, 59), " 50%  1150/1200 blocks  100:00:00  about 111:06:40 left");
+}
+
+// The blocks that are left over are the slow ones: an average over the whole run would promise
+// far too early an end.
+TEST(RateMeter, ForgetsWhatIsLongPast) {
+    RateMeter rate(30);
+    EXPECT_EQ(rate.SamplesPerSecond(), 0);
+    int64_t samples = 0;
+    for (int second = 1; second <= 100; ++second)
+        rate.Add({.samples = samples += 1000, .seconds = double(second)});
+    EXPECT_NEAR(rate.SamplesPerSecond(), 1000, 1e-6);
+    for (int second = 101; second <= 140; ++second)
+        rate.Add({.samples = samples += 10, .seconds = double(second)});
+    EXPECT_NEAR(rate.SamplesPerSecond(), 10, 1e-6);
+}
+
+TEST(ProgressPrinter, RewritesOneLineOnATerminal) {
+    const std::string text = Printed(ProgressStyle::Line, [](ProgressPrinter& printer) {
+        printer.Print(Halfway());
+        printer.Finish({.samples = 10000000, .seconds = 200});
+    });
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 2);
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+    EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(ProgressPrinter, WritesPlainLinesEveryThirtySecondsWithoutControlCodes) {
+    const std::string text = Printed(ProgressStyle::Plain, [](ProgressPrinter& printer) {
+        for (int tenth = 1; tenth <= 1000; ++tenth)
+            printer.Print({.samples = tenth, .samplesToCap = 1, .seconds = tenth / 10.0});
+        printer.Finish({.samples = 1001, .seconds = 100.1});
+    });
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);  // at 30, 60, 90 and the end
+    EXPECT_FALSE(Contains(text, "\r"));
+    EXPECT_FALSE(Contains(text, "\x1b"));
+}
+
+// What is predicted may grow, and the last state may have been printed as it came.
+TEST(ProgressPrinter, NeverFallsAndEndsOnce) {
+    const std::string text = Printed(ProgressStyle::Json, [](ProgressPrinter& printer) {
+        RenderProgress progress = Halfway();
+        for (const double predicted : {5e6, 20e6, 2e6}) {
+            progress.predictedSamples = predicted;
+            printer.Print(progress);
+        }
+        printer.Finish(progress);
+    });
+    std::vector<std::string> percents;
+    for (size_t at = 0; (at = text.find("percent\":", at)) != std::string::npos; ++at)
+        percents.push_back(text.substr(at + 9, 5));
+    EXPECT_EQ(percents, (std::vector<std::string>{"50.00", "50.00", "71.43"}));
+}
+
+TEST(ProgressPrinter, CanBeSilent) {
+    EXPECT_EQ(Printed(ProgressStyle::Silent,
+                      [](ProgressPrinter& printer) {
+                          printer.Print(Halfway());
+                          printer.Finish(Halfway());
+                      }),
+              "");
+}
+
+}  // namespace
+}  // namespace lull

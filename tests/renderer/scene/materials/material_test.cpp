@@ -1,0 +1,191 @@
+// Checks mixtures, refusals and what materials ask of a hit.
+#include <gtest/gtest.h>
+
+#include "tests/renderer/scene/materials/material_scene.h"
+
+namespace lull::test {
+namespace {
+
+TEST(Mix, ScalesTheLobesOfBoth) {
+    MaterialScene b;
+    b.AddMaterial("glass");
+    b.AddMaterial("plastic");
+    MaterialEntity& m = b.AddMaterial("mix");
+    m.operands = {0, 1};
+    m.parameters.Add(Color("amount", Rgb(0.25f, 0.5f, 1)));
+    const Bsdf bsdf = b.MakeBsdf(2);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
+    EXPECT_TRUE((Rgb(LobeAt<FresnelSpecular>(bsdf, 0).t) == Rgb(0.25f, 0.5f, 1)).all());
+    // Black parts count as lobes all the same.
+    EXPECT_TRUE(
+        (Rgb(LobeAt<LambertianReflection>(bsdf, 1).r) == 0.25f * Rgb(0.75f, 0.5f, 0)).all());
+    EXPECT_EQ(bsdf.Eta(), 1.5f);
+}
+
+TEST(Mix, TakesIndexFromTheFirst) {
+    MaterialScene b;
+    b.AddMaterial("glass");
+    b.AddMaterial("matte");
+    b.AddMaterial("mix").operands = {1, 0};
+    EXPECT_EQ(b.MakeBsdf(2).Eta(), 1);
+}
+
+TEST(Mix, NestsAndKeepsScale) {
+    MaterialScene b;
+    b.AddMaterial("substrate");
+    b.AddMaterial("mix").operands = {0, 0};
+    b.AddMaterial("mix").operands = {1, 0};
+    const Bsdf bsdf = b.MakeBsdf(2);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
+    ExpectGrey(LobeAt<FresnelBlend>(bsdf, 0).scale, 0.25f);
+    ExpectGrey(LobeAt<FresnelBlend>(bsdf, 1).scale, 0.25f);
+    ExpectGrey(LobeAt<FresnelBlend>(bsdf, 2).scale, 0.5f);
+}
+
+TEST(Mix, OfTexturesIsTheSameAsFolded) {
+    MaterialScene b;
+    b.AddChecks(true, 3);
+    b.AddMaterial("matte");
+    b.AddMaterial("plastic");
+    MaterialEntity& m = b.AddMaterial("mix");
+    m.operands = {0, 1};
+    m.parameters.Add(Textured("amount", 0, true));
+    const Bsdf even = b.MakeBsdf(2, Vec3f(0.5f, 0.5f, 0.5f));
+    const Bsdf odd = b.MakeBsdf(2, Vec3f(1.5f, 0.5f, 0.5f));
+    ASSERT_EQ(even.LobeCount(LobeSet::All), 3);
+    ASSERT_EQ(odd.LobeCount(LobeSet::All), 3);
+    ExpectGrey(LobeAt<LambertianReflection>(even, 0).r, 0.5f);
+    ExpectGrey(LobeAt<LambertianReflection>(even, 1).r, 0);
+    ExpectGrey(LobeAt<LambertianReflection>(odd, 0).r, 0);
+    ExpectGrey(LobeAt<LambertianReflection>(odd, 1).r, 0.25f);
+}
+
+TEST(Mix, RefusesMoreThanEightLobes) {
+    MaterialScene b;
+    b.AddMaterial("translucent");
+    b.AddMaterial("mix").operands = {0, 0};
+    EXPECT_EQ(ErrorOf(&b), "");
+    b.AddMaterial("mix").operands = {1, 0};
+    EXPECT_EQ(
+        ErrorOf(&b),
+        "scene.pbrt:30: material \"mix\" can have more than 8 lobes; with --substitute a matte "
+        "material stands in");
+}
+
+TEST(Mix, RefusesUnknownOperands) {
+    MaterialScene b;
+    b.AddMaterial("matte");
+    MaterialEntity& m = b.AddMaterial("mix");
+    m.operands = {0, -1};
+    m.parameters.Add(String("namedmaterial2", "gold"));
+    EXPECT_EQ(ErrorOf(&b),
+              "scene.pbrt:20: \"namedmaterial2\" of a mix: there is no material \"gold\"; with "
+              "--substitute a matte "
+              "material stands in");
+}
+
+TEST(Materials, UnknownKindsAreRefused) {
+    for (const char* kind : {"velvet", "kd subsurface", "Matte"}) {
+        MaterialScene b;
+        b.AddMaterial("matte");
+        b.AddMaterial(kind);
+        EXPECT_EQ(ErrorOf(&b),
+                  "scene.pbrt:20: material \"" + std::string(kind) +
+                      "\" is not supported; with --substitute a matte material stands in");
+    }
+}
+
+TEST(Materials, SubstitutionIsCounted) {
+    MaterialScene b(true);
+    b.AddMaterial("velvet", {Float("beta_m", 0.3f)});
+    b.AddMaterial("velvet", {Grey("Kd", 0.2f)});
+    b.AddMaterial("silk");
+    const MaterialTable table = b.Make();
+    EXPECT_EQ(b.warnings.Total(), 3);
+    ASSERT_EQ(b.messages.size(), 2u);
+    EXPECT_EQ(b.messages[0],
+              "scene.pbrt:10: warning: material \"velvet\" is not supported; a matte material "
+              "stands in");
+    SurfaceInteraction hit = MaterialScene::Hit(0);
+    ExpectGrey(LobeAt<LambertianReflection>(table.MakeBsdf(b.textures, &hit), 0).r, 0.5f);
+    hit = MaterialScene::Hit(1);
+    ExpectGrey(LobeAt<LambertianReflection>(table.MakeBsdf(b.textures, &hit), 0).r, 0.2f);
+}
+
+TEST(Materials, SubsurfaceIsChecked) {
+    const auto error = [](const char* kind, const char* name, float value) {
+        MaterialScene b;
+        b.AddMaterial(kind, {Float(name, value)});
+        return ErrorOf(&b);
+    };
+    EXPECT_EQ(
+        error("subsurface", "eta", 0.5f),
+        "scene.pbrt:10: \"eta\" of material \"subsurface\" has to lie between 1 and 4, \"g\" "
+        "between -0.99 and 0.99; they are 0.5 and 0; with --substitute a matte material stands in");
+    EXPECT_NE(error("kdsubsurface", "g", 1).find("they are 1.33 and 1"), std::string::npos);
+    EXPECT_EQ(error("kdsubsurface", "scale", -1),
+              "scene.pbrt:10: \"scale\" of material \"kdsubsurface\" is -1; it cannot be negative; "
+              "with --substitute a matte "
+              "material stands in");
+    MaterialScene b;
+    b.AddMaterial("matte");
+    b.AddMaterial("subsurface");
+    MaterialEntity& mix = b.AddMaterial("mix");
+    mix.operands = {0, 1};
+    EXPECT_NE(ErrorOf(&b).find("scene.pbrt:30: a mix with a material that scatters below"),
+              std::string::npos);
+}
+
+TEST(Materials, UnusedParametersAreReported) {
+    MaterialScene b;
+    MaterialEntity& m = b.AddMaterial("matte", {Float("roughness", 0.1f)});
+    m.parameters.Add(String("type", "matte"));
+    b.Make();
+    ASSERT_EQ(b.messages.size(), 1u);
+    EXPECT_NE(b.messages[0].find("scene.pbrt:3"), std::string::npos);
+    EXPECT_NE(b.messages[0].find("roughness"), std::string::npos);
+}
+
+TEST(Materials, AskOnlyForWhatTheyNeed) {
+    MaterialScene b;
+    b.AddChecks(true, 2);
+    b.AddChecks(true, 3);
+    b.AddChecks(false, 2);
+    b.AddChecks(false, 3);
+    b.AddMaterial("matte");
+    b.AddMaterial("matte", {Textured("Kd", 0, true)});
+    b.AddMaterial("matte", {Textured("Kd", 1, true)});
+    b.AddMaterial("metal", {Float("uroughness", 0.3f)});
+    b.AddMaterial("metal", {Textured("roughness", 2, false)});
+    b.AddMaterial("matte", {Textured("bumpmap", 2, false)});
+    b.AddMaterial("matte", {Textured("bumpmap", 3, false)});
+    b.AddMaterial("mix").operands = {6, 1};
+    b.AddMaterial("mix").operands = {1, 6};
+    b.AddMaterial("matte", {Float("bumpmap", 0)});
+    const MaterialTable table = b.Make();
+    const int bump = kNeedsTangents | kNeedsNormalDerivatives | kNeedsFootprint;
+    const int expected[] = {kNeedsNothing, kNeedsUv,        kNeedsNothing, kNeedsTangents,
+                            kNeedsUv,      bump | kNeedsUv, bump,          bump | kNeedsUv,
+                            kNeedsUv,      kNeedsNothing};
+    for (int i = 0; i < int(std::size(expected)); ++i)
+        EXPECT_EQ(int(table.Needs(i)), expected[i]) << i;
+}
+
+TEST(Materials, AnisotropyFollowsTheTangent) {
+    MaterialScene b;
+    b.AddMaterial("metal", {Float("uroughness", 0.3f)});
+    const MaterialTable table = b.Make();
+    SurfaceInteraction hit = MaterialScene::Hit(0);
+    hit.ns = Vec3f(0, 0.6f, 0.8f);
+    const Frame frame = table.MakeBsdf(b.textures, &hit).Shading();
+    EXPECT_TRUE(frame.s.isApprox(Vec3f(0, 0.8f, -0.6f), 1e-6f));
+    EXPECT_TRUE(frame.t.isApprox(frame.n.cross(frame.s)));
+    // Without a tangent any frame does.
+    hit.dpdu = hit.ns * 3;
+    const Frame any = table.MakeBsdf(b.textures, &hit).Shading();
+    EXPECT_NEAR(any.s.norm(), 1, 1e-6f);
+    EXPECT_NEAR(any.s.dot(any.n), 0, 1e-6f);
+}
+
+}  // namespace
+}  // namespace lull::test

@@ -1,0 +1,201 @@
+// Checks what glTF's material is made of; its values are checked in bsdf/, its look in transport/.
+#include <gtest/gtest.h>
+
+#include "renderer/bsdf/sheen_albedo.h"
+#include "tests/renderer/scene/materials/material_scene.h"
+
+namespace lull::test {
+namespace {
+
+// One material, of these factors.
+struct SceneWith : MaterialScene {
+    SceneWith(const std::map<std::string, float>& factors, bool solid = false) {
+        MaterialEntity& m = AddMaterial("metallicroughness");
+        m.parameters.Add(Color("basecolorfactor", Rgb(0.5f, 0.25f, 0)));
+        for (const auto& [name, value] : factors) m.parameters.Add(Float(name, value));
+        if (solid) m.parameters.Add(Bool("solid", true));
+    }
+};
+
+TEST(MetallicRoughness, IsMetalByDefault) {
+    SceneWith b({});
+    const Bsdf bsdf = b.MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+    const auto& lobe = LobeAt<LayeredReflection>(bsdf, 0);
+    EXPECT_TRUE(IsBlack(lobe.diffuse));
+    EXPECT_FLOAT_EQ(lobe.f0.r, 0.5f);
+    EXPECT_FLOAT_EQ(lobe.f90, 1);
+    EXPECT_FLOAT_EQ(lobe.alpha, 1);
+    EXPECT_TRUE(b.messages.empty());
+}
+
+TEST(MetallicRoughness, SquaresRoughness) {
+    EXPECT_FLOAT_EQ(
+        LobeAt<LayeredReflection>(SceneWith({{"roughnessfactor", 0.3f}}).MakeBsdf(0), 0).alpha,
+        0.09f);
+}
+
+TEST(MetallicRoughness, ReflectsAsMirrorWhereSmooth) {
+    const Bsdf metal = SceneWith({{"roughnessfactor", 0}}).MakeBsdf(0);
+    ASSERT_EQ(metal.LobeCount(LobeSet::All), 1);
+    const auto& mirror = LobeAt<ThinSpecular>(metal, 0);
+    EXPECT_FLOAT_EQ(mirror.f0.g, 0.25f);
+    EXPECT_FLOAT_EQ(mirror.f90, 1);
+    EXPECT_TRUE(IsBlack(mirror.t));
+
+    const Bsdf varnish = SceneWith({{"metallicfactor", 0}, {"roughnessfactor", 0}}).MakeBsdf(0);
+    ASSERT_EQ(varnish.LobeCount(LobeSet::All), 2);
+    EXPECT_NEAR(LobeAt<ThinSpecular>(varnish, 0).f0.r, 0.04f, 1e-6);
+    const auto& base = LobeAt<LayeredReflection>(varnish, 1);
+    EXPECT_TRUE(IsBlack(base.f0));
+    EXPECT_EQ(base.f90, 0);
+    EXPECT_GT(base.diffuse.r, 0.5f);  // divided by what is below the interface
+
+    const Bsdf coated = SceneWith({{"clearcoatfactor", 1}}).MakeBsdf(0);
+    ASSERT_EQ(coated.LobeCount(LobeSet::All), 2);
+    EXPECT_NEAR(LobeAt<ThinSpecular>(coated, 1).f0.r, 0.04f, 1e-6);
+    EXPECT_FLOAT_EQ(LobeAt<ThinSpecular>(coated, 1).f90, 1);
+}
+
+// As narrow as lamps without size allow, instead of a mirror that does not show them.
+TEST(MetallicRoughness, KeepsHighlightsOnCoatsThatAreNearlySmooth) {
+    const Bsdf coated =
+        SceneWith({{"clearcoatfactor", 1}, {"clearcoatroughnessfactor", 0.03f}}).MakeBsdf(0);
+    ASSERT_EQ(coated.LobeCount(LobeSet::All), 2);
+    EXPECT_FLOAT_EQ(LobeAt<MicrofacetReflection<SchlickInterface>>(coated, 1).distribution.AlphaX(),
+                    1e-3f);
+}
+
+TEST(MetallicRoughness, WithoutHighlightsIsLambertian) {
+    const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"specularfactor", 0}}).MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+    EXPECT_FLOAT_EQ(LobeAt<LambertianReflection>(bsdf, 0).r.r, 0.5f);
+}
+
+TEST(MetallicRoughness, TakesItsInterfaceFromTheIndex) {
+    const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"ior", 2}}).MakeBsdf(0);
+    EXPECT_NEAR(LobeAt<LayeredReflection>(bsdf, 0).f0.r, 1 / 9., 1e-6);
+    const Bsdf half =
+        SceneWith({{"metallicfactor", 0}, {"ior", 2}, {"specularfactor", 0.5f}}).MakeBsdf(0);
+    EXPECT_NEAR(LobeAt<LayeredReflection>(half, 0).f0.r, 0.5 / 9., 1e-6);
+    EXPECT_FLOAT_EQ(LobeAt<LayeredReflection>(half, 0).f90, 0.5f);
+    SceneWith bad({{"ior", 0.5f}});
+    EXPECT_THROW(bad.Make(), Error);
+}
+
+TEST(MetallicRoughness, AddsTheInterfaceWhereAskedTo) {
+    for (const bool adds : {false, true}) {
+        SceneWith b({{"metallicfactor", 0}, {"roughnessfactor", 0.5f}});
+        b.description.materials[0].parameters.Add(Bool("addedinterface", adds));
+        const Bsdf bsdf = b.MakeBsdf(0);
+        const auto& lobe = LobeAt<LayeredReflection>(bsdf, 0);
+        EXPECT_NEAR(lobe.f0.r, 0.04f, 1e-6);
+        const Vec3f normal(0, 0, 1), wi = Vec3f(0.8f, 0, 0.6f);
+        const float metal =
+            LayeredReflection(Rgb(Rgb::Zero()), lobe.f0, lobe.f90, lobe.alpha, {}, 0)
+                .Evaluate(normal, wi)
+                .f.x();
+        const float base = lobe.Evaluate(normal, wi).f.x() - metal;
+        if (adds) {
+            EXPECT_NEAR(base, 0.5f * kInvPi, 1e-5f);
+        } else {
+            EXPECT_LT(base, 0.49f * kInvPi);
+        }
+    }
+}
+
+TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
+    const std::map<std::string, float> smooth = {
+        {"metallicfactor", 0}, {"transmissionfactor", 1}, {"roughnessfactor", 0}};
+    std::map<std::string, float> rough = smooth;
+    rough["roughnessfactor"] = 0.5f;
+    const auto lastOf = [](const Bsdf& bsdf) { return bsdf.At(bsdf.LobeCount(LobeSet::All) - 1); };
+    EXPECT_TRUE(std::holds_alternative<ThinSpecular>(lastOf(SceneWith(smooth).MakeBsdf(0))));
+    EXPECT_TRUE(std::holds_alternative<ThinTransmission>(lastOf(SceneWith(rough).MakeBsdf(0))));
+    const Bsdf glass = SceneWith(smooth, true).MakeBsdf(0);
+    ASSERT_EQ(glass.LobeCount(LobeSet::All), 1);
+    EXPECT_FLOAT_EQ(LobeAt<FresnelSpecular>(glass, 0).eta, 1.5f);
+    EXPECT_FLOAT_EQ(glass.Eta(), 1.5f);
+    EXPECT_TRUE(
+        std::holds_alternative<MicrofacetTransmission>(lastOf(SceneWith(rough, true).MakeBsdf(0))));
+}
+
+// What the sheen reflects at the angle of view is taken from what is below; the coat is above both.
+TEST(MetallicRoughness, LaysSheenOverTheRest) {
+    const std::map<std::string, float> factors = {
+        {"metallicfactor", 0}, {"specularfactor", 0}, {"sheenroughnessfactor", 0.5f}};
+    const auto make = [](SceneWith b, const Vec3f& wo) {
+        b.description.materials[0].parameters.Add(Color("sheencolorfactor", Rgb(0.25f, 0.5f, 1)));
+        const MaterialTable table = b.Make();
+        SurfaceInteraction hit = MaterialScene::Hit(0);
+        hit.wo = wo;
+        return table.MakeBsdf(b.textures, &hit);
+    };
+    for (const Vec3f& wo : {Vec3f(0, 0, 1), Vec3f(0.8f, 0, 0.6f), Vec3f(0.99f, 0, 0.14107f)}) {
+        const Bsdf bsdf = make(SceneWith(factors), wo);
+        ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 2);
+        const auto& sheen = LobeAt<CharlieSheen>(bsdf, 1);
+        EXPECT_FLOAT_EQ(sheen.alpha, 0.25f);
+        EXPECT_FLOAT_EQ(sheen.r.g, 0.5f);
+        EXPECT_FLOAT_EQ(LobeAt<LambertianReflection>(bsdf, 0).r.r,
+                        0.5f * (1 - SheenAlbedo(wo.z(), 0.25f)));
+    }
+    std::map<std::string, float> coated = factors;
+    coated["clearcoatfactor"] = 1;
+    const Bsdf bsdf = make(SceneWith(coated), Vec3f::UnitZ());
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
+    EXPECT_NEAR(LobeAt<CharlieSheen>(bsdf, 1).r.g, 0.5 * 0.96 * 0.96, 1e-5);
+    // However narrow, it reflects no more than all light.
+    std::map<std::string, float> narrow = factors;
+    narrow["sheenroughnessfactor"] = 0;
+    const Vec3f grazing(std::sqrt(1 - 1e-6f), 0, 1e-3f);
+    const auto& rim = LobeAt<CharlieSheen>(make(SceneWith(narrow), grazing), 1);
+    EXPECT_FLOAT_EQ(rim.r.b * SheenAlbedo(1e-3f, rim.alpha), 1);
+    EXPECT_GT(SheenAlbedo(1e-3f, rim.alpha), 1.5f);
+}
+
+// Rougher along the tangent, which may be turned; the base below is as it was.
+TEST(MetallicRoughness, IsAnisotropicAlongItsTangent) {
+    const std::map<std::string, float> factors = {
+        {"metallicfactor", 0.5f}, {"roughnessfactor", 0.5f}, {"anisotropyfactor", 0.6f}};
+    const auto axisOf = [](SceneWith b, float side) {
+        const MaterialTable table = b.Make();
+        EXPECT_EQ(table.Needs(0), kNeedsTangents);
+        SurfaceInteraction hit = MaterialScene::Hit(0);
+        hit.dpdv *= side;
+        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+        EXPECT_EQ(bsdf.LobeCount(LobeSet::All), 2);
+        const auto& d = LobeAt<MicrofacetReflection<CoatedInterface>>(bsdf, 0).distribution;
+        EXPECT_FLOAT_EQ(d.AlphaX(), Lerp(0.36f, 0.25f, 1));
+        EXPECT_FLOAT_EQ(d.AlphaY(), 0.25f);
+        EXPECT_FALSE(IsBlack(LobeAt<LayeredReflection>(bsdf, 1).diffuse));
+        return bsdf.Shading().s;
+    };
+    EXPECT_TRUE(axisOf(SceneWith(factors), 1).isApprox(Vec3f(0, 1, 0)));
+    std::map<std::string, float> turned = factors;
+    turned["anisotropyrotation"] = kPi / 3;
+    const float c = 0.5f, s = std::sqrt(0.75f);
+    EXPECT_TRUE(axisOf(SceneWith(turned), 1).isApprox(Vec3f(-s, c, 0)));
+    EXPECT_TRUE(axisOf(SceneWith(turned), -1).isApprox(Vec3f(s, c, 0)));
+}
+
+TEST(MetallicRoughness, MultipliesVertexColours) {
+    SceneWith b({});
+    b.description.materials[0].parameters.Add(Bool("vertexcolors", true));
+    const MaterialTable table = b.Make();
+    EXPECT_EQ(table.Needs(0), kNeedsColor);
+    SurfaceInteraction hit = MaterialScene::Hit(0);
+    hit.color = Rgb(0.5f, 1, 1);
+    EXPECT_FLOAT_EQ(LobeAt<LayeredReflection>(table.MakeBsdf(b.textures, &hit), 0).f0.r, 0.25f);
+}
+
+TEST(NormalMap, IsAskedForByMaterialsThatHaveOneAlone) {
+    SceneWith b({});
+    EXPECT_EQ(b.Make().Needs(0), kNeedsNothing);
+    b.AddChecks(true, 2);
+    b.description.materials[0].parameters.Add(Textured("normalmap", 0, true));
+    EXPECT_EQ(b.Make().Needs(0), kNeedsTangents | kNeedsUv);
+}
+
+}  // namespace
+}  // namespace lull::test

@@ -1,0 +1,86 @@
+// Builds descriptions of textures for tests, as a parser would.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "renderer/scene/textures/texture.h"
+
+namespace lull {
+
+inline FileLoc LocAt(int line) { return {std::make_shared<const std::string>("scene.pbrt"), line}; }
+
+inline Parameter FloatParameter(const std::string& name, std::vector<float> values) {
+    return {ParameterType::Float, name, LocAt(7), std::move(values)};
+}
+inline Parameter RgbParameter(const std::string& name, float r, float g, float b) {
+    return {ParameterType::Spectrum, name, LocAt(7), std::vector<float>{r, g, b}};
+}
+inline Parameter VectorParameter(const std::string& name, float x, float y, float z) {
+    return {ParameterType::Vector3, name, LocAt(7), std::vector<float>{x, y, z}};
+}
+inline Parameter IntParameter(const std::string& name, int value) {
+    return {ParameterType::Integer, name, LocAt(7), std::vector<int>{value}};
+}
+inline Parameter BoolParameter(const std::string& name, bool value) {
+    return {ParameterType::Bool, name, LocAt(7), std::vector<int>{value}};
+}
+inline Parameter StringParameter(const std::string& name, const std::string& value) {
+    return {ParameterType::String, name, LocAt(7), std::vector<std::string>{value}};
+}
+
+// Collects textures and makes the table of them.
+struct TextureBuilder {
+    Description description;
+    Warnings warnings;
+
+    explicit TextureBuilder(bool substitutes = false) : warnings({}, substitutes) {}
+
+    // Adds a texture at line 10, 11, ...; returns its place.
+    int Add(bool isSpectrum, const std::string& kind, std::vector<Parameter> parameters,
+            const Mat4d& worldFromTexture = Mat4d::Identity()) {
+        const int index = int(description.textures.size());
+        TextureEntity entity;
+        entity.name = kind;
+        entity.textureName = fmt::format("t{}", index);
+        entity.loc = LocAt(10 + index);
+        entity.isSpectrum = isSpectrum;
+        entity.worldFromTexture = worldFromTexture;
+        for (Parameter& p : parameters) entity.parameters.Add(std::move(p));
+        description.textures.push_back(std::move(entity));
+        return index;
+    }
+
+    // Makes a parameter that names texture `index`; -1 stands for a name that there is not.
+    Parameter Ref(const std::string& name, int index) const {
+        TextureRef ref{fmt::format("t{}", index), -1, -1};
+        if (index >= 0)
+            (description.textures[size_t(index)].isSpectrum ? ref.spectrumIndex : ref.floatIndex) =
+                index;
+        return {ParameterType::Texture, name, LocAt(7), std::vector<TextureRef>{ref}};
+    }
+
+    // Throws Error, as Compile() does.
+    TextureTable Build() {
+        TextureTable table(description, warnings);
+        warnings.ThrowErrors();
+        return table;
+    }
+
+    FloatTexture Float(const TextureTable& table, int index) const {
+        Entity entity;
+        entity.parameters.Add(Ref("x", index));
+        return table.GetFloat(entity, "x", -99);
+    }
+    SpectrumTexture Spectrum(const TextureTable& table, int index) const {
+        Entity entity;
+        entity.parameters.Add(Ref("x", index));
+        return table.GetSpectrum(entity, "x", Rgb::Constant(-99));
+    }
+};
+
+inline TextureContext At(float u, float v) { return {Vec3f::Zero(), {u, v}}; }
+inline TextureContext AtPoint(const Vec3f& p) { return {p, Vec2f::Zero()}; }
+
+}  // namespace lull

@@ -1,0 +1,270 @@
+#include "renderer/scene/textures/texture.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene/textures/texture_builder.h"
+
+namespace lull::texture_test {
+namespace {
+
+constexpr bool kFloat = false, kSpectrum = true;
+
+Parameter Filename(const std::string& name) { return StringParameter("filename", name); }
+
+TEST(TextureTable, ReadsParameters) {
+    TextureBuilder builder;
+    const TextureTable table = builder.Build();
+    Entity entity;
+    entity.parameters.Add(FloatParameter("sigma", {0.25f}));
+    entity.parameters.Add(FloatParameter("excess", {1, 2}));
+    entity.parameters.Add(RgbParameter("Kd", 1, 2, 3));
+    EXPECT_EQ(table.GetFloat(entity, "sigma", 9).constant, 0.25f);
+    EXPECT_EQ(table.GetFloat(entity, "excess", 9).constant, 1);
+    EXPECT_EQ(table.GetFloat(entity, "absent", 9).constant, 9);
+    EXPECT_EQ(table.GetFloat(entity, "Kd", 9).constant, 9);  // of another type
+    EXPECT_TRUE((table.GetSpectrum(entity, "Kd", Rgb::Zero()).constant == Rgb(1, 2, 3)).all());
+    EXPECT_TRUE((table.GetSpectrum(entity, "sigma", Rgb(4, 5, 6)).constant == Rgb(4, 5, 6)).all());
+    EXPECT_FALSE(table.GetFloatOrNone(entity, "absent").has_value());
+    EXPECT_TRUE(table.GetFloatOrNone(entity, "sigma").has_value());
+}
+
+TEST(TextureTable, RefusesTexturesThatAreNotThere) {
+    TextureBuilder builder;
+    const int spectrum = builder.Add(kSpectrum, "constant", {});
+    const TextureTable table = builder.Build();
+    EXPECT_EQ(ErrorOf([&] { builder.Float(table, -1); }),
+              "scene.pbrt:7: parameter \"x\": there is no float texture \"t-1\"; with "
+              "--substitute the parameter is left out");
+    EXPECT_TRUE(Contains(ErrorOf([&] { builder.Float(table, spectrum); }), "of the other type"));
+    EXPECT_EQ(ErrorOf([&] { builder.Spectrum(table, spectrum); }), "");
+}
+
+TEST(TextureTable, RefusesReferencesToItself) {
+    TextureBuilder builder;
+    const int texture = builder.Add(kFloat, "scale", {});
+    builder.description.textures[0].parameters.Add(builder.Ref("tex1", texture));
+    EXPECT_TRUE(Contains(ErrorOf([&] { builder.Build(); }), "there is no float texture"));
+}
+
+TEST(TextureTable, RefusesKindsByNameFileAndLine) {
+    for (const char* kind : {"ptex", "nonsense"}) {
+        for (const bool isSpectrum : {kFloat, kSpectrum}) {
+            TextureBuilder strict;
+            strict.Add(isSpectrum, kind, {});
+            const std::string error = ErrorOf([&] { strict.Build(); });
+            EXPECT_TRUE(Contains(error, "scene.pbrt:10: ")) << error;
+            EXPECT_TRUE(Contains(error, kind)) << error;
+            EXPECT_TRUE(Contains(error, "with --substitute 1 stands in")) << error;
+
+            TextureBuilder builder(true);
+            const int texture = builder.Add(isSpectrum, kind, {FloatParameter("whatever", {1})});
+            const TextureTable table = builder.Build();
+            EXPECT_EQ(builder.warnings.Total(), 1);
+            if (isSpectrum)
+                EXPECT_TRUE((builder.Spectrum(table, texture).constant == 1).all());
+            else
+                EXPECT_EQ(builder.Float(table, texture).constant, 1);
+        }
+    }
+    // pbrt-v3 has no float marble either.
+    TextureBuilder builder;
+    builder.Add(kFloat, "marble", {});
+    EXPECT_TRUE(Contains(ErrorOf([&] { builder.Build(); }), "float texture \"t0\""));
+}
+
+TEST(TextureTable, WarnsOfUnusedParameters) {
+    TextureBuilder builder;
+    builder.Add(kFloat, "fbm", {IntParameter("octaves", 3), FloatParameter("octave", {1})});
+    builder.Build();
+    EXPECT_EQ(builder.warnings.Total(), 1);
+}
+
+TEST(TextureTable, CanBeMovedAndBeEmpty) {
+    TextureBuilder builder;
+    const int fbm = builder.Add(kFloat, "fbm", {});
+    TextureTable table = builder.Build();
+    const TextureContext c = AtPoint({0.3f, 0.6f, 0.9f});
+    const float before = table.Evaluate(builder.Float(table, fbm), c);
+    TextureTable other;
+    EXPECT_EQ(other.Bytes(), 0u);
+    other = std::move(table);
+    EXPECT_EQ(other.Evaluate(builder.Float(other, fbm), c), before);
+}
+
+TEST(Constant, HasPbrtDefaults) {
+    TextureBuilder builder;
+    const int one = builder.Add(kFloat, "constant", {});
+    const int half = builder.Add(kFloat, "constant", {FloatParameter("value", {0.5f})});
+    const int rgb = builder.Add(kSpectrum, "constant", {RgbParameter("value", 1, 2, 3)});
+    const TextureTable table = builder.Build();
+    EXPECT_EQ(builder.Float(table, one).constant, 1);
+    EXPECT_EQ(builder.Float(table, half).constant, 0.5f);
+    EXPECT_TRUE((builder.Spectrum(table, rgb).constant == Rgb(1, 2, 3)).all());
+}
+
+TEST(Scale, Multiplies) {
+    TextureBuilder builder;
+    const int board = builder.Add(kSpectrum, "checkerboard",
+                                  {RgbParameter("tex1", 1, 2, 3), RgbParameter("tex2", 4, 5, 6)});
+    const int scale = builder.Add(kSpectrum, "scale",
+                                  {builder.Ref("tex1", board), RgbParameter("tex2", 2, 3, 4)});
+    const TextureTable table = builder.Build();
+    const SpectrumTexture texture = builder.Spectrum(table, scale);
+    EXPECT_FALSE(texture.IsConstant());
+    EXPECT_TRUE((table.Evaluate(texture, At(0.5f, 0.5f)) == Rgb(2, 6, 12)).all());
+    EXPECT_TRUE((table.Evaluate(texture, At(1.5f, 0.5f)) == Rgb(8, 15, 24)).all());
+    EXPECT_TRUE(table.Needs(texture) & kNeedsUv);
+}
+
+TEST(Scale, FoldsConstants) {
+    TextureBuilder builder;
+    const int fbm = builder.Add(kFloat, "fbm", {});
+    const int product =
+        builder.Add(kFloat, "scale", {FloatParameter("tex1", {3}), FloatParameter("tex2", {0.5f})});
+    const int chained =
+        builder.Add(kFloat, "scale", {builder.Ref("tex1", product), FloatParameter("tex2", {2})});
+    const int same = builder.Add(kFloat, "scale", {builder.Ref("tex2", fbm)});
+    const int zero =
+        builder.Add(kFloat, "scale", {builder.Ref("tex1", fbm), FloatParameter("tex2", {0})});
+    const TextureTable table = builder.Build();
+    EXPECT_EQ(builder.Float(table, product).constant, 1.5f);
+    EXPECT_TRUE(builder.Float(table, chained).IsConstant());
+    EXPECT_EQ(builder.Float(table, chained).constant, 3);
+    EXPECT_EQ(builder.Float(table, same).index, builder.Float(table, fbm).index);
+    EXPECT_TRUE(builder.Float(table, zero).IsConstant());
+    EXPECT_EQ(builder.Float(table, zero).constant, 0);
+}
+
+TEST(Mix, Interpolates) {
+    TextureBuilder builder;
+    const int amount = builder.Add(kFloat, "checkerboard",
+                                   {FloatParameter("tex1", {0.25f}), FloatParameter("tex2", {2})});
+    const int mix = builder.Add(kSpectrum, "mix",
+                                {RgbParameter("tex1", 0, 4, 8), RgbParameter("tex2", 4, 4, 4),
+                                 builder.Ref("amount", amount)});
+    const TextureTable table = builder.Build();
+    const SpectrumTexture texture = builder.Spectrum(table, mix);
+    EXPECT_TRUE((table.Evaluate(texture, At(0.5f, 0.5f)) == Rgb(1, 4, 7)).all());
+    EXPECT_TRUE((table.Evaluate(texture, At(1.5f, 0.5f)) == Rgb(8, 4, 0)).all());
+    EXPECT_TRUE(table.Needs(texture) & kNeedsUv);
+}
+
+TEST(Mix, HasPbrtDefaultsAndFoldsConstants) {
+    TextureBuilder builder;
+    const int fbm = builder.Add(kFloat, "fbm", {});
+    const int plain = builder.Add(kFloat, "mix", {});
+    const int first =
+        builder.Add(kFloat, "mix", {builder.Ref("tex1", fbm), FloatParameter("amount", {0})});
+    const int second =
+        builder.Add(kFloat, "mix", {builder.Ref("tex1", fbm), FloatParameter("amount", {1})});
+    const int equal = builder.Add(
+        kFloat, "mix",
+        {FloatParameter("tex1", {3}), FloatParameter("tex2", {3}), builder.Ref("amount", fbm)});
+    const TextureTable table = builder.Build();
+    EXPECT_EQ(builder.Float(table, plain).constant, 0.5f);
+    EXPECT_EQ(builder.Float(table, first).index, builder.Float(table, fbm).index);
+    EXPECT_TRUE(builder.Float(table, second).IsConstant());
+    EXPECT_EQ(builder.Float(table, second).constant, 1);
+    EXPECT_EQ(builder.Float(table, equal).constant, 3);
+}
+
+TEST(Checkerboard, AlternatesInTwoDimensions) {
+    TextureBuilder builder;
+    const int board =
+        builder.Add(kFloat, "checkerboard",
+                    {FloatParameter("uscale", {2}), FloatParameter("vscale", {4}),
+                     FloatParameter("udelta", {1}), StringParameter("aamode", "none")});
+    const TextureTable table = builder.Build();
+    const FloatTexture texture = builder.Float(table, board);
+    // (2 u + 1, 4 v): tex1 (1) where the sum of the floors is even, else tex2 (0).
+    EXPECT_EQ(table.Evaluate(texture, At(0.1f, 0.1f)), 0);
+    EXPECT_EQ(table.Evaluate(texture, At(0.6f, 0.1f)), 1);
+    EXPECT_EQ(table.Evaluate(texture, At(0.6f, 0.3f)), 0);
+    EXPECT_EQ(table.Evaluate(texture, At(-0.1f, 0.1f)), 1);
+    EXPECT_EQ(table.Evaluate(texture, At(-0.6f, 0.1f)), 0);
+    EXPECT_EQ(table.Evaluate(texture, At(-0.1f, -0.1f)), 0);
+    EXPECT_EQ(builder.warnings.Total(), 0);
+}
+
+TEST(Checkerboard, AlternatesInThreeDimensions) {
+    TextureBuilder builder;
+    Mat4d scale = Mat4d::Identity();
+    scale.topLeftCorner<3, 3>() *= 10;
+    const int board = builder.Add(kFloat, "checkerboard", {IntParameter("dimension", 3)}, scale);
+    const TextureTable table = builder.Build();
+    const FloatTexture texture = builder.Float(table, board);
+    EXPECT_FALSE(table.Needs(texture) & kNeedsUv);
+    // As in pbrt-v3 the transformation is applied itself: cubes of 0.1.
+    EXPECT_EQ(table.Evaluate(texture, AtPoint({0.05f, 0.05f, 0.05f})), 1);
+    EXPECT_EQ(table.Evaluate(texture, AtPoint({0.15f, 0.05f, 0.05f})), 0);
+    EXPECT_EQ(table.Evaluate(texture, AtPoint({0.15f, 0.15f, 0.05f})), 1);
+    EXPECT_EQ(table.Evaluate(texture, AtPoint({0.15f, 0.15f, -0.05f})), 0);
+}
+
+TEST(Checkerboard, RefusesOtherDimensions) {
+    TextureBuilder strict, builder(true);
+    strict.Add(kFloat, "checkerboard", {IntParameter("dimension", 4)});
+    EXPECT_TRUE(Contains(ErrorOf([&] { strict.Build(); }), "scene.pbrt:10: 4-dimensional"));
+    const int board = builder.Add(kFloat, "checkerboard", {IntParameter("dimension", 4)});
+    EXPECT_EQ(builder.Float(builder.Build(), board).constant, 1);
+}
+
+TEST(Checkerboard, FoldsEqualColors) {
+    TextureBuilder builder;
+    const int board = builder.Add(kSpectrum, "checkerboard",
+                                  {RgbParameter("tex1", 1, 2, 3), RgbParameter("tex2", 1, 2, 3)});
+    const TextureTable table = builder.Build();
+    EXPECT_TRUE(builder.Spectrum(table, board).IsConstant());
+}
+
+TEST(Texture, SurvivesAnyCoordinates) {
+    const TemporaryDirectory directory;
+    const std::string tga = directory.Write(
+        "a.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\x18\0", 18) + "\1\2\3\4\5\6");
+    TextureBuilder builder;
+    std::vector<int> textures;
+    for (const char* mapping : {"uv", "spherical", "cylindrical", "planar"}) {
+        const Parameter map = StringParameter("mapping", mapping);
+        for (const char* wrap : {"repeat", "black", "clamp"})
+            textures.push_back(builder.Add(kSpectrum, "imagemap",
+                                           {Filename(tga), StringParameter("wrap", wrap), map}));
+        textures.push_back(builder.Add(kSpectrum, "checkerboard", {map}));
+    }
+    textures.push_back(builder.Add(kSpectrum, "checkerboard", {IntParameter("dimension", 3)}));
+    textures.push_back(builder.Add(kSpectrum, "fbm", {IntParameter("octaves", 1000000000)}));
+    textures.push_back(builder.Add(kSpectrum, "fbm", {IntParameter("octaves", -5)}));
+    textures.push_back(builder.Add(kSpectrum, "marble", {}));
+    const TextureTable table = builder.Build();
+
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float values[] = {0,
+                            -0.f,
+                            1,
+                            -1,
+                            0x1p-149f,
+                            -0x1p-149f,
+                            16777216,
+                            1e9f,
+                            -3e9f,
+                            1e19f,
+                            1e30f,
+                            -1e30f,
+                            nan,
+                            kInfinity,
+                            -kInfinity,
+                            -1e-9f,
+                            kOneMinusEpsilon,
+                            0x1.fffffep127f};
+    for (const int texture : textures) {
+        const SpectrumTexture t = builder.Spectrum(table, texture);
+        for (const float a : values)
+            for (const float b : values) {
+                const Rgb v = table.Evaluate(t, {{a, b, a}, {a, b}});
+                EXPECT_TRUE(IsFinite(v)) << texture << " at " << a << ", " << b;
+            }
+    }
+}
+
+}  // namespace
+}  // namespace lull::texture_test
