@@ -1,8 +1,12 @@
 #include "renderer/render/film_picture.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
+
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -72,11 +76,12 @@ struct Split {
 
 constexpr auto kSkip = [](const Vec2i&) {};
 
-// Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others.
+// Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others,
+// rows on all threads.
 template <typename Light, typename Use, typename UseEmpty = decltype(kSkip)>
 void ForEachPixel(const Light& light, const PixelRect& rect, const Use& use,
                   const UseEmpty& useEmpty = kSkip) {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+    const auto doRow = [&](int y) {
         for (int x = rect.min.x(); x < rect.max.x(); ++x) {
             const FilmPixel pixel = light.At({x, y});
             if (pixel.count == 0) {
@@ -87,6 +92,10 @@ void ForEachPixel(const Light& light, const PixelRect& rect, const Use& use,
             use(Split{pixel.count >= kLeastDenoisedSpp, inA, pixel.count - inA}, pixel,
                 Vec2i(x, y));
         }
+    };
+    // Isolated, so that a thread that waits here takes up no other task of a render.
+    tbb::this_task_arena::isolate(
+        [&] { ForEachIndex(rect.Height(), [&](int i) { doRow(rect.min.y() + i); }); });
 }
 
 template <typename Light>
@@ -128,6 +137,39 @@ Planes VarianceOfLight(const Light& light, const PixelRect& rect) {
     return variance;
 }
 
+// Returns all but the colours. Calls forget(end), if there is such, when features of the rows above
+// `end` are not needed any more.
+NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect,
+                        const std::function<void(int end)>& forget = {}) {
+    const auto read = [&](int y0, int y1) {
+        return FeatureHalvesOf(film, {rect.min + Vec2i(0, y0), {rect.max.x(), rect.min.y() + y1}});
+    };
+    return {{},
+            FilterFeatures(rect.Width(), rect.Height(), read, forget),
+            VarianceOf(film, rect),
+            EmissionOf(film, rect)};
+}
+
+NoisyPicture TakeFeatures(Film* film) {
+    const int top = film->Region().min.y();
+    int forgotten = 0;
+    NoisyPicture picture = FeaturesOf(*film, film->Region(), [&](int end) {
+        film->layers.ForgetFeatures(top + forgotten, top + end);
+        forgotten = end;
+    });
+    film->layers.ForgetFeatures();
+    return picture;
+}
+
+GroupedPicture GroupsOf(const Film& film, const PixelRect& rect, NoisyPicture all) {
+    const LightGroupLayer& lights = *film.layers.Find<LightGroupLayer>();
+    const auto light = [&film, &lights, rect](int group) -> NoisyPicture {
+        const GroupLight own{film, lights, group};
+        return {ColoursOfLight(own, rect), {}, VarianceOfLight(own, rect)};
+    };
+    return {lights.Count(), std::move(all.features), std::move(all.variance), light};
+}
+
 }  // namespace
 
 NoisyPicture PictureOf(const Film& film, const PixelRect& rect) {
@@ -136,24 +178,20 @@ NoisyPicture PictureOf(const Film& film, const PixelRect& rect) {
     return picture;
 }
 
-NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect) {
-    const auto read = [&](int y0, int y1) {
-        return FeatureHalvesOf(film, {rect.min + Vec2i(0, y0), {rect.max.x(), rect.min.y() + y1}});
-    };
-    return {{},
-            FilterFeatures(rect.Width(), rect.Height(), read),
-            VarianceOf(film, rect),
-            EmissionOf(film, rect)};
+GroupedPicture GroupedPictureOf(const Film& film, const PixelRect& rect) {
+    return GroupsOf(film, rect, FeaturesOf(film, rect));
 }
 
-GroupedPicture GroupedPictureOf(const Film& film, const PixelRect& rect) {
-    NoisyPicture all = FeaturesOf(film, rect);
-    const LightGroupLayer& lights = *film.layers.Find<LightGroupLayer>();
-    const auto light = [&film, &lights, rect](int group) -> NoisyPicture {
-        const GroupLight own{film, lights, group};
-        return {ColoursOfLight(own, rect), {}, VarianceOfLight(own, rect)};
-    };
-    return {lights.Count(), std::move(all.features), std::move(all.variance), light};
+NoisyPicture TakePicture(Film* film) {
+    NoisyPicture picture = TakeFeatures(film);
+    picture.colour = ColoursOf(*film, film->Region());
+    film->DropHalf();
+    return picture;
+}
+
+GroupedPicture TakeGroups(Film* film) {
+    film->DropHalf();
+    return GroupsOf(*film, film->Region(), TakeFeatures(film));
 }
 
 Halves ColoursOf(const Film& film, const PixelRect& rect) {
@@ -178,7 +216,8 @@ Halves EmissionOf(const Film& film, const PixelRect& rect) {
     ForEachPixel(WholeLight{film}, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
         if (!split.isSplit) return;
         const auto& [a, b] = lights->At(p).halves;
-        for (int c = 0; c < kColours; ++c)
+        // Zeros that are not written take no memory.
+        for (int c = 0; c < kColours && lights->At(p) != EmissionSums(); ++c)
             split.Put(a[size_t(c)], b[size_t(c)], c, p - rect.min, &emission);
     });
     return emission;

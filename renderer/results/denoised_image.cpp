@@ -58,6 +58,7 @@ std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const
     std::vector<ExrChannel> channels;
     for (size_t c = 0; c < 3; ++c) {
         ExrChannel& channel = channels.emplace_back(ExrChannel{layer + "RGB" [c], {}});
+        channel.values.reserve(rgb.size() / 3);
         for (size_t i = c; i < rgb.size(); i += 3) channel.values.push_back(rgb[i]);
     }
     return channels;

@@ -13,6 +13,7 @@
 #include "renderer/image/files/png_library.h"
 #include "renderer/image/image_io.h"
 #include "renderer/image/png_format.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -144,29 +145,40 @@ void DivideByAlpha(std::span<float> row) {
         for (size_t c = i; c < i + 3; ++c) row[c] = row[i + 3] > 0 ? row[c] / row[i + 3] : 0;
 }
 
-// Writes linear RGB, or RGBA.
+// Encodes a row of linear RGB, or RGBA, which it changes.
+template <typename T>
+void EncodeRow(const PngFormat& format, std::span<float> linear, T* to) {
+    const Grade& grade = format.grade;
+    const size_t components = format.hasAlpha ? 4 : 3;
+    if (format.hasAlpha) DivideByAlpha(linear);
+    if (grade.exposure != 0) Brighten(std::exp2(grade.exposure), components, linear);
+    if (grade.view) ApplyView(*grade.view, components, linear);
+    for (size_t i = 0; i < linear.size(); ++i) {
+        const bool isMapped = grade.toneMap == ToneMap::Filmic;
+        to[i] = i % components == 3 || grade.view
+                    ? EncodeLinear<T>(linear[i])
+                    : EncodeSrgb<T>(isMapped ? FilmicToneMap(linear[i]) : linear[i]);
+    }
+}
+
+// Writes linear RGB, or RGBA. Some rows are encoded at a time, on all threads.
 template <typename T>
 void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
                const PngFormat& format) {
     writer->WriteHeader(width, height, 8 * int(sizeof(T)),
                         format.hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                         format.text, false);
-    const Grade& grade = format.grade;
-    const size_t components = format.hasAlpha ? 4 : 3;
-    std::vector<float> linear(size_t(width) * components);
-    std::vector<T> row(linear.size());
-    for (int y = 0; y < height; ++y) {
-        rows(y, linear);
-        if (format.hasAlpha) DivideByAlpha(linear);
-        if (grade.exposure != 0) Brighten(std::exp2(grade.exposure), components, linear);
-        if (grade.view) ApplyView(*grade.view, components, linear);
-        for (size_t i = 0; i < row.size(); ++i) {
-            const bool isMapped = grade.toneMap == ToneMap::Filmic;
-            row[i] = i % components == 3 || grade.view
-                         ? EncodeLinear<T>(linear[i])
-                         : EncodeSrgb<T>(isMapped ? FilmicToneMap(linear[i]) : linear[i]);
-        }
-        writer->WriteRow(row.data());
+    constexpr int kStrip = 64;
+    const size_t stride = size_t(width) * (format.hasAlpha ? 4 : 3);
+    std::vector<T> strip(stride * size_t(std::min(kStrip, height)));
+    for (int y = 0; y < height; y += kStrip) {
+        const int count = std::min(kStrip, height - y);
+        ForEachIndex(count, [&](int k) {
+            std::vector<float> linear(stride);
+            rows(y + k, linear);
+            EncodeRow(format, linear, &strip[size_t(k) * stride]);
+        });
+        for (int k = 0; k < count; ++k) writer->WriteRow(&strip[size_t(k) * stride]);
     }
     writer->End();
 }
