@@ -7,8 +7,6 @@
 
 namespace lull {
 
-inline constexpr float kUnknownError = 100;  // in lightness, of pixels: all that is possible
-
 // Sets the visible error of blocks that the rule `denoised` has stopped to that by which it did.
 // Theirs are still the same samples, which the picture in the end filters more carefully: its own
 // estimate, equally rough, may be above the threshold.

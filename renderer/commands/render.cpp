@@ -209,7 +209,7 @@ bool IsFinished(const PreparedRender& p) {
 // leave them as they are, and of the denoiser's inputs as they are written.
 int64_t BytesBeside(const RenderRequest& request) {
     const bool hasPreviews = request.denoise && request.pictures.preview > 0;
-    return (hasPreviews ? kDenoiserBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);
+    return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);
 }
 
 // Checks all that can be wrong before the work begins.
@@ -298,19 +298,6 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.identity = render.Identity();
     how.identity["curves"] = p->request.HasPage() ? "yes" : "no";
     return how;
-}
-
-// Denoises what there is of a picture. A large one, which would take minutes, is done roughly, and
-// its error is unknown.
-DenoisedImage DenoisePreview(const Film& film) {
-    constexpr int64_t kLarge = 8'000'000;  // pixels
-    const PixelRect& region = film.Region();
-    const bool isLarge = region.Area() > kLarge;
-    DenoisedImage image = DenoiseImage(
-        PictureOf(film, region), region, {},
-        {.effort = isLarge ? Effort::Rough : Effort::Quick, .withDeviation = !isLarge});
-    if (isLarge) image.error.assign(size_t(region.Area()), kUnknownError);
-    return image;
 }
 
 // A preview that cannot be written is a warning: the files may be written in the end.

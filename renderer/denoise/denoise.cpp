@@ -136,7 +136,7 @@ DenoisedPicture Denoise(NoisyPicture in, Effort effort) {
     result.noisy = std::move(in.colour);
     const std::vector<Firefly> fireflies = TakeFireflies(kFireflyLimit, &result.noisy);
     result.halves = FilterColours(result.noisy, std::move(in.features), result.variance, effort);
-    if (effort != Effort::Rough) RestoreStructure(result.noisy, result.variance, &result.halves);
+    RestoreStructure(result.noisy, result.variance, &result.halves);
     if (hasEmission) AddEmission(in.emission, &result);
     in.emission = {};
 

@@ -9,8 +9,7 @@ namespace lull {
 // What a denoised picture may cost.
 enum class Effort {
     Full,
-    Quick,  // a little worse, in 60 % of the time: for a look at how far a render is
-    Rough   // at half of the resolution, in 15 % of the time: for a look at a large picture
+    Quick  // a little worse, in 60 % of the time: for a look at how far a render is
 };
 
 // Returns both halves of the samples, R, G, B, filtered. `variance` is of a pixel of either.

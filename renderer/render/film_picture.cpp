@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "renderer/denoise/scales.h"
+#include "renderer/denoise/tile.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {
@@ -175,6 +177,45 @@ GroupedPicture GroupsOf(const Film& film, const PixelRect& rect, NoisyPicture al
 NoisyPicture PictureOf(const Film& film, const PixelRect& rect) {
     NoisyPicture picture = FeaturesOf(film, rect);
     picture.colour = ColoursOf(film, rect);
+    return picture;
+}
+
+NoisyPicture ReducedPictureOf(const Film& film, int halvings) {
+    const PixelRect& region = film.Region();
+    const int scale = 1 << halvings;
+    const auto reduced = [&](Planes image) {
+        for (int i = 0; i < halvings; ++i) image = Halved(image);
+        return image;
+    };
+    const auto reducedHalves = [&](const Halves& halves) {
+        return Halves{reduced(halves.a), reduced(halves.b)};
+    };
+    // Returns the pixels of the film that rows of the result are made of.
+    const auto rowsOf = [&](int y0, int y1) -> PixelRect {
+        const int top = region.min.y();
+        return {{region.min.x(), top + y0 * scale},
+                {region.max.x(), std::min(region.max.y(), top + y1 * scale)}};
+    };
+    const int width = (region.Width() + scale - 1) / scale,
+              height = (region.Height() + scale - 1) / scale;
+    NoisyPicture picture{
+        MakeHalves(width, height, kColours),
+        FilterFeatures(
+            width, height,
+            [&](int y0, int y1) { return reducedHalves(FeatureHalvesOf(film, rowsOf(y0, y1))); }),
+        Planes(width, height, 1),
+        {}};
+    constexpr int kRows = 16;
+    for (int y = 0; y < height; y += kRows) {
+        const PixelRect rows = rowsOf(y, std::min(height, y + kRows));
+        const Halves colour = reducedHalves(ColoursOf(film, rows));
+        Planes variance = reduced(VarianceOf(film, rows));
+        for (float& v : variance.values) v /= float(scale * scale);
+        const ImageTile tile{0, 0, width, colour.a.height};
+        Paste(colour.a, tile, 0, y, &picture.colour.a);
+        Paste(colour.b, tile, 0, y, &picture.colour.b);
+        Paste(variance, tile, 0, y, &picture.variance);
+    }
     return picture;
 }
 

@@ -43,19 +43,6 @@ TEST(RunDenoiser, IsQuickWhereAskedTo) {
               Interleaved(Denoise(NoisyExample(), Effort::Quick).picture));
 }
 
-// A rough picture shows structures of a few pixels without noise.
-TEST(RunDenoiser, IsRoughWhereAskedTo) {
-    const Planes truth =
-        MakePlanes(120, 90, 3, [](int, int x, int y) { return 0.3 + (x / 30 + y / 30) % 2 * 0.4; });
-    const auto denoised = [&](Effort effort) {
-        return Denoise(AddNoise(truth, FlatFeatures(120, 90), 0.2, 5), effort).picture;
-    };
-    const double full = Rms(denoised(Effort::Full), truth);
-    EXPECT_LT(Rms(denoised(Effort::Rough), truth), 0.1);
-    EXPECT_GT(Rms(denoised(Effort::Rough), truth), full);
-    EXPECT_EQ(RunDenoiser(NoisyExample(), {}, {.effort = Effort::Rough}).rgb.size(), 40u * 30 * 3);
-}
-
 // Two lamps of which each sample finds one: their noise cancels out in the sum.
 GroupedPicture OppositeLamps(const Planes& features) {
     return {2, features, Planes(40, 30, 1, 1e-10f), [](int group) {

@@ -110,6 +110,25 @@ TEST(TakePicture, IsThePictureOfTheFilm) {
     EXPECT_EQ(film.At({20, 20}).count, 8u);
 }
 
+TEST(ReducedPictureOf, HasTheMeansOfPixels) {
+    const FeatureRender render(1);
+    const NoisyPicture whole = PictureOf(render.film, kPictureRegion),
+                       reduced = ReducedPictureOf(render.film, 2);
+    ASSERT_EQ(reduced.colour.a.width, 15);
+    ASSERT_EQ(reduced.features.height, 10);
+    for (int y = 0; y < 10; ++y)
+        for (int x = 0; x < 15; ++x) {
+            double colour = 0, variance = 0;
+            for (int v = 4 * y; v < 4 * y + 4; ++v)
+                for (int u = 4 * x; u < 4 * x + 4; ++u) {
+                    colour += double(whole.colour.b.Row(1, v)[u]) / 16;
+                    variance += double(whole.variance.Row(0, v)[u]) / 256;
+                }
+            EXPECT_NEAR(reduced.colour.b.Row(1, y)[x], colour, 1e-4 * std::abs(colour));
+            EXPECT_NEAR(reduced.variance.Row(0, y)[x], variance, 1e-4 * variance);
+        }
+}
+
 // Of few samples one half has the pixel, and the other its neighbours, in turns.
 TEST(PictureOf, SplitsPixelsWithFewSamplesAsAChessboard) {
     for (const int spp : {1, 3}) {
