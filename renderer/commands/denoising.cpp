@@ -21,7 +21,6 @@ void KeepDecisions(const RenderResult& result, DenoisedImage* denoised) {
 }
 
 int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedImage* denoised) {
-    constexpr float mostLightness = 100;
     int count = 0;
     for (size_t i = 0; i < result.blocks.size(); ++i) {
         if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
@@ -31,7 +30,7 @@ int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedIma
         for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
             std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
                             (pixels.min.x() - region.min.x()),
-                        pixels.Width(), mostLightness);
+                        pixels.Width(), kUnknownError);
     }
     return count;
 }

@@ -34,10 +34,13 @@ void AddAovOptions(CLI::App& app, AovSet* wanted) {
         ->needs(aov);
 }
 
-void CheckLayersFit(const LayerOptions& layers, const PixelRect& region) {
-    CheckMemory(region.Area() * BytesOfLayers(layers),
-                fmt::format("layers of {}x{} pixels", region.Width(), region.Height()),
-                "render it in parts with --crop, or smaller with --resolution");
+void CheckLayersFit(const FilmOptions& film, const PixelRect& region, int64_t more) {
+    const int64_t made = BytesOfLayers(film.layers) - Layers::Bytes(film.layers) + more;
+    if (made == 0 && Layers::Bytes(film.layers) == 0) return;  // CheckFilmFits() has seen to it
+    CheckMemory(
+        Film::Bytes(region, film) + region.Area() * made,
+        fmt::format("an image of {}x{} pixels with its layers", region.Width(), region.Height()),
+        "render it in parts with --crop, or smaller with --resolution");
 }
 
 void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names) {

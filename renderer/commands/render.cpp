@@ -184,6 +184,13 @@ bool IsFinished(const PreparedRender& p) {
                     Printable(FirstDifference(wanted, found))));
 }
 
+// Returns the bytes a pixel of what is made beside the film and its layers: of previews, which
+// leave them as they are, and of the denoiser's inputs as they are written.
+int64_t BytesBeside(const RenderRequest& request) {
+    const bool hasPreviews = request.denoise && request.pictures.preview > 0;
+    return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);
+}
+
 // Checks all that can be wrong before the work begins.
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
     auto p = std::make_unique<PreparedRender>(request, ranks);
@@ -198,7 +205,7 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
     render.LockResults(p->files.exr);
     p->film.layers = request.WantedLayers();
-    CheckLayersFit(p->film.layers, region);
+    CheckLayersFit(p->film, region, BytesBeside(request));
     p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
                              region, ranks->Count(), TalkOf(render.settings));
     render.Compile();
@@ -263,8 +270,7 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
     const Film& film = session->TheFilm();
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
-        denoised =
-            DenoiseImage(PictureOf(film, film.Region()), film.Region(), {}, {.isQuick = true});
+        denoised = DenoisePreview(film);
         DoubtBlocks(result, film.Region(), &*denoised);
     }
     ResultFiles written(Rescue::None);
@@ -310,11 +316,10 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const bool hasGroups = p.request.denoise && film.layers.Find<LightGroupLayer>();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
     if (hasGroups)
-        lights = GroupedPictureOf(film, region);
+        lights = TakeGroups(&film);
     else if (p.request.denoise)
-        picture = FeaturesOf(film, region);
+        picture = TakePicture(&film);
     film.layers.ForgetFeatures();  // what follows needs the memory
-    if (p.request.denoise && !hasGroups) picture.colour = ColoursOf(film, region);
     film.DropHalf();
     if (!p.request.denoise) return made;
     const Talk talk = TalkOf(settings);

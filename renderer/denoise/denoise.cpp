@@ -1,8 +1,10 @@
 #include "renderer/denoise/denoise.h"
 
-#include "renderer/denoise/filter_colours.h"
+#include <cmath>
+
 #include "renderer/denoise/fireflies.h"
 #include "renderer/denoise/structure.h"
+#include "renderer/denoise/tile.h"
 
 namespace lull {
 
@@ -10,15 +12,18 @@ namespace {
 
 constexpr float kFireflyLimit = 4;  // standard deviations
 constexpr float kLeastLuminance = 1e-3f;
-constexpr int kNoiseRadius = 10;  // pixels over which halves say how large noise is
+constexpr int kNoiseRadius = 10;                  // pixels over which halves say how large noise is
+constexpr int kVarianceReach = kNoiseRadius + 1;  // pixels, from which a variance depends on others
 constexpr float kLeastVariance = 1e-10f;
 // Lamps are small where this share of the pixels within the radius shows them.
 constexpr int kLampRadius = 3;
 constexpr float kMostOfLamps = 0.3f;
 
+// Writes nothing where nothing changes, which would take memory.
 void MakeSane(Halves* halves) {
     for (Planes* half : {&halves->a, &halves->b})
-        for (float& v : half->values) v = Sane(v);
+        for (float& v : half->values)
+            if (const float sane = Sane(v); !(v == sane) || std::signbit(v)) v = sane;
 }
 
 Planes Channel(const Planes& image, int c) {
@@ -51,7 +56,8 @@ void KeepSmallLamps(Halves* emission) {
     lit = BoxMean(std::move(lit), kLampRadius);
     for (size_t i = 0; i < lit.Area(); ++i)
         for (int c = 0; c < kColours && lit.values[i] > kMostOfLamps; ++c)
-            emission->a.Plane(c)[i] = emission->b.Plane(c)[i] = 0;
+            for (Planes* half : {&emission->a, &emission->b})
+                if (half->Plane(c)[i] != 0) half->Plane(c)[i] = 0;
 }
 
 // Removes the emission of small lamps from the colours, with its share of their variance.
@@ -71,22 +77,8 @@ void TakeEmission(NoisyPicture* picture) {
     }
 }
 
-void AddEmission(const Halves& emission, DenoisedPicture* picture) {
-    const auto add = [](const Planes& to, Planes* half) {
-        for (size_t i = 0; i < to.values.size(); ++i)
-            half->values[i] = Sane(half->values[i] + to.values[i]);
-    };
-    for (Halves* halves : {&picture->halves, &picture->noisy}) {
-        add(emission.a, &halves->a);
-        add(emission.b, &halves->b);
-    }
-    add(BoxMean(VarianceOf(emission.a, emission.b), 1), &picture->variance);
-}
-
-}  // namespace
-
 // By the samples' squares of luminance, shared out by colour, and scaled.
-Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
+Planes VarianceIn(const Halves& colour, const Planes& ofMean) {
     if (ofMean.count == 0) return WithLeast(BoxMean(BoxMean(VarianceOf(colour.a, colour.b), 1), 1));
     Planes variance(ofMean.width, ofMean.height, kColours);
     for (size_t i = 0; i < variance.Area(); ++i) {
@@ -102,7 +94,39 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
     return WithLeast(BoxMean(std::move(variance), 1));
 }
 
-DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
+void AddEmission(const Halves& emission, DenoisedPicture* picture) {
+    const auto add = [](const Planes& to, Planes* half) {
+        for (size_t i = 0; i < to.values.size(); ++i)
+            half->values[i] = Sane(half->values[i] + to.values[i]);
+    };
+    for (Halves* halves : {&picture->halves, &picture->noisy}) {
+        add(emission.a, &halves->a);
+        add(emission.b, &halves->b);
+    }
+    const int width = emission.a.width, height = emission.a.height;
+    ForEachTile(width, height, [&](const ImageTile& tile) {
+        const ImageTile crop = tile.Grown(1).Within(width, height);
+        const Halves part = Crop(emission, crop);
+        Planes sum = Crop(picture->variance, crop);
+        add(BoxMean(VarianceOf(part.a, part.b), 1), &sum);
+        Paste(sum, tile.In(crop), tile.x0, tile.y0, &picture->variance);
+    });
+}
+
+}  // namespace
+
+Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
+    const int width = colour.a.width, height = colour.a.height;
+    Planes variance(width, height, kColours);
+    ForEachTile(width, height, [&](const ImageTile& tile) {
+        const ImageTile crop = tile.Grown(kVarianceReach).Within(width, height);
+        const Planes made = VarianceIn(Crop(colour, crop), Crop(ofMean, crop));
+        Paste(made, tile.In(crop), tile.x0, tile.y0, &variance);
+    });
+    return variance;
+}
+
+DenoisedPicture Denoise(NoisyPicture in, Effort effort) {
     const bool hasEmission = in.emission.a.count > 0;
     if (hasEmission) TakeEmission(&in);
     MakeSane(&in.colour);
@@ -111,12 +135,13 @@ DenoisedPicture Denoise(NoisyPicture in, int rowsPerFit) {
     in.variance = {};  // a large picture needs the memory, here and below
     result.noisy = std::move(in.colour);
     const std::vector<Firefly> fireflies = TakeFireflies(kFireflyLimit, &result.noisy);
-    result.halves = FilterColours(result.noisy, in.features, result.variance, rowsPerFit);
-    in.features = {};
+    result.halves = FilterColours(result.noisy, std::move(in.features), result.variance, effort);
     RestoreStructure(result.noisy, result.variance, &result.halves);
     if (hasEmission) AddEmission(in.emission, &result);
+    in.emission = {};
 
-    result.picture = result.halves.a;
+    const Planes& size = result.variance;
+    result.picture = Planes(size.width, size.height, kColours);
     for (size_t i = 0; i < result.picture.values.size(); ++i)
         result.picture.values[i] =
             Sane((result.halves.a.values[i] + result.halves.b.values[i]) / 2);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "renderer/denoise/feature_filter.h"
+#include "renderer/denoise/filter_colours.h"
 
 namespace lull {
 
@@ -37,7 +38,7 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean);
 
 // Denoises a picture of at least one pixel, whose memory it uses. Values that are not finite or
 // negative count as 0. The same bits for any number of threads. Takes some 7.5 us of
-// CPU time a pixel, or 5.5 with 2 rows a fit (see RegressionInput).
-DenoisedPicture Denoise(NoisyPicture, int rowsPerFit = 1);
+// CPU time a pixel, or 5.5 if it is quick.
+DenoisedPicture Denoise(NoisyPicture, Effort = Effort::Full);
 
 }  // namespace lull

@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "renderer/denoise/structure.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {
@@ -9,8 +10,6 @@ namespace lull {
 namespace {
 
 using Blocks = std::vector<std::optional<VisibleError>>;
-
-int RowsPerFit(const DenoiserOptions& options) { return options.isQuick ? 2 : 1; }
 
 void Add(const Planes& image, Planes* sum) {
     if (sum->count == 0) *sum = Planes(image.width, image.height, image.count);
@@ -32,43 +31,103 @@ void Raise(const Blocks& errors, Blocks* blocks) {
     }
 }
 
-// Measures the error of a picture as it is shown, without `noisy` in the end: a large one needs the
-// memory. Returns the standard errors of pixels, where they are wanted.
-std::vector<float> MeasureShown(DenoisedPicture* shown, std::span<const PixelRect> places,
-                                bool withDeviation, Blocks* blocks) {
+// A denoised picture as it is shown, some pixels of which are made at a time, as a graded copy of a
+// large one would take much memory.
+struct ShownPicture {
+    const DenoisedPicture& linear;
+    const Grading& grading;  // null: the same
+
+    int Width() const { return linear.picture.width; }
+    int Height() const { return linear.picture.height; }
+    DenoisedPicture In(const ImageTile& tile) const {
+        return grading ? Graded(Crop(linear, tile), grading) : Crop(linear, tile);
+    }
+    // Calls use(shown, crop, rows) for some rows after the other, cut out with this margin.
+    template <typename Use>
+    void ForEachRows(int margin, const Use& use) const {
+        for (int y = 0; y < Height(); y += kRows) {
+            const ImageTile rows{0, y, Width(), std::min(y + kRows, Height())};
+            const ImageTile crop = rows.Grown(margin).Within(Width(), Height());
+            use(In(crop), crop, rows);
+        }
+    }
+
+    static constexpr int kRows = 232;  // with margins not more than BandRows() takes at once
+};
+
+// Returns the structure that a picture lacks.
+Planes StructureLeft(const ShownPicture& picture) {
+    const DenoisedPicture& linear = picture.linear;
+    if (!picture.grading) return StructureLeft(linear.noisy, linear.variance, linear.halves);
+    Planes left(picture.Width(), picture.Height(), 1);
+    picture.ForEachRows(kStructureReach, [&](const DenoisedPicture& shown, const ImageTile& crop,
+                                             const ImageTile& rows) {
+        Paste(StructureLeft(shown.noisy, shown.variance, shown.halves), rows.In(crop), rows.x0,
+              rows.y0, &left);
+    });
+    return left;
+}
+
+// Returns the standard errors of pixels.
+std::vector<float> DeviationOf(const ShownPicture& picture, const Planes& structure) {
     std::vector<float> deviation;
-    const EstimatedError error = MeasureError(*shown);
-    if (withDeviation) deviation = StandardError(*shown, error.structure).values;
-    shown->noisy = {};
+    deviation.reserve(structure.Area());
+    picture.ForEachRows(kErrorReach, [&](const DenoisedPicture& shown, const ImageTile& crop,
+                                         const ImageTile& rows) {
+        const Planes made = StandardError(shown, Crop(structure, crop));
+        const ImageTile part = rows.In(crop);
+        deviation.insert(deviation.end(), made.Row(0, part.y0), made.Row(0, part.y1));
+    });
+    return deviation;
+}
+
+// Measures the error of a block.
+VisibleError ErrorIn(const ShownPicture& picture, const Planes& structure, const PixelRect& block) {
+    const ImageTile tile{block.min.x(), block.min.y(), block.max.x(), block.max.y()};
+    const ImageTile crop = tile.Grown(kErrorReach).Within(picture.Width(), picture.Height());
+    const DenoisedPicture shown = picture.In(crop);
+    const ImageTile part = tile.In(crop);
+    return MeasureVisibleError(shown, MeasureError(shown, Crop(structure, crop)),
+                               {{part.x0, part.y0}, {part.x1, part.y1}});
+}
+
+// Measures the error of a picture as it is shown. Returns the standard errors of pixels, where they
+// are wanted.
+std::vector<float> MeasureShown(const ShownPicture& picture, std::span<const PixelRect> places,
+                                bool withDeviation, Blocks* blocks) {
+    if (places.empty() && !withDeviation) return {};
+    const Planes structure = StructureLeft(picture);
     blocks->resize(places.size());
     tbb::this_task_arena::isolate([&] {
         ForEachIndex(int(places.size()), [&](int i) {
             const PixelRect& place = places[size_t(i)];
             if (std::min(place.Width(), place.Height()) >= kSmallestMeasuredSide)
-                (*blocks)[size_t(i)] = MeasureVisibleError(*shown, error, place);
+                (*blocks)[size_t(i)] = ErrorIn(picture, structure, place);
         });
     });
-    return deviation;
+    return withDeviation ? DeviationOf(picture, structure) : std::vector<float>();
 }
 
 // Measures the error of a denoised picture, whose memory it uses.
 DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> places,
                         const DenoiserOptions& options) {
     DenoiserResult result;
-    const bool isPlain = options.gradings.empty();
-    if (isPlain)
-        result.deviation = MeasureShown(&denoised, places, options.withDeviation, &result.blocks);
-    for (size_t i = 0; i < options.gradings.size(); ++i) {
-        DenoisedPicture shown = Graded(denoised, options.gradings[i]);
-        if (i == 0) {
-            result.deviation = MeasureShown(&shown, places, options.withDeviation, &result.blocks);
-            continue;
-        }
+    const std::vector<Grading> plain(1);
+    const std::vector<Grading>& gradings = options.gradings.empty() ? plain : options.gradings;
+    for (size_t i = 0; i < gradings.size(); ++i) {
+        const bool isFirst = i == 0;
         Blocks errors;
-        MeasureShown(&shown, places, false, &errors);
-        Raise(errors, &result.blocks);
+        std::vector<float> deviation = MeasureShown({denoised, gradings[i]}, places,
+                                                    isFirst && options.withDeviation, &errors);
+        if (isFirst) {
+            result.deviation = std::move(deviation);
+            result.blocks = std::move(errors);
+        } else {
+            Raise(errors, &result.blocks);
+        }
     }
     denoised.noisy = denoised.halves = {};
+    denoised.variance = {};
     result.rgb = Interleaved(denoised.picture);
     return result;
 }
@@ -77,7 +136,7 @@ DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> pla
 
 DenoiserResult RunDenoiser(NoisyPicture picture, std::span<const PixelRect> blocks,
                            const DenoiserOptions& options) {
-    return Measured(Denoise(std::move(picture), RowsPerFit(options)), blocks, options);
+    return Measured(Denoise(std::move(picture), options.effort), blocks, options);
 }
 
 GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blocks,
@@ -91,7 +150,7 @@ GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blo
         Add(light.colour, &colour);
         const bool isLast = i + 1 == picture.groups;
         light.features = isLast ? std::move(picture.features) : picture.features;
-        DenoisedPicture denoised = Denoise(std::move(light), RowsPerFit(options));
+        DenoisedPicture denoised = Denoise(std::move(light), options.effort);
         Add(denoised.picture, &sum.picture);
         Add(denoised.halves, &sum.halves);
         Add(denoised.noisy, &sum.noisy);

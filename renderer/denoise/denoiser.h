@@ -11,11 +11,13 @@
 
 namespace lull {
 
-inline constexpr int kDenoiserBytes = 254;        // of memory a pixel, while it works
+// Memory a pixel, in bytes, that the denoiser takes while it works: of a NoisyPicture, with that;
+// of a GroupedPicture in addition; and of large pictures for lists and rows at hand.
+inline constexpr int kDenoiserBytes = 92, kGroupsBytes = 104;
 inline constexpr int kSmallestMeasuredSide = 10;  // pixels of a block whose error can be measured
 
 struct DenoiserOptions {
-    bool isQuick = false;  // a little worse, in 60 % of the time: for a look at how far a render is
+    Effort effort = Effort::Full;
     bool withDeviation = true;  // measure the standard error of pixels, too
     // How the picture is shown when its error is measured: of a block the largest counts, of pixels
     // that of the first. None: the picture is shown as it is.

@@ -1,5 +1,6 @@
 #include "renderer/denoise/feature_filter.h"
 
+#include <bit>
 #include <cmath>
 
 #include "renderer/denoise/patch_weights.h"
@@ -17,18 +18,33 @@ constexpr int kBand = 64;                       // rows that are in memory at a 
 constexpr int kDisparity = kFeatures - 1;
 
 // Returns the median of one over the depth, where there is anything; 0 if there is nothing at all.
+// So that the values need not be kept, they are counted twice: by the upper half of their bits, in
+// whose order positive floats are, and those of the middle by the lower half.
 float MedianDisparity(int height, const FeatureReader& read) {
-    std::vector<float> found;
-    for (int y = 0; y < height; y += kBand) {
-        const Halves halves = read(y, std::min(height, y + kBand));
-        for (const Planes* half : {&halves.a, &halves.b})
-            for (size_t i = 0; i < half->Area(); ++i)
-                if (const float d = Sane(half->Plane(kDisparity)[i]); d > 0) found.push_back(d);
-    }
-    if (found.empty()) return 0;
-    const auto middle = found.begin() + ptrdiff_t(found.size() / 2);
-    std::nth_element(found.begin(), middle, found.end());
-    return *middle;
+    constexpr uint32_t kCounters = 1 << 16;
+    std::vector<int64_t> high(kCounters), low(kCounters);
+    const auto forEach = [&](const auto& use) {
+        for (int y = 0; y < height; y += kBand) {
+            const Halves halves = read(y, std::min(height, y + kBand));
+            for (const Planes* half : {&halves.a, &halves.b})
+                for (size_t i = 0; i < half->Area(); ++i)
+                    if (const float d = Sane(half->Plane(kDisparity)[i]); d > 0)
+                        use(std::bit_cast<uint32_t>(d));
+        }
+    };
+    // Returns where the value number `rank` is, of which `rank` is made that within there.
+    const auto find = [](const std::vector<int64_t>& counts, int64_t* rank) {
+        uint32_t i = 0;
+        for (; *rank >= counts[i]; ++i) *rank -= counts[i];
+        return i;
+    };
+    int64_t count = 0;
+    forEach([&](uint32_t bits) { ++high[bits / kCounters], ++count; });
+    if (count == 0) return 0;
+    int64_t rank = count / 2;
+    const uint32_t middle = find(high, &rank);
+    forEach([&](uint32_t bits) { low[bits % kCounters] += bits / kCounters == middle; });
+    return std::bit_cast<float>(middle * kCounters + find(low, &rank));
 }
 
 // Brings features to [-1, 1]: of one over the depth, d becomes d / (d + median), which is 0 where
@@ -74,7 +90,8 @@ void AddFiltered(const Planes& image, const PatchGuide& guide, const ImageTile& 
 
 }  // namespace
 
-Planes FilterFeatures(int width, int height, const FeatureReader& read) {
+Planes FilterFeatures(int width, int height, const FeatureReader& read,
+                      const std::function<void(int end)>& forget) {
     const float median = MedianDisparity(height, read);
     Planes result(width, height, kFeatures);
     for (int y0 = 0; y0 < height; y0 += kBand) {
@@ -90,6 +107,7 @@ Planes FilterFeatures(int width, int height, const FeatureReader& read) {
             AddFiltered(halves.b, {halves.a, variance}, tile, &filtered);
         });
         Paste(filtered, {0, y0 - first, width, y1 - first}, 0, y0, &result);
+        if (forget) forget(std::max(0, y1 - kReach));
     }
     return result;
 }

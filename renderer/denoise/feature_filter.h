@@ -18,7 +18,9 @@ using FeatureReader = std::function<Halves(int y0, int y1)>;
 
 // Returns the mean of both halves, each filtered by non-local means with weights from the other
 // half, and scaled to [-1, 1]. Noise comes from lenses, motion and glossy paths; without noise,
-// nothing is changed. NaN counts as 0.
-Planes FilterFeatures(int width, int height, const FeatureReader&);
+// nothing is changed. NaN counts as 0. Calls forget(end), if there is such, when the rows above
+// `end` will not be read again.
+Planes FilterFeatures(int width, int height, const FeatureReader&,
+                      const std::function<void(int end)>& forget = {});
 
 }  // namespace lull

@@ -19,6 +19,8 @@ constexpr int kLeastSide = 20;  // pixels of a picture that is looked at in half
 // between: even, so that a crop is halved as the whole is.
 constexpr int kMargin = 2 * kChoiceReach + 4;
 static_assert(kMargin % 2 == 0);
+constexpr int kBandRows = 256;  // even, as kMargin; many, as rows next to a band are fitted twice
+constexpr int kFitReach = 2 * kPatches.radius;  // pixels from which a fit depends on features
 
 // Inputs of one scale.
 struct Level {
@@ -31,10 +33,6 @@ struct Level {
     int Width() const { return variance.width; }
     int Height() const { return variance.height; }
 };
-
-Halves CropHalves(const Halves& halves, const ImageTile& tile) {
-    return {Crop(halves.a, tile), Crop(halves.b, tile)};
-}
 
 // Some rows of the candidates of all bandwidths.
 struct CandidateRows {
@@ -75,12 +73,12 @@ struct CandidateRows {
     }
     // Returns a crop, which begins at an even pixel, of the best of all scales.
     Halves Choose(const Level& level, const ImageTile& crop) const {
-        const Halves noisy = CropHalves(level.noisy, crop);
+        const Halves noisy = Crop(level.noisy, crop);
         const Planes variance = Crop(level.variance, crop);
         std::vector<Halves> candidates;
         for (const Halves& picture : pictures)
             candidates.push_back(
-                CropHalves(picture, {crop.x0, crop.y0 - first, crop.x1, crop.y1 - first}));
+                Crop(picture, {crop.x0, crop.y0 - first, crop.x1, crop.y1 - first}));
         Halves fine = ChooseCandidates(std::move(candidates), noisy, variance);
         if (level.coarse.a.count == 0) return fine;
         const ImageTile half{crop.x0 / 2, crop.y0 / 2, (crop.x1 + 1) / 2, (crop.y1 + 1) / 2};
@@ -95,20 +93,22 @@ struct CandidateRows {
     }
 };
 
-Halves FilterLevel(const Level& level) {
+// Frees the features, which are large, as far as they are of no use any more.
+Halves FilterLevel(const Level& level, Planes* features) {
     const int width = level.Width(), height = level.Height();
     Halves result{Planes(width, height, kColours), Planes(width, height, kColours)};
-    CandidateRows rows(width, std::min(height, BandRows(height) + 2 * kMargin));
-    int done = 0;
-    for (int y0 = 0; y0 < height; y0 += BandRows(height)) {
-        const int y1 = std::min(height, y0 + BandRows(height));
+    CandidateRows rows(width, std::min(height, kBandRows + 2 * kMargin));
+    int done = 0, forgotten = 0;
+    for (int y0 = 0; y0 < height; y0 += kBandRows) {
+        const int y1 = std::min(height, y0 + kBandRows);
         rows.Fit(level, y0, y1);
+        features->ForgetRows(forgotten, std::max(forgotten, y1 - kFitReach));
+        forgotten = std::max(forgotten, y1 - kFitReach);
         const int ready = y1 == height ? height : y1 - kMargin;
         ForEachTile(width, done, ready, [&](const ImageTile& tile) {
             const ImageTile crop = tile.Grown(kMargin).Within(width, y1);
             const Halves chosen = rows.Choose(level, crop);
-            const ImageTile part{tile.x0 - crop.x0, tile.y0 - crop.y0, tile.x1 - crop.x0,
-                                 tile.y1 - crop.y0};
+            const ImageTile part = tile.In(crop);
             Paste(chosen.a, part, tile.x0, tile.y0, &result.a);
             Paste(chosen.b, part, tile.x0, tile.y0, &result.b);
         });
@@ -118,23 +118,32 @@ Halves FilterLevel(const Level& level) {
     return result;
 }
 
-Halves FilterLevels(const Halves& noisy, const Planes& features, const Planes& variance, int scales,
+Halves FilterLevels(const Halves& noisy, Planes features, const Planes& variance, int scales,
+                    int rowsPerFit);
+
+// Filters a picture at half of its size, and at less. Returns nothing where it is too small for
+// that, or where no scale is left.
+Halves FilterCoarse(const Halves& noisy, const Planes& features, const Planes& variance, int scales,
                     int rowsPerFit) {
-    Halves coarse;  // first, as nothing of this scale is there yet
-    if (scales > 1 && std::min(variance.width, variance.height) >= 2 * kLeastSide) {
-        Planes ofMeans = Halved(variance);
-        for (float& v : ofMeans.values) v /= 4;
-        coarse = FilterLevels({Halved(noisy.a), Halved(noisy.b)}, Halved(features), ofMeans,
-                              scales - 1, rowsPerFit);
-    }
-    return FilterLevel({noisy, features, variance, coarse, rowsPerFit});
+    if (scales == 0 || std::min(variance.width, variance.height) < 2 * kLeastSide) return {};
+    Planes ofMeans = Halved(variance);
+    for (float& v : ofMeans.values) v /= 4;
+    return FilterLevels({Halved(noisy.a), Halved(noisy.b)}, Halved(features), ofMeans, scales,
+                        rowsPerFit);
+}
+
+Halves FilterLevels(const Halves& noisy, Planes features, const Planes& variance, int scales,
+                    int rowsPerFit) {
+    // First, as nothing of this scale is there yet.
+    const Halves coarse = FilterCoarse(noisy, features, variance, scales - 1, rowsPerFit);
+    return FilterLevel({noisy, features, variance, coarse, rowsPerFit}, &features);
 }
 
 }  // namespace
 
-Halves FilterColours(const Halves& noisy, const Planes& features, const Planes& variance,
-                     int rowsPerFit) {
-    return FilterLevels(noisy, features, variance, kScales, rowsPerFit);
+Halves FilterColours(const Halves& noisy, Planes features, const Planes& variance, Effort effort) {
+    const int rowsPerFit = effort == Effort::Full ? 1 : 2;
+    return FilterLevels(noisy, std::move(features), variance, kScales, rowsPerFit);
 }
 
 }  // namespace lull

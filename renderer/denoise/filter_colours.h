@@ -6,10 +6,15 @@
 
 namespace lull {
 
+// What a denoised picture may cost.
+enum class Effort {
+    Full,
+    Quick  // a little worse, in 60 % of the time: for a look at how far a render is
+};
+
 // Returns both halves of the samples, R, G, B, filtered. `variance` is of a pixel of either.
-// Processes bands of rows, so that the candidates of few rows are in memory at a time. The same
-// bits for any number of threads.
-Halves FilterColours(const Halves& noisy, const Planes& features, const Planes& variance,
-                     int rowsPerFit);
+// Processes bands of rows, so that the candidates of few rows are in memory at a time, and the
+// result takes the place of the features. The same bits for any number of threads.
+Halves FilterColours(const Halves& noisy, Planes features, const Planes& variance, Effort);
 
 }  // namespace lull

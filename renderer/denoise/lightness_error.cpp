@@ -6,7 +6,6 @@
 
 #include "renderer/denoise/displayed_lightness.h"
 #include "renderer/denoise/structure.h"
-#include "renderer/denoise/tile.h"
 #include "stopping/signals/entropy_drop.h"
 #include "stopping/signals/svd_entropy.h"
 
@@ -14,9 +13,9 @@ namespace lull {
 
 namespace {
 
-constexpr int kSide = 10;             // sub-blocks a side
-constexpr double kUpper = 1.645;      // standard deviations, of a one-sided 95 %
-constexpr int kSmoothRadius = 5;      // pixels
+constexpr int kSide = 10;         // sub-blocks a side
+constexpr double kUpper = 1.645;  // standard deviations, of a one-sided 95 %
+constexpr int kSmoothRadius = kErrorReach;
 constexpr double kLeastDoubt = 0.01;  // of the mean doubt
 // Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
 // 10 degrees, 40 pixels a degree): people see blotches of 4, 8, 16 pixels 2.2, 2.0, 1.4 times as
@@ -165,15 +164,6 @@ EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
     return error;
 }
 
-DenoisedPicture CropPicture(const DenoisedPicture& denoised, const ImageTile& tile) {
-    const auto crop = [&](const Planes& image) { return Crop(image, tile); };
-    return {crop(denoised.picture),
-            {crop(denoised.halves.a), crop(denoised.halves.b)},
-            {crop(denoised.noisy.a), crop(denoised.noisy.b)},
-            crop(denoised.variance),
-            crop(denoised.returned)};
-}
-
 Planes StandardErrorOf(const DenoisedPicture& denoised, const Planes& structure) {
     const EstimatedError error = Measure(denoised, false);
     const Planes squared = BoxMean(error.squared, kSmoothRadius);
@@ -198,9 +188,19 @@ Planes AsSeen(Planes difference) {
     return difference;
 }
 
+DenoisedPicture Crop(const DenoisedPicture& denoised, const ImageTile& tile) {
+    return {Crop(denoised.picture, tile), Crop(denoised.halves, tile), Crop(denoised.noisy, tile),
+            Crop(denoised.variance, tile), Crop(denoised.returned, tile)};
+}
+
 EstimatedError MeasureError(const DenoisedPicture& denoised) {
+    return MeasureError(denoised,
+                        StructureLeft(denoised.noisy, denoised.variance, denoised.halves));
+}
+
+EstimatedError MeasureError(const DenoisedPicture& denoised, Planes structure) {
     EstimatedError error = Measure(denoised, true);
-    error.structure = StructureLeft(denoised.noisy, denoised.variance, denoised.halves);
+    error.structure = std::move(structure);
     error.noisy = {LuminancesOf(denoised.noisy.a), LuminancesOf(denoised.noisy.b)};
     return error;
 }
@@ -229,13 +229,11 @@ LightnessError MeasureLightnessError(const EstimatedError& error, const PixelRec
 Planes StandardError(const DenoisedPicture& denoised, const Planes& structure) {
     const int width = structure.width, height = structure.height;
     Planes result(width, height, 1);
-    for (int y0 = 0; y0 < height; y0 += BandRows(height)) {
-        const int y1 = std::min(height, y0 + BandRows(height));
-        const ImageTile rows =
-            ImageTile{0, y0 - kSmoothRadius, width, y1 + kSmoothRadius}.Within(width, height);
-        const Planes made = StandardErrorOf(CropPicture(denoised, rows), Crop(structure, rows));
-        Paste(made, {0, y0 - rows.y0, width, y1 - rows.y0}, 0, y0, &result);
-    }
+    ForEachTile(width, height, [&](const ImageTile& tile) {
+        const ImageTile crop = tile.Grown(kSmoothRadius).Within(width, height);
+        const Planes made = StandardErrorOf(Crop(denoised, crop), Crop(structure, crop));
+        Paste(made, tile.In(crop), tile.x0, tile.y0, &result);
+    });
     return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include "renderer/base/pixel_rect.h"
 #include "renderer/denoise/denoise.h"
+#include "renderer/denoise/tile.h"
 
 namespace lull {
 
@@ -16,7 +17,10 @@ struct EstimatedError {
     Planes structure;  // structure of the samples that the picture lacks (structure.h); not squared
     Halves noisy;      // luminances of the halves of the samples
 };
-// Measures it as it is seen (AsSeen).
+// Measures it as it is seen (AsSeen). A crop has the same bits, but for structure, where it has a
+// margin of kErrorReach pixels; `structure` is that of the picture.
+inline constexpr int kErrorReach = 5;
+EstimatedError MeasureError(const DenoisedPicture&, Planes structure);
 EstimatedError MeasureError(const DenoisedPicture&);
 
 // Scales coarse differences in lightness, blotches of several pixels, by the higher sensitivity of
@@ -34,6 +38,9 @@ struct LightnessError {
 
 // Measures a block of at least 10 pixels a side.
 LightnessError MeasureLightnessError(const EstimatedError&, const PixelRect&);
+
+// Returns the part of a picture that a tile within it covers.
+DenoisedPicture Crop(const DenoisedPicture&, const ImageTile&);
 
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,
 // with that of missing structure (EstimatedError::structure) and of fireflies.

@@ -46,7 +46,9 @@ double Excess(const Plane& a, const Plane& b, const Plane& noise, const Plane& h
 }  // namespace
 
 Planes MissingDetail(const CrossedResiduals& of, float ratio) {
-    const auto image = [](const Planes& p) { return Plane{p.width, p.height, p.values}; };
+    const auto image = [](const Planes& p) {
+        return Plane{p.width, p.height, {p.values.begin(), p.values.end()}};
+    };
     Plane a = image(of.a), b = image(of.b), noise = image(of.noise), half = image(of.half);
     std::vector<Plane> pattern;
     while (std::min(a.width, a.height) >= kSmallestSide) {
@@ -68,7 +70,7 @@ Planes MissingDetail(const CrossedResiduals& of, float ratio) {
         sum = Expand(sum, pattern[i].width, pattern[i].height);
         for (size_t k = 0; k < sum.values.size(); ++k) sum.values[k] += pattern[i].values[k];
     }
-    missing.values = std::move(sum.values);
+    std::ranges::copy(sum.values, missing.values.begin());
     return missing;
 }
 

@@ -4,19 +4,24 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "renderer/base/color.h"
+#include "renderer/base/zero_values.h"
 
 namespace lull {
 
-// `count` channels of width x height values, channel by channel, row by row from the top.
+// `count` channels of width x height values, channel by channel, row by row from the top. They are
+// 0 at first; those of large images take memory only where they are written.
 struct Planes {
     int width = 0, height = 0, count = 0;
-    std::vector<float> values;
+    std::vector<float, ZeroAllocator<float>> values;
 
     Planes() = default;
-    Planes(int width, int height, int count, float value = 0)
+    Planes(int width, int height, int count)
+        : width(width), height(height), count(count), values(Area() * size_t(count)) {}
+    Planes(int width, int height, int count, float value)
         : width(width), height(height), count(count), values(Area() * size_t(count), value) {}
 
     size_t Area() const { return size_t(width) * size_t(height); }
@@ -24,6 +29,12 @@ struct Planes {
     const float* Plane(int c) const { return values.data() + size_t(c) * Area(); }
     float* Row(int c, int y) { return Plane(c) + size_t(y) * size_t(width); }
     const float* Row(int c, int y) const { return Plane(c) + size_t(y) * size_t(width); }
+
+    // Frees the rows [y0, y1), whose values become unknown.
+    void ForgetRows(int y0, int y1) {
+        for (int c = 0; c < count && y0 < y1; ++c)
+            ForgetValues(std::as_bytes(std::span(Row(c, y0), Row(c, y1))));
+    }
 };
 
 inline constexpr int kColours = 3;  // R, G, B

@@ -15,6 +15,8 @@ constexpr int kColumns = kUnknowns + kColours;
 constexpr float kRidge = 1e-4f;
 // Neighbours of less weight are left out where that is so of all sixteen.
 constexpr float kLeastWeight = 1e-3f;
+constexpr float kFarthest =
+    7;  // squared bandwidths: a neighbour has less than that weight for sure
 constexpr float kOwnWeight = 0.1f;  // of a pixel's own colour, where there is no fit around it
 constexpr int kAtOnce = 4;          // neighbours for which each sum is loaded and stored once
 
@@ -87,6 +89,8 @@ float Largest(const Lanes& values) {
     const auto of4 = of8.head<4>().max(of8.tail<4>()).eval();
     return std::max(std::max(of4[0], of4[1]), std::max(of4[2], of4[3]));
 }
+
+float Least(const Lanes& values) { return -Largest(-values); }
 
 // Fits sixteen pixels at a time, and adds each fit to the pixels that it was made from.
 class TileFits {
@@ -166,10 +170,12 @@ class TileFits {
     void FindNeighbours(float bandwidth) {
         count = 0;
         const int side = 2 * radius + 1;
+        const float farthest = kFarthest * bandwidth * bandwidth;
         for (int dx = -radius; dx <= radius; ++dx)
             for (int dy = -radius; dy <= radius; ++dy) {
-                const Lanes w = PatchWeights::WeightOf(
-                    distances[size_t((dy + radius) * side + dx + radius)], bandwidth);
+                const Lanes& d = distances[size_t((dy + radius) * side + dx + radius)];
+                if (Least(d) > farthest) continue;
+                const Lanes w = PatchWeights::WeightOf(d, bandwidth);
                 if (!(Largest(w) > kLeastWeight)) continue;
                 neighbours[count] = {dx, dy, dy * features.Stride() + dx};
                 weightsOf[count++] = w;

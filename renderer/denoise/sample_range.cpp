@@ -49,13 +49,11 @@ SampleRange RangeOfSamples(const Planes& noisy, const ImageTile& tile) {
 }
 
 void ClampToSamples(const Planes& noisy, Planes* picture) {
-    const int rows = BandRows(noisy.height);
-    for (int y = 0; y < noisy.height; y += rows)
-        ForEachTile(noisy.width, y, std::min(noisy.height, y + rows), [&](const ImageTile& tile) {
-            Planes part = Crop(*picture, tile);
-            RangeOfSamples(noisy, tile).Clamp(&part);
-            Paste(part, {0, 0, part.width, part.height}, tile.x0, tile.y0, picture);
-        });
+    ForEachTile(noisy.width, noisy.height, [&](const ImageTile& tile) {
+        Planes part = Crop(*picture, tile);
+        RangeOfSamples(noisy, tile).Clamp(&part);
+        Paste(part, {0, 0, part.width, part.height}, tile.x0, tile.y0, picture);
+    });
 }
 
 }  // namespace lull

@@ -37,6 +37,12 @@ Planes Halved(const Planes& image) {
     return half;
 }
 
+Planes Doubled(const Planes& image, int width, int height) {
+    Planes doubled(width, height, image.count);
+    AddEnlarged(image, &doubled);
+    return doubled;
+}
+
 Planes WithCoarsePart(Planes fine, const Planes& coarse) {
     Planes change = Halved(fine);
     for (size_t i = 0; i < change.values.size(); ++i)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "renderer/denoise/displayed_lightness.h"
 #include "renderer/denoise/sample_range.h"
@@ -16,10 +17,11 @@ constexpr int kLineReach = 5;                                                // 
 constexpr int kBarReach = 2, kBoxRadius = 1, kBoxSide = 2 * kBoxRadius + 1;  // in boxes, and pixels
 constexpr int kKernelReach = kBarReach * kBoxSide;
 static_assert(kKernelReach >= kLineReach);
-constexpr int kMiddleReach = 2;  // pixels of a line
+constexpr int kMiddleReach = 2;  // pixels of a line, not less than of other kernels
 constexpr int kAroundReach = 3;
 // Distance up to which pixels contribute to the sums around one.
 constexpr int kResidualReach = kKernelReach + kBoxRadius + kAroundReach;
+static_assert(kResidualReach == kStructureReach);
 constexpr int kRestoreRounds = 3;
 // Standard deviations from which on a mean is structure, and is so for certain.
 constexpr float kDoubtful = 4.5f, kCertain = 5.5f;
@@ -227,8 +229,29 @@ Rgb MeanResidual(const Planes& noisy, const Planes& picture, const Kernel& kerne
     return sum / float(kernel.Count());
 }
 
-// Adds to each pixel of a half the weighted mean of all that is found by kernels with it in their
-// middle.
+// Adds to each pixel of the rows [y0, y1) the weighted mean of all that is found around it. `means`
+// are those of `all`, which begins with the first that matters to these rows.
+void AddToRows(std::span<const Found> all, std::span<const Rgb> means,
+               const std::vector<Kernel>& kernels, int y0, int y1, Planes* picture) {
+    const int width = picture->width;
+    Planes change(width, y1 - y0, kColours), weight(width, y1 - y0, 1);
+    for (size_t i = 0; i < all.size() && all[i].y < y1 + kMiddleReach; ++i)
+        for (const auto [dx, dy] : kernels[all[i].kernel].middle) {
+            const int x = all[i].x + dx, y = all[i].y + dy;
+            if (x < 0 || x >= width || y < y0 || y >= y1) continue;
+            weight.Row(0, y - y0)[x] += all[i].weight;
+            for (int c = 0; c < kColours; ++c)
+                change.Row(c, y - y0)[x] += all[i].weight * means[i][c];
+        }
+    for (int c = 0; c < kColours; ++c) {
+        float* to = picture->Row(c, y0);
+        for (size_t i = 0; i < weight.Area(); ++i)
+            if (weight.values[i] > 0) to[i] += change.Plane(c)[i] / weight.values[i];
+    }
+}
+
+// Adds to each pixel of a half the weighted mean of all, row by row, that is found by kernels with
+// it in their middle.
 void AddFound(const std::vector<Found>& all, const std::vector<Kernel>& kernels,
               const Planes& noisy, Planes* picture) {
     std::vector<Rgb> means(all.size());
@@ -240,17 +263,13 @@ void AddFound(const std::vector<Found>& all, const std::vector<Kernel>& kernels,
             means[i] = f.share * MeanResidual(noisy, *picture, kernels[f.kernel], f.x, f.y);
         }
     });
-    Planes change(noisy.width, noisy.height, kColours), weight(noisy.width, noisy.height, 1);
-    for (size_t i = 0; i < all.size(); ++i)
-        for (const auto [dx, dy] : kernels[all[i].kernel].middle) {
-            const int x = all[i].x + dx, y = all[i].y + dy;
-            if (!IsWithin(noisy, x, y)) continue;
-            weight.Row(0, y)[x] += all[i].weight;
-            for (int c = 0; c < kColours; ++c) change.Row(c, y)[x] += all[i].weight * means[i][c];
-        }
-    for (size_t i = 0; i < weight.Area(); ++i)
-        for (int c = 0; c < kColours; ++c)
-            if (weight.values[i] > 0) picture->Plane(c)[i] += change.Plane(c)[i] / weight.values[i];
+    const int rows = BandRows(noisy.height);
+    for (int y0 = 0; y0 < noisy.height; y0 += rows) {
+        const auto first = std::ranges::lower_bound(all, y0 - kMiddleReach, {}, &Found::y);
+        const size_t skipped = size_t(first - all.begin());
+        AddToRows({first, all.end()}, std::span(means).subspan(skipped), kernels, y0,
+                  std::min(noisy.height, y0 + rows), picture);
+    }
     ClampToSamples(noisy, picture);
 }
 
@@ -261,8 +280,10 @@ void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* pictu
     tbb::this_task_arena::isolate([&] {
         for (int round = 0; round < kRestoreRounds; ++round) {
             std::vector<Found> all;
-            for (const auto& row : Find(noisy, variance, *picture, kernels))
+            for (auto& row : Find(noisy, variance, *picture, kernels)) {
                 all.insert(all.end(), row.begin(), row.end());
+                row = {};
+            }
             if (all.empty()) return;
             for (const auto half : {&Halves::a, &Halves::b})
                 AddFound(all, kernels, noisy.*half, &(picture->*half));

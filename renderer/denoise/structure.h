@@ -12,6 +12,8 @@
 
 namespace lull {
 
+inline constexpr int kStructureReach = 10;  // pixels, from which what is found in one depends
+
 // Adds to the middle of each square, line and bar the mean of its residual where that is structure,
 // round by round. Each half gets the mean of its own samples, and stays within their range
 // (sample_range.h). `variance` is of a pixel of either half. The same bits for any number of

@@ -26,6 +26,10 @@ struct ImageTile {
     ImageTile Within(int width, int height) const {
         return {std::max(x0, 0), std::max(y0, 0), std::min(x1, width), std::min(y1, height)};
     }
+    // Returns the same pixels by their place in a crop of the image.
+    ImageTile In(const ImageTile& crop) const {
+        return {x0 - crop.x0, y0 - crop.y0, x1 - crop.x0, y1 - crop.y0};
+    }
 };
 
 inline constexpr int kTileWidth = 128;
@@ -47,6 +51,13 @@ void ForEachTile(int width, int y0, int y1, const Use& use) {
 // block; the first of each is an even one.
 inline int BandRows(int height) { return height <= 256 ? std::max(height, 1) : 128; }
 
+// Does so for the tiles of all rows, band by band.
+template <typename Use>
+void ForEachTile(int width, int height, const Use& use) {
+    const int rows = BandRows(height);
+    for (int y = 0; y < height; y += rows) ForEachTile(width, y, std::min(height, y + rows), use);
+}
+
 // Returns the part of an image that a tile within it covers.
 inline Planes Crop(const Planes& image, const ImageTile& tile) {
     Planes part(tile.x1 - tile.x0, tile.y1 - tile.y0, image.count);
@@ -54,6 +65,10 @@ inline Planes Crop(const Planes& image, const ImageTile& tile) {
         for (int y = 0; y < part.height; ++y)
             std::copy_n(image.Row(c, tile.y0 + y) + tile.x0, part.width, part.Row(c, y));
     return part;
+}
+
+inline Halves Crop(const Halves& halves, const ImageTile& tile) {
+    return {Crop(halves.a, tile), Crop(halves.b, tile)};
 }
 
 // Copies a tile of an image to where (x, y) is its first pixel.

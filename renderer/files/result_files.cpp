@@ -7,6 +7,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -28,14 +29,27 @@ void Append(const std::string& text, const char* separator, std::string* list) {
 
 }  // namespace
 
-void ResultFiles::Write(const std::string& path, const Writer& write) try {
-    write(path);
-    names.push_back(path);
-} catch (const Error& e) {
-    Append(e.what(), "; ", &failures);
+void ResultFiles::Write(const std::string& path, const Writer& write) { WriteAll({{path, write}}); }
+
+void ResultFiles::WriteAll(const std::vector<Job>& jobs) {
+    std::vector<std::optional<std::string>> failed(jobs.size());
+    ForEachIndex(int(jobs.size()), [&](int i) {
+        try {
+            jobs[size_t(i)].write(jobs[size_t(i)].path);
+        } catch (const Error& e) {
+            failed[size_t(i)] = e.what();
+        }
+    });
+    for (size_t i = 0; i < jobs.size(); ++i) Note(jobs[i], failed[i]);
+}
+
+// Keeps the name of a file that was written, or writes it elsewhere.
+void ResultFiles::Note(const Job& job, const std::optional<std::string>& failure) {
+    if (!failure) return names.push_back(job.path);
+    Append(*failure, "; ", &failures);
     if (rescue == Rescue::None) return;
-    const bool isRescued = WriteElsewhere(path, write);
-    Append(fmt::format("\"{}\"", path), ", ", isRescued ? &rescued : &lost);
+    const bool isRescued = WriteElsewhere(job.path, job.write);
+    Append(fmt::format("\"{}\"", job.path), ", ", isRescued ? &rescued : &lost);
 }
 
 void ResultFiles::WriteText(const std::string& path, const std::string& text) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,12 @@ class ResultFiles {
     // Calls write(path). Where that throws Error, calls it for a file of the same name in a new
     // folder where temporary files go ($TMPDIR, else /tmp). Check() tells of it.
     void Write(const std::string& path, const Writer& write);
+    // Does so for several files at the same time, on all threads.
+    struct Job {
+        std::string path;
+        Writer write;
+    };
+    void WriteAll(const std::vector<Job>&);
     void WriteText(const std::string& path, const std::string& text);
 
     // Removes the file that earlier work has left there, so that it is not taken for one of these.
@@ -32,6 +39,7 @@ class ResultFiles {
     void Check() const;
 
   private:
+    void Note(const Job&, const std::optional<std::string>& failure);
     bool WriteElsewhere(const std::string& path, const Writer& write);
 
     Rescue rescue;

@@ -37,7 +37,8 @@ class EmissionLayer {
     const EmissionSums& At(const Vec2i& p) const { return plane.At(p); }
 
   private:
-    PixelPlane<EmissionSums> plane;
+    // Few pixels show lamps: the others take no memory.
+    PixelPlane<EmissionSums, ZeroAllocator<EmissionSums>> plane;
 };
 
 }  // namespace lull

@@ -95,9 +95,12 @@ class FirstHitLayer {
         if (self.place) visit("depth and position", *self.place);
         if (self.nearest) visit("object and material", *self.nearest);
     }
-    // Frees what the denoiser alone reads.
+    // Free what the denoiser alone reads: all of it, and the rows [y0, y1).
     void ForgetFeatures(const LayerOptions& o) {
-        if (!o.aovs.albedo && !o.aovs.normal) features.reset();
+        if (!WantsMeans(o)) features.reset();
+    }
+    void ForgetFeatures(const LayerOptions& o, int y0, int y1) {
+        if (!WantsMeans(o)) features->ForgetRows(y0, y1);
     }
 
     // Return the sums of a pixel; those that are wanted are there.
@@ -116,9 +119,8 @@ class FirstHitLayer {
     const NearestHit& NearestAt(const Vec2i& p) const { return nearest->At(p); }
 
   private:
-    static bool WantsSurface(const LayerOptions& o) {
-        return (o.aovs.albedo || o.aovs.normal) && !o.features;
-    }
+    static bool WantsMeans(const LayerOptions& o) { return o.aovs.albedo || o.aovs.normal; }
+    static bool WantsSurface(const LayerOptions& o) { return WantsMeans(o) && !o.features; }
     static bool WantsPlace(const LayerOptions& o) { return o.aovs.depth || o.aovs.position; }
     static bool WantsNearest(const LayerOptions& o) { return o.aovs.object || o.aovs.material; }
 

@@ -78,7 +78,10 @@ class Layers {
     void Add(const Vec2i& p, const LayerSample& sample) {
         ForEach([&](auto& kind) { kind.Add(p, sample); });
     }
-    // Frees what the denoiser alone reads.
+    // Free what the denoiser alone reads: of the rows [y0, y1), most of it; and all.
+    void ForgetFeatures(int y0, int y1) {
+        if (auto* hits = Find<FirstHitLayer>()) hits->ForgetFeatures(options, y0, y1);
+    }
     void ForgetFeatures() {
         if (auto* hits = Find<FirstHitLayer>()) hits->ForgetFeatures(options);
         std::get<std::optional<EmissionLayer>>(kinds).reset();

@@ -2,16 +2,19 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "renderer/base/pixel_rect.h"
+#include "renderer/base/zero_values.h"
 #include "stopping/base/state.h"
 
 namespace lull {
 
 // A Pixel, value-initialised, for each of a region. Different ones can be changed by
 // different threads at the same time.
-template <typename Pixel>
+template <typename Pixel, typename Allocator = std::allocator<Pixel>>
 class PixelPlane {
   public:
     explicit PixelPlane(const PixelRect& region)
@@ -20,7 +23,14 @@ class PixelPlane {
     const PixelRect& Region() const { return region; }
     Pixel& At(const Vec2i& p) { return pixels[Index(p)]; }
     const Pixel& At(const Vec2i& p) const { return pixels[Index(p)]; }
-    const std::vector<Pixel>& Pixels() const { return pixels; }  // row by row
+    const auto& Pixels() const { return pixels; }  // row by row
+
+    // Frees the rows [y0, y1) of the region, whose pixels become unknown.
+    void ForgetRows(int y0, int y1) {
+        const size_t width = size_t(region.Width()), first = size_t(y0 - region.min.y()) * width;
+        if (y0 < y1)
+            ForgetValues(std::as_bytes(std::span(pixels).subspan(first, size_t(y1 - y0) * width)));
+    }
 
     // Appends the pixels of a rectangle inside the region as bytes, row by row.
     void Put(const PixelRect& rect, StateWriter* writer) const {
@@ -43,7 +53,7 @@ class PixelPlane {
     }
 
     PixelRect region;
-    std::vector<Pixel> pixels;
+    std::vector<Pixel, Allocator> pixels;
 };
 
 }  // namespace lull

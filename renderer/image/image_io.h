@@ -55,10 +55,11 @@ struct ExrImage {
 // Returns how many values were clamped to 16 bits. Throws Error with the path and the reason.
 int64_t WriteExr(const std::string& path, const ExrImage& image);
 
-// Fills in row `y` of an image, 0 at the top, with adjacent channels.
+// Fills in row `y` of an image, 0 at the top, with adjacent channels. Is called from any thread,
+// for several rows at the same time.
 using RowSource = std::function<void(int y, std::span<float> values)>;
 
-// Does the same with channels of `image` that have no values: they come row by row, from the top.
+// Does the same with channels of `image` that have no values: they come row by row.
 int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
 // Reads an EXR with all its channels and those attributes that ExrAttribute can hold; other formats

@@ -7,7 +7,8 @@ namespace lull {
 DenoiserResult BlockDenoiser::Run(const PixelRect& pixels) const {
     const PixelRect whole{{0, 0}, {pixels.Width(), pixels.Height()}};
     // The picture in the end is a little better than that which is judged.
-    const DenoiserOptions options{.isQuick = true, .withDeviation = false, .gradings = gradings};
+    const DenoiserOptions options{
+        .effort = Effort::Quick, .withDeviation = false, .gradings = gradings};
     if (film->layers.Find<LightGroupLayer>())
         return RunDenoiser(GroupedPictureOf(*film, pixels), {&whole, 1}, options).sum;
     return RunDenoiser(PictureOf(*film, pixels), {&whole, 1}, options);

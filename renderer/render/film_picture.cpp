@@ -1,8 +1,14 @@
 #include "renderer/render/film_picture.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
+
+#include "renderer/denoise/scales.h"
+#include "renderer/denoise/tile.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -72,11 +78,12 @@ struct Split {
 
 constexpr auto kSkip = [](const Vec2i&) {};
 
-// Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others.
+// Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others,
+// rows on all threads.
 template <typename Light, typename Use, typename UseEmpty = decltype(kSkip)>
 void ForEachPixel(const Light& light, const PixelRect& rect, const Use& use,
                   const UseEmpty& useEmpty = kSkip) {
-    for (int y = rect.min.y(); y < rect.max.y(); ++y)
+    const auto doRow = [&](int y) {
         for (int x = rect.min.x(); x < rect.max.x(); ++x) {
             const FilmPixel pixel = light.At({x, y});
             if (pixel.count == 0) {
@@ -87,6 +94,10 @@ void ForEachPixel(const Light& light, const PixelRect& rect, const Use& use,
             use(Split{pixel.count >= kLeastDenoisedSpp, inA, pixel.count - inA}, pixel,
                 Vec2i(x, y));
         }
+    };
+    // Isolated, so that a thread that waits here takes up no other task of a render.
+    tbb::this_task_arena::isolate(
+        [&] { ForEachIndex(rect.Height(), [&](int i) { doRow(rect.min.y() + i); }); });
 }
 
 template <typename Light>
@@ -128,6 +139,39 @@ Planes VarianceOfLight(const Light& light, const PixelRect& rect) {
     return variance;
 }
 
+// Returns all but the colours. Calls forget(end), if there is such, when features of the rows above
+// `end` are not needed any more.
+NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect,
+                        const std::function<void(int end)>& forget = {}) {
+    const auto read = [&](int y0, int y1) {
+        return FeatureHalvesOf(film, {rect.min + Vec2i(0, y0), {rect.max.x(), rect.min.y() + y1}});
+    };
+    return {{},
+            FilterFeatures(rect.Width(), rect.Height(), read, forget),
+            VarianceOf(film, rect),
+            EmissionOf(film, rect)};
+}
+
+NoisyPicture TakeFeatures(Film* film) {
+    const int top = film->Region().min.y();
+    int forgotten = 0;
+    NoisyPicture picture = FeaturesOf(*film, film->Region(), [&](int end) {
+        film->layers.ForgetFeatures(top + forgotten, top + end);
+        forgotten = end;
+    });
+    film->layers.ForgetFeatures();
+    return picture;
+}
+
+GroupedPicture GroupsOf(const Film& film, const PixelRect& rect, NoisyPicture all) {
+    const LightGroupLayer& lights = *film.layers.Find<LightGroupLayer>();
+    const auto light = [&film, &lights, rect](int group) -> NoisyPicture {
+        const GroupLight own{film, lights, group};
+        return {ColoursOfLight(own, rect), {}, VarianceOfLight(own, rect)};
+    };
+    return {lights.Count(), std::move(all.features), std::move(all.variance), light};
+}
+
 }  // namespace
 
 NoisyPicture PictureOf(const Film& film, const PixelRect& rect) {
@@ -136,24 +180,59 @@ NoisyPicture PictureOf(const Film& film, const PixelRect& rect) {
     return picture;
 }
 
-NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect) {
-    const auto read = [&](int y0, int y1) {
-        return FeatureHalvesOf(film, {rect.min + Vec2i(0, y0), {rect.max.x(), rect.min.y() + y1}});
+NoisyPicture ReducedPictureOf(const Film& film, int halvings) {
+    const PixelRect& region = film.Region();
+    const int scale = 1 << halvings;
+    const auto reduced = [&](Planes image) {
+        for (int i = 0; i < halvings; ++i) image = Halved(image);
+        return image;
     };
-    return {{},
-            FilterFeatures(rect.Width(), rect.Height(), read),
-            VarianceOf(film, rect),
-            EmissionOf(film, rect)};
+    const auto reducedHalves = [&](const Halves& halves) {
+        return Halves{reduced(halves.a), reduced(halves.b)};
+    };
+    // Returns the pixels of the film that rows of the result are made of.
+    const auto rowsOf = [&](int y0, int y1) -> PixelRect {
+        const int top = region.min.y();
+        return {{region.min.x(), top + y0 * scale},
+                {region.max.x(), std::min(region.max.y(), top + y1 * scale)}};
+    };
+    const int width = (region.Width() + scale - 1) / scale,
+              height = (region.Height() + scale - 1) / scale;
+    NoisyPicture picture{
+        MakeHalves(width, height, kColours),
+        FilterFeatures(
+            width, height,
+            [&](int y0, int y1) { return reducedHalves(FeatureHalvesOf(film, rowsOf(y0, y1))); }),
+        Planes(width, height, 1),
+        {}};
+    constexpr int kRows = 16;
+    for (int y = 0; y < height; y += kRows) {
+        const PixelRect rows = rowsOf(y, std::min(height, y + kRows));
+        const Halves colour = reducedHalves(ColoursOf(film, rows));
+        Planes variance = reduced(VarianceOf(film, rows));
+        for (float& v : variance.values) v /= float(scale * scale);
+        const ImageTile tile{0, 0, width, colour.a.height};
+        Paste(colour.a, tile, 0, y, &picture.colour.a);
+        Paste(colour.b, tile, 0, y, &picture.colour.b);
+        Paste(variance, tile, 0, y, &picture.variance);
+    }
+    return picture;
 }
 
 GroupedPicture GroupedPictureOf(const Film& film, const PixelRect& rect) {
-    NoisyPicture all = FeaturesOf(film, rect);
-    const LightGroupLayer& lights = *film.layers.Find<LightGroupLayer>();
-    const auto light = [&film, &lights, rect](int group) -> NoisyPicture {
-        const GroupLight own{film, lights, group};
-        return {ColoursOfLight(own, rect), {}, VarianceOfLight(own, rect)};
-    };
-    return {lights.Count(), std::move(all.features), std::move(all.variance), light};
+    return GroupsOf(film, rect, FeaturesOf(film, rect));
+}
+
+NoisyPicture TakePicture(Film* film) {
+    NoisyPicture picture = TakeFeatures(film);
+    picture.colour = ColoursOf(*film, film->Region());
+    film->DropHalf();
+    return picture;
+}
+
+GroupedPicture TakeGroups(Film* film) {
+    film->DropHalf();
+    return GroupsOf(*film, film->Region(), TakeFeatures(film));
 }
 
 Halves ColoursOf(const Film& film, const PixelRect& rect) {
@@ -178,7 +257,8 @@ Halves EmissionOf(const Film& film, const PixelRect& rect) {
     ForEachPixel(WholeLight{film}, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
         if (!split.isSplit) return;
         const auto& [a, b] = lights->At(p).halves;
-        for (int c = 0; c < kColours; ++c)
+        // Zeros that are not written take no memory.
+        for (int c = 0; c < kColours && lights->At(p) != EmissionSums(); ++c)
             split.Put(a[size_t(c)], b[size_t(c)], c, p - rect.min, &emission);
     });
     return emission;

@@ -19,9 +19,16 @@ NoisyPicture PictureOf(const Film&, const PixelRect&);
 // which has to be there; the first look belongs to the last group.
 GroupedPicture GroupedPictureOf(const Film&, const PixelRect&);
 
-// Return its parts, so that what one of them is made of can be freed before the other is
-// made: all but the colours, and these.
-NoisyPicture FeaturesOf(const Film&, const PixelRect&);
+// Returns the whole film at a lower resolution, for a quick look: each pixel is the mean of
+// 2^halvings x 2^halvings.
+NoisyPicture ReducedPictureOf(const Film&, int halvings);
+
+// Do the same for all pixels, and free what the denoiser alone reads of the film, row by row: so
+// the picture takes its place.
+NoisyPicture TakePicture(Film*);
+GroupedPicture TakeGroups(Film*);
+
+// Returns the colours alone.
 Halves ColoursOf(const Film&, const PixelRect&);
 
 // Return the features of both halves of the samples, not filtered, and the variance of the mean

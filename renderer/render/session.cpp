@@ -17,6 +17,9 @@ namespace lull {
 
 namespace {
 
+// Bytes a pixel of the rows that the denoiser has at hand, and of lists of what it finds.
+constexpr int64_t kDenoiserRows = 16;
+
 template <typename... Arguments>
 void Tell(const std::function<void(const std::string&)>& listener,
           fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -28,6 +31,17 @@ FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
     return options;
 }
 
+// Returns what the denoiser takes in addition to the sums: its inputs take the place of the half
+// and of what it alone reads, which is freed row by row.
+int64_t BytesOfDenoising(const LayerOptions& layers) {
+    LayerOptions kept = layers;
+    kept.features = false;
+    const int64_t half = sizeof(std::array<double, 3>);
+    const int64_t freed = Layers::Bytes(layers) - Layers::Bytes(kept) + half;
+    const int64_t taken = kDenoiserBytes + (layers.groups.Count() > 0 ? kGroupsBytes : 0);
+    return kDenoiserRows + std::max<int64_t>(0, taken - freed);
+}
+
 }  // namespace
 
 int64_t BytesOfLayers(const LayerOptions& layers) {
@@ -35,7 +49,7 @@ int64_t BytesOfLayers(const LayerOptions& layers) {
     const size_t channels = (aovs.Hits() || aovs.noise ? 2 * 13 : 0) + (aovs.Mattes() ? 25 : 0) +
                             size_t(layers.groups.Count()) * 2 * 3;
     return Layers::Bytes(layers) + int64_t(channels * sizeof(float)) +
-           (layers.features ? kDenoiserBytes : 0);
+           (layers.features ? BytesOfDenoising(layers) : 0);
 }
 
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/denoise/scales.h"
+#include "renderer/render/film_picture.h"
 #include "renderer/vision/visible_difference.h"
 
 namespace lull {
@@ -37,6 +39,21 @@ DenoisedImage DenoiseImage(GroupedPicture picture, const PixelRect& region,
     return image;
 }
 
+DenoisedImage DenoisePreview(const Film& film, int64_t mostPixels) {
+    const PixelRect& region = film.Region();
+    std::vector<Vec2i> sizes = {{region.Width(), region.Height()}};
+    while (int64_t(sizes.back().x()) * sizes.back().y() > mostPixels)
+        sizes.push_back((sizes.back() + Vec2i(1, 1)) / 2);
+    if (sizes.size() == 1)
+        return DenoiseImage(PictureOf(film, region), region, {}, {.effort = Effort::Quick});
+    Planes picture = Denoise(ReducedPictureOf(film, int(sizes.size()) - 1), Effort::Quick).picture;
+    for (size_t i = sizes.size() - 1; i-- > 0;)
+        picture = Doubled(picture, sizes[i].x(), sizes[i].y());
+    return {{picture.width, picture.height, Interleaved(picture)},
+            std::vector<float>(picture.Area(), kUnknownError),
+            {}};
+}
+
 std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
     std::vector<double> upper;
     for (const auto& error : blocks)
@@ -58,6 +75,7 @@ std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const
     std::vector<ExrChannel> channels;
     for (size_t c = 0; c < 3; ++c) {
         ExrChannel& channel = channels.emplace_back(ExrChannel{layer + "RGB" [c], {}});
+        channel.values.reserve(rgb.size() / 3);
         for (size_t i = c; i < rgb.size(); i += 3) channel.values.push_back(rgb[i]);
     }
     return channels;

@@ -8,6 +8,8 @@
 
 namespace lull {
 
+inline constexpr float kUnknownError = 100;  // in lightness, of pixels: all that is possible
+
 struct DenoisedImage {
     RgbImage image;
     std::vector<float> error;  // estimated standard error of each pixel in lightness
@@ -22,6 +24,12 @@ DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vec
                            const DenoiserOptions& = {});
 DenoisedImage DenoiseImage(GroupedPicture, const PixelRect& region, const std::vector<Block>&,
                            const DenoiserOptions& = {});
+
+// Denoises what there is of a render for a quick look: a larger one at a lower resolution of at
+// most so many pixels, so that it does not take minutes, and its errors are not known. Takes at
+// most kPreviewBytes of memory a pixel if it is large.
+inline constexpr int kPreviewBytes = 48;
+DenoisedImage DenoisePreview(const Film&, int64_t mostPixels = 2'000'000);
 
 // Returns how large the visible errors of blocks probably are at most.
 std::string TextOf(const std::vector<std::optional<VisibleError>>&);

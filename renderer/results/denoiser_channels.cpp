@@ -87,7 +87,7 @@ std::vector<ExrChannel> MakeHalfChannels(const Film& film, const PixelRect& rect
     add(FeatureHalvesOf(film, rect), kFeatureNames);
     if (const Halves emission = EmissionOf(film, rect); emission.a.count > 0)
         add(emission, kEmissionNames);
-    channels.push_back({kVarianceName, VarianceOf(film, rect).values});
+    AddChannels("", VarianceOf(film, rect), std::array{kVarianceName}, &channels);
     return channels;
 }
 
@@ -107,7 +107,7 @@ NoisyPicture ReadPicture(const ExrImage& image, const std::string& name) {
     }
     if (const ExrChannel* variance = image.Find(kVarianceName)) {
         picture.variance = Planes(image.width, image.height, 1);
-        picture.variance.values = variance->values;
+        std::ranges::copy(variance->values, picture.variance.values.begin());
     }
     return picture;
 }

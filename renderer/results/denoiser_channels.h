@@ -15,6 +15,8 @@ namespace lull {
 // .B (light seen directly), the same with halfB, and variance.Y.
 std::vector<ExrChannel> MakeHalfChannels(const Film&, const PixelRect&);
 
+inline constexpr int kHalfChannelsBytes = 27 * 4;  // of memory a pixel, of all of them
+
 // Reads a picture from an EXR with these channels. Throws Error, with `name` in it, if any is
 // missing.
 NoisyPicture ReadPicture(const ExrImage&, const std::string& name);

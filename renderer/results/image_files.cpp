@@ -86,8 +86,8 @@ PngFormat MakePngFormat(const PictureFormat& wanted, double exposure) {
 int64_t WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
                  const RowSource& spp) {
     const size_t stride = exr.channels.size();
-    std::vector<float> rgb(size_t(exr.width) * 3), counts(size_t(exr.width));
     return WriteExr(file, exr, [&](int y, std::span<float> row) {
+        std::vector<float> rgb(size_t(exr.width) * 3), counts(size_t(exr.width));
         means(y, rgb);
         spp(y, counts);
         for (size_t x = 0; x < counts.size(); ++x) {
@@ -101,11 +101,12 @@ int64_t WriteExr(const std::string& file, const ExrImage& exr, const RowSource& 
 
 // Returns the rows of the image, which is never held as a whole beside its sums.
 RowSource MeansOf(const Film& film) {
-    return [&film, view = std::make_shared<FilmView>()](int y, std::span<float> row) {
+    return [&film](int y, std::span<float> row) {
         const PixelRect& all = film.Region();
+        FilmView view;
         film.Extract({{all.min.x(), all.min.y() + y}, {all.max.x(), all.min.y() + y + 1}}, false,
-                     view.get());
-        std::ranges::copy(view->mean, row.begin());
+                     &view);
+        std::ranges::copy(view.mean, row.begin());
     };
 }
 
@@ -195,14 +196,14 @@ int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Pictu
         exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
     }
     int64_t clamped = 0;
-    results->Write(files.exr, [&](const std::string& file) {
-        clamped = WriteExr(file, exr, colours, SppOf(film));
-    });
-    results->Write(files.png, [&](const std::string& file) {
-        WritePng(file, format.isTransparent ? WithAlpha(colours, film) : colours,
-                 film.Region().Width(), film.Region().Height(),
-                 MakePngFormat(format, origin.scene.film.exposure));
-    });
+    results->WriteAll(
+        {{files.exr,
+          [&](const std::string& file) { clamped = WriteExr(file, exr, colours, SppOf(film)); }},
+         {files.png, [&](const std::string& file) {
+              WritePng(file, format.isTransparent ? WithAlpha(colours, film) : colours,
+                       film.Region().Width(), film.Region().Height(),
+                       MakePngFormat(format, origin.scene.film.exposure));
+          }}});
     return clamped;
 }
 

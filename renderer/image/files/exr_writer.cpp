@@ -20,6 +20,7 @@
 #include "renderer/image/files/exr_threads.h"
 #include "renderer/image/image.h"
 #include "renderer/image/image_io.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -114,8 +115,8 @@ int64_t WriteRows(const ExrImage& image, const RowSource& rows, Imf::OutputFile*
     int64_t clamped = 0;
     for (int y = 0; y < image.height; y += kStrip) {
         const int height = std::min(kStrip, image.height - y);
-        for (int k = 0; k < height; ++k)
-            rows(y + k, std::span(strip).subspan(row * size_t(k), row));
+        ForEachIndex(height,
+                     [&](int k) { rows(y + k, std::span(strip).subspan(row * size_t(k), row)); });
         for (size_t i = 0; i < std::min(halves.size(), row * size_t(height)); ++i)
             if (image.channels[i % count].isHalf) halves[i] = Clamped(strip[i], &clamped);
         const Imath::Box2i window = Box(image.origin + Vec2i(0, y), Vec2i(image.width, height));

@@ -12,6 +12,7 @@
 #include "renderer/image/files/png_library.h"
 #include "renderer/image/image_io.h"
 #include "renderer/image/png_format.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -132,25 +133,43 @@ void DivideByAlpha(std::span<const float> rgba, std::span<float> rgb) {
     }
 }
 
-// Writes linear RGB, or RGBA.
+// Encodes a row of linear RGB, or RGBA.
+template <typename T>
+void EncodeRow(const PngFormat& format, std::span<float> linear, T* to) {
+    const size_t components = format.hasAlpha ? 4 : 3, width = linear.size() / components;
+    std::vector<float> divided;
+    std::span<float> rgb = linear;
+    if (format.hasAlpha) {
+        divided.resize(3 * width);
+        DivideByAlpha(linear, divided);
+        rgb = divided;
+    }
+    const bool isEncoded = MapColors(format.grade, rgb);
+    for (size_t i = 0; i < rgb.size(); ++i)
+        to[i / 3 * components + i % 3] =
+            isEncoded ? EncodeLinear<T>(rgb[i]) : EncodeSrgb<T>(rgb[i]);
+    if (format.hasAlpha)
+        for (size_t i = 3; i < linear.size(); i += 4) to[i] = EncodeLinear<T>(linear[i]);
+}
+
+// Writes linear RGB, or RGBA. Some rows are encoded at a time, on all threads.
 template <typename T>
 void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
                const PngFormat& format) {
     writer->WriteHeader(width, height, 8 * int(sizeof(T)),
                         format.hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                         format.text, false);
-    const size_t components = format.hasAlpha ? 4 : 3;
-    std::vector<float> rgb(size_t(width) * 3), rgba(format.hasAlpha ? size_t(width) * 4 : 0);
-    std::vector<T> row(size_t(width) * components);
-    for (int y = 0; y < height; ++y) {
-        rows(y, format.hasAlpha ? rgba : rgb);
-        if (format.hasAlpha) DivideByAlpha(rgba, rgb);
-        const bool isEncoded = MapColors(format.grade, rgb);
-        for (size_t i = 0; i < rgb.size(); ++i)
-            row[i / 3 * components + i % 3] =
-                isEncoded ? EncodeLinear<T>(rgb[i]) : EncodeSrgb<T>(rgb[i]);
-        for (size_t i = 3; i < rgba.size(); i += 4) row[i] = EncodeLinear<T>(rgba[i]);
-        writer->WriteRow(row.data());
+    constexpr int kStrip = 64;
+    const size_t stride = size_t(width) * (format.hasAlpha ? 4 : 3);
+    std::vector<T> strip(stride * size_t(std::min(kStrip, height)));
+    for (int y = 0; y < height; y += kStrip) {
+        const int count = std::min(kStrip, height - y);
+        ForEachIndex(count, [&](int k) {
+            std::vector<float> linear(stride);
+            rows(y + k, linear);
+            EncodeRow(format, linear, &strip[size_t(k) * stride]);
+        });
+        for (int k = 0; k < count; ++k) writer->WriteRow(&strip[size_t(k) * stride]);
     }
     writer->End();
 }

@@ -168,7 +168,7 @@ std::unique_ptr<Bench> Prepare(const Options& options, MpiJob* ranks) {
     RenderJob& render = bench->render;
     const PixelRect& region = render.input.region;
     if (options.denoise) {
-        CheckLayersFit({.features = true}, region);
+        CheckLayersFit({.layers = {.features = true}}, region);
         render.DenoiseBlocks();
     }
     bench->rules = MakeRules(options, render);

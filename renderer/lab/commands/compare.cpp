@@ -108,7 +108,7 @@ void AddOtherRules(Compared* compared) {
         compared->humanChecksum = human.checksum;
     }
     if (!options.denoise) return;
-    CheckLayersFit({.features = true}, region);
+    CheckLayersFit({.layers = {.features = true}}, region);
     compared->render.DenoiseBlocks();
     compared->rules.push_back(
         MakeRule("denoised", compared->render.ReadRule("--denoise", kDenoisedRuleName)));

@@ -68,7 +68,7 @@ TEST(MissingDetail, IsNoneWhereTheHalvesTellAsMuch) {
 
 TEST(MissingDetail, IsNoneInBlocksThatAreTooSmallToTell) {
     const Planes missing = MissingDetail(Lacking(0.1, Waves, 1, 7), 1);
-    EXPECT_EQ(missing.values, std::vector<float>(49));
+    EXPECT_EQ(missing.values, Planes(7, 7, 1).values);
 }
 
 }  // namespace

@@ -45,5 +45,14 @@ TEST(Scales, TakePicturesOfAnySize) {
     }
 }
 
+TEST(Doubled, KeepsWhatIsSmooth) {
+    const Planes image = MakePlanes(31, 17, 2, [](int c, int x, int y) { return c + x + 2 * y; });
+    const Planes doubled = Doubled(Halved(image), 31, 17);
+    for (int c = 0; c < 2; ++c)
+        for (int y = 2; y < 14; ++y)
+            for (int x = 2; x < 28; ++x)
+                EXPECT_NEAR(doubled.Row(c, y)[x], image.Row(c, y)[x], 1e-4f);
+}
+
 }  // namespace
 }  // namespace lull

@@ -55,6 +55,24 @@ TEST(ResultFiles, GoElsewhereOneByOne) {
     EXPECT_TRUE(Contains(error, "; in " + folder.string() + " instead: \"")) << error;
 }
 
+TEST(ResultFiles, AreWrittenTogether) {
+    const TemporaryDirectory directory;
+    const TemporaryFolder temporary(directory.path);
+    ResultFiles results;
+    const auto text = [](const std::string& what) {
+        return [what](const std::string& file) { WriteFileAtomically(file, what); };
+    };
+    results.WriteAll({{directory.File("a.csv"), text("a")},
+                      {directory.File("missing/b.csv"), text("b")},
+                      {directory.File("c.csv"), text("c")}});
+    ASSERT_EQ(results.Names().size(), 3u);
+    EXPECT_EQ(results.Names()[0], directory.File("a.csv"));
+    EXPECT_EQ(results.Names()[2], directory.File("c.csv"));
+    EXPECT_EQ(ReadBytes(results.Names()[1]), "b");
+    EXPECT_NE(results.Names()[1], directory.File("missing/b.csv"));
+    EXPECT_TRUE(Contains(ErrorOf([&] { results.Check(); }), "does not exist"));
+}
+
 TEST(ResultFiles, SayWhatIsLost) {
     const TemporaryDirectory directory;
     const TemporaryFolder temporary("/proc");

@@ -78,6 +78,57 @@ TEST(PictureOf, HasTheLightSeenDirectlyByHalves) {
     EXPECT_EQ(EmissionOf(Film(kPictureRegion), kPictureRegion).a.count, 0);
 }
 
+// It takes the place of the sums, more rows than are filtered at once.
+TEST(TakePicture, IsThePictureOfTheFilm) {
+    const PixelRect region{{2, 3}, {42, 203}};
+    Film film(region, {.layers = {.features = true}});
+    for (int y = 3; y < 203; ++y)
+        for (int x = 2; x < 42; ++x) {
+            FilmTile tile = film.Tile({{x, y}, {x + 1, y + 1}});
+            FilmPixel sums = tile.At({x, y});
+            for (uint32_t k = 0; k < 8; ++k) {
+                LayerSample sample{.index = k, .radiance = Rgb(1, float(x + k), float(y % 7))};
+                sample.hit.found = true;
+                sample.hit.weight = 1;
+                sample.hit.depth = float(1 + (x * y + int(k)) % 13);
+                sample.hit.albedo = Rgb(0.1f * float(x % 5), 0.5f, 0.02f * float(k));
+                if (x == 20) sample.hit.emission = Rgb(3, 2, 1);
+                sums.Add(sample.radiance, false);
+                film.layers.Add({x, y}, sample);
+            }
+            tile.Set({x, y}, sums);
+        }
+    const NoisyPicture expected = PictureOf(film, region), taken = TakePicture(&film);
+    EXPECT_EQ(taken.colour.a.values, expected.colour.a.values);
+    EXPECT_EQ(taken.colour.b.values, expected.colour.b.values);
+    EXPECT_EQ(taken.features.values, expected.features.values);
+    EXPECT_EQ(taken.variance.values, expected.variance.values);
+    EXPECT_EQ(taken.emission.a.values, expected.emission.a.values);
+    EXPECT_GT(SumOfValues(taken.emission.b), 0);
+    EXPECT_FALSE(film.HasHalf());
+    EXPECT_EQ(film.layers.Find<EmissionLayer>(), nullptr);
+    EXPECT_EQ(film.At({20, 20}).count, 8u);
+}
+
+TEST(ReducedPictureOf, HasTheMeansOfPixels) {
+    const FeatureRender render(1);
+    const NoisyPicture whole = PictureOf(render.film, kPictureRegion),
+                       reduced = ReducedPictureOf(render.film, 2);
+    ASSERT_EQ(reduced.colour.a.width, 15);
+    ASSERT_EQ(reduced.features.height, 10);
+    for (int y = 0; y < 10; ++y)
+        for (int x = 0; x < 15; ++x) {
+            double colour = 0, variance = 0;
+            for (int v = 4 * y; v < 4 * y + 4; ++v)
+                for (int u = 4 * x; u < 4 * x + 4; ++u) {
+                    colour += double(whole.colour.b.Row(1, v)[u]) / 16;
+                    variance += double(whole.variance.Row(0, v)[u]) / 256;
+                }
+            EXPECT_NEAR(reduced.colour.b.Row(1, y)[x], colour, 1e-4 * std::abs(colour));
+            EXPECT_NEAR(reduced.variance.Row(0, y)[x], variance, 1e-4 * variance);
+        }
+}
+
 // Of few samples one half has the pixel, and the other its neighbours, in turns.
 TEST(PictureOf, SplitsPixelsWithFewSamplesAsAChessboard) {
     for (const int spp : {1, 3}) {

@@ -142,6 +142,17 @@ TEST(Session, CountsTheBytesOfLightGroups) {
     EXPECT_EQ(BytesOfLayers(layers), 3 * 104);
 }
 
+// The denoiser's inputs take the place of its sums.
+TEST(Session, CountsTheBytesOfDenoising) {
+    LayerOptions layers = {.features = true};
+    const int64_t alone = BytesOfLayers(layers);
+    EXPECT_GE(alone, 56 + 4 + 24);
+    EXPECT_LE(alone, 56 + 4 + 24 + 20);
+    layers.groups = {{"a", "rest"}, {}};
+    layers.groupNoise = true;
+    EXPECT_GE(BytesOfLayers(layers), alone - 24 + 2 * 80);
+}
+
 // A disk stays full for more than one attempt.
 TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
     const auto scene = MakeBox();
