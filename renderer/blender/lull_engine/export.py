@@ -147,11 +147,24 @@ def add_camera(scene, flat, notes):
         setattr(flat.render, name, getattr(scene.render, name))
 
 
+def let_through(material):
+    """Makes the surface of a lamp a pane of air that shines: in Cycles nothing is shadowed by a lamp."""
+    material["pbrMetallicRoughness"] = {"metallicFactor": 0, "roughnessFactor": 0}
+    extensions = material["extensions"]
+    extensions.pop("KHR_materials_specular", None)
+    extensions["KHR_materials_transmission"] = {"transmissionFactor": 1}
+    extensions["KHR_materials_ior"] = {"ior": 1}
+    material["extras"]["lull_thin"] = 1
+
+
 def patch(path):
     """Corrects the written file where the exporter has no option."""
     with open(path, encoding="utf-8") as f:
         root = json.load(f)
     for material in root.get("materials", []):
+        if material.get("extras", {}).get("lull_open"):
+            let_through(material)
+            root["extensionsUsed"] = sorted({*root.get("extensionsUsed", []), "KHR_materials_transmission", "KHR_materials_ior"})
         extensions = material.get("extensions", {})
         # Without this, glass would be a thin sheet; Blender's is solid.
         if "KHR_materials_transmission" in extensions and not material.get("extras", {}).pop("lull_thin", None):
