@@ -2,14 +2,15 @@
 
 The last argument is a JSON object: the file, the names of scene, view layer and its material override (or
 null), the frame, the size of baked images, whether slabs of glass become sheets, the output folder, the name
-of the files in it, and the file of the result, with `gltf`, `environment` (or null) and `warnings`.
+of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
+of what the camera sees of a world that has another light, or null), `groups` (light groups by the names that lull takes),
+`objects` and `materials` (pass indices by name), and `warnings`.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
 modifiers, instances and particles. Area lights become emitting meshes, the world becomes an image.
 Shift, depth of field and the radius of point lights are `extras`, which only lull reads.
 """
 import json
-import math
 import os
 import sys
 
@@ -19,6 +20,7 @@ from mathutils import Vector
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bake  # noqa: E402
 import flatten  # noqa: E402
+import gltf  # noqa: E402
 import lights  # noqa: E402
 import panes  # noqa: E402
 import surfaces  # noqa: E402
@@ -147,51 +149,16 @@ def add_camera(scene, flat, notes):
         setattr(flat.render, name, getattr(scene.render, name))
 
 
-def let_through(material):
-    """Makes the surface of a lamp a pane of air that shines: in Cycles nothing is shadowed by a lamp."""
-    material["pbrMetallicRoughness"] = {"metallicFactor": 0, "roughnessFactor": 0}
-    extensions = material["extensions"]
-    extensions.pop("KHR_materials_specular", None)
-    extensions["KHR_materials_transmission"] = {"transmissionFactor": 1}
-    extensions["KHR_materials_ior"] = {"ior": 1}
-    material["extras"]["lull_thin"] = 1
-
-
-def patch(path):
-    """Corrects the written file where the exporter has no option."""
-    with open(path, encoding="utf-8") as f:
-        root = json.load(f)
-    for material in root.get("materials", []):
-        if material.get("extras", {}).get("lull_open"):
-            let_through(material)
-            root["extensionsUsed"] = sorted({*root.get("extensionsUsed", []), "KHR_materials_transmission", "KHR_materials_ior"})
-        extensions = material.get("extensions", {})
-        # Without this, glass would be a thin sheet; Blender's is solid.
-        if "KHR_materials_transmission" in extensions and not material.get("extras", {}).pop("lull_thin", None):
-            extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
-        extras = material.get("extras", {})
-        own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"))
-               if extras.pop(mark, None)}  # Blender has numbers only
-        if own:
-            extras["lull"] = own
-        absorbs = extras.pop("lull_absorbs", None)
-        if absorbs and max(absorbs) > 0 and "KHR_materials_volume" in extensions:
-            distance = 1 / max(absorbs)
-            extensions["KHR_materials_volume"].update(
-                attenuationDistance=distance, attenuationColor=[math.exp(-a * distance) for a in absorbs])
-        # Without this, surfaces without specular reflection would reflect at grazing angles.
-        specular = extensions.get("KHR_materials_specular", {})
-        if specular.get("specularColorFactor") == [0, 0, 0]:
-            specular["specularFactor"] = 0
-    with open(path, "w", encoding="utf-8") as f:
-        json.dump(root, f)
-
-
 def export(path):
     bpy.ops.export_scene.gltf(
-        filepath=path, export_format='GLTF_SEPARATE', use_active_scene=True, use_renderable=True,
+        filepath=path, export_format='GLB' if path.endswith('.glb') else 'GLTF_SEPARATE', use_active_scene=True, use_renderable=True,
         export_cameras=True, export_lights=True, export_extras=True, export_apply=False,
         export_animations=False, export_current_frame=True, export_skins=False, export_morph=False)
+
+
+def indices(blocks):
+    """Returns the pass indices that are not 0, by name."""
+    return {block.name: block.pass_index for block in blocks if block.pass_index}
 
 
 def main():
@@ -218,13 +185,17 @@ def main():
     if what["panes"]:
         panes.prepare(made, notes)
     lights.add(lamps, scene, flat, notes)
-    environment = world.write(scene, os.path.join(what["folder"], what["name"] + ".world.exr"), notes)
+    base = os.path.join(what["folder"], what["name"])
+    environment, backdrop = world.write(scene, flat.camera, base, notes)
     bpy.context.window.scene = flat
-    path = os.path.join(what["folder"], what["name"] + ".gltf")
+    path = base + what["suffix"]
     export(path)
-    patch(path)
+    groups = gltf.patch(path, [g.name for g in layer.lightgroups])
+    if environment and scene.world.lightgroup in layer.lightgroups:
+        groups[scene.world.lightgroup] = "environment"
     with open(what["said"], "w", encoding="utf-8") as f:
-        json.dump({"gltf": path, "environment": environment, "warnings": notes.lines()}, f)
+        json.dump({"gltf": path, "environment": environment, "backdrop": backdrop, "groups": groups,
+                   "objects": indices(wanted), "materials": indices(bpy.data.materials), "warnings": notes.lines()}, f)
 
 
 main()

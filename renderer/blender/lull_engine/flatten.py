@@ -82,7 +82,7 @@ def _place(flat, original, mesh, matrix):
         matrix = Matrix.Identity(4)
     o = bpy.data.objects.new(original.name, mesh)
     o.matrix_world = matrix
-    o["lull_source"] = original.name
+    o["lull_source"], o["lull_group"] = original.name, original.lightgroup
     o.color, o.pass_index = original.color, original.pass_index
     flat.collection.objects.link(o)
     return o

@@ -31,10 +31,15 @@ def add(lamps, scene, flat, notes):
             notes.add("casting shadows all the same", o.name, "lights")
         if light.type == 'AREA':
             _add_area(flat, o, light, matrix, notes)
-            continue
-        made = bpy.data.objects.new(o.name, light)
-        made.matrix_world = matrix
-        flat.collection.objects.link(made)
+        else:
+            _place(flat, o, light, matrix)
+
+
+def _place(flat, o, data, matrix):
+    made = bpy.data.objects.new(o.name, data)
+    made.matrix_world = matrix
+    made["lull_source"], made["lull_group"] = o.name, o.lightgroup
+    flat.collection.objects.link(made)
 
 
 def _folded(light, notes):
@@ -143,9 +148,7 @@ def _add_area(flat, o, light, matrix, notes):
     # Blender's watts: a Lambertian surface of this radiance emits pi / 4 of them.
     mesh.materials.append(_shining(o.name, light.color, light.energy / (4 * area)))
     mesh.materials[0]["lull_open"] = True
-    made = bpy.data.objects.new(o.name, mesh)
-    made.matrix_world = matrix
-    flat.collection.objects.link(made)
+    _place(flat, o, mesh, matrix)
 
 
 def _shining(name, color, radiance):

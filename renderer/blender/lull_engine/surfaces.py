@@ -88,6 +88,7 @@ def principled(material):
 
 def _of_colour(name, colour):
     material = bpy.data.materials.new(name)
+    material["lull_name"] = name
     material.use_nodes = True
     node = principled(material)
     _input(node, 'Base Color').default_value = (*colour, 1)
@@ -166,6 +167,7 @@ class _Surface:
     def __init__(self, material, notes):
         self.name, self.original, self.notes = material.name, material, notes
         self.copy = material.copy()
+        self.copy["lull_name"] = material.name
         self.tree = self.copy.node_tree
         groups.inline(self.tree)
         output = self.tree.get_output_node('CYCLES')
