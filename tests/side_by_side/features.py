@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT / "renderer/python/lull"))
 import exr  # noqa: E402
 
 BEGIN, END = "<!-- features.py writes this table -->\n", "<!-- end of the table -->\n"
-SIZE, MEANS, BLOCKS = (90, 60), 0.02, 0.05
+SIZE, MEANS, BLOCKS = (60, 40), 0.02, 0.05
 
 
 def blender(o, environment, *arguments):

@@ -15,7 +15,6 @@ import os
 import sys
 
 import bpy
-from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bake  # noqa: E402
@@ -23,6 +22,7 @@ import flatten  # noqa: E402
 import gltf  # noqa: E402
 import lights  # noqa: E402
 import panes  # noqa: E402
+import strands  # noqa: E402
 import surfaces  # noqa: E402
 import world  # noqa: E402
 from notes import Notes  # noqa: E402
@@ -72,6 +72,7 @@ def show_as_rendered(scene, layer):
             modifier.show_viewport = modifier.show_render
             if hasattr(modifier, "render_levels"):
                 modifier.levels = modifier.render_levels
+    strands.prepare(scene)
     r = scene.render
     r.simplify_subdivision, r.simplify_child_particles = r.simplify_subdivision_render, r.simplify_child_particles_render
     return wanted
@@ -90,26 +91,6 @@ def _collections(collection):
     return [collection] + [c for child in collection.children for c in _collections(child)]
 
 
-def note_clipping(scene, flat, notes):
-    """Notes objects that are seen before the distance at which a camera begins to see, of 16x12 rays."""
-    window = bpy.context.window
-    window.scene = flat
-    graph = bpy.context.evaluated_depsgraph_get()
-    place, data = flat.camera.matrix_world, scene.camera.data
-    right_top, _, left_bottom, _ = data.view_frame(scene=scene)
-    for i in range(16):
-        for j in range(12):
-            at = Vector((left_bottom.x + (right_top.x - left_bottom.x) * (i + 0.5) / 16,
-                         left_bottom.y + (right_top.y - left_bottom.y) * (j + 0.5) / 12, right_top.z))
-            is_flat = data.type == 'ORTHO'
-            start = Vector((at.x, at.y, 0)) if is_flat else Vector()
-            way = Vector((0, 0, -1)) if is_flat else at.normalized()
-            found = flat.ray_cast(graph, place @ start, (place.to_3x3() @ way).normalized(), distance=data.clip_start / -way.z)
-            if found[0]:
-                notes.add("seen before the camera's clip start", found[4]["lull_source"])
-    window.scene = scene
-
-
 def check_camera(scene):
     """Raises: SystemExit without a camera that glTF has."""
     if scene.camera is None:
@@ -122,7 +103,7 @@ def add_camera(scene, flat, notes):
     """Copies the camera, with the properties that glTF lacks as `extras`."""
     camera = scene.camera
     data = camera.data
-    lens = {}
+    lens = {"clipStart": data.clip_start, "clipEnd": data.clip_end}
     width, height = scene.render.resolution_x, scene.render.resolution_y
     fits_width = data.sensor_fit == 'HORIZONTAL' or data.sensor_fit == 'AUTO' and width >= height
     side = width if fits_width else height
@@ -140,8 +121,7 @@ def add_camera(scene, flat, notes):
         if data.dof.aperture_blades or data.dof.aperture_ratio != 1:
             notes.say(f"the aperture of camera '{camera.name}' is round")
     made = bpy.data.objects.new(camera.name, data.copy())
-    if lens:
-        made.data["lull"] = lens
+    made.data["lull"] = lens
     made.matrix_world = camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
     flat.collection.objects.link(made)
     flat.camera = made
@@ -176,7 +156,6 @@ def main():
     made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], notes)
     lamps = lights.find(scene, wanted)
     add_camera(scene, flat, notes)
-    note_clipping(scene, flat, notes)
     baker = bake.Baker(what["texture"])
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])

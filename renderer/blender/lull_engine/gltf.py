@@ -36,11 +36,21 @@ def _let_through(material):
     material["extras"]["lull_thin"] = 1
 
 
+def _scatter_through(material, share, red, green, blue, is_image):
+    made = {"diffuseTransmissionFactor": share, "diffuseTransmissionColorFactor": [red, green, blue]}
+    base = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+    if is_image and base:
+        made["diffuseTransmissionColorTexture"] = base
+    material.setdefault("extensions", {})["KHR_materials_diffuse_transmission"] = made
+
+
 def _patch_material(material):
     extras, extensions = material.get("extras", {}), material.get("extensions", {})
     material["name"] = extras.pop("lull_name", material.get("name", ""))
     if extras.get("lull_open"):
         _let_through(material)
+    if through := extras.pop("lull_through", None):
+        _scatter_through(material, *through)
     # Without this, glass would be a thin sheet; Blender's is solid.
     if "KHR_materials_transmission" in extensions and not extras.pop("lull_thin", None):
         extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})

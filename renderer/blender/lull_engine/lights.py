@@ -5,6 +5,7 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 
 import surfaces
+from versions import principled_input
 
 
 def find(scene, wanted):
@@ -27,6 +28,10 @@ def add(lamps, scene, flat, notes):
         elif not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
                 notes.add("seen by the camera", o.name, "lights")
+        if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
+            notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
+        if light.cycles.max_bounces < 12:
+            notes.add("lighting after any number of bounces", o.name, "lights")
         if not light.use_shadow or not getattr(light.cycles, "cast_shadow", True):
             notes.add("casting shadows all the same", o.name, "lights")
         if light.type == 'AREA':
@@ -158,12 +163,9 @@ def _shining(name, color, radiance):
     material.use_backface_culling = True
     principled = surfaces.principled(material)
     principled.inputs['Base Color'].default_value = (0, 0, 0, 1)
-    for specular in 'Specular', 'Specular IOR Level':  # until and from Blender 4
-        if specular in principled.inputs:
-            principled.inputs[specular].default_value = 0
-    emission = 'Emission' if 'Emission' in principled.inputs else 'Emission Color'
+    principled_input(principled, 'Specular').default_value = 0
     # The exporter writes colours up to 1, and a strength.
     largest = max(*color, 1e-9)
-    principled.inputs[emission].default_value = [c / largest for c in color] + [1]
+    principled_input(principled, 'Emission').default_value = [c / largest for c in color] + [1]
     principled.inputs['Emission Strength'].default_value = radiance * largest
     return material

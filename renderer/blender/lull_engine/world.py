@@ -4,6 +4,7 @@ import math
 import bpy
 
 import groups
+from versions import panorama
 
 _RAYS = "diffuse", "glossy", "transmission"
 _SMALLEST, _LARGEST = 16, 4096  # pixels across: of a plain colour, and of any world
@@ -65,8 +66,7 @@ def _surround(world, path):
     room = bpy.data.scenes.new('lull world')
     data = bpy.data.cameras.new('lull world')
     data.type = 'PANO'
-    settings = data if hasattr(data, "panorama_type") else data.cycles  # from Blender 4; until then
-    settings.panorama_type = 'EQUIRECTANGULAR'
+    panorama(data).panorama_type = 'EQUIRECTANGULAR'
     camera = bpy.data.objects.new('lull world', data)
     camera.rotation_euler = (math.pi / 2, 0, -math.pi / 2)
     room.collection.objects.link(camera)
