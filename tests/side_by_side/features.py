@@ -86,7 +86,7 @@ def beside(a, b, path):
 
 
 def clean(line):
-    line = re.sub("^(Warning|Error|Info): ", "", line)
+    line = re.sub("^((Warning|Error|Info): )+", "", line)
     line = re.sub(r"lull: \S+: /\S+: warning: ", "lull: ", line)
     return line.removeprefix("The scene cannot be exported: ").replace("|", "\\|")
 
@@ -102,6 +102,7 @@ def judge(o, name, said):
     a, b = (picture(o.out / f"{name}.{engine}.exr") for engine in ("cycles", "lull"))
     warnings = consequences(said)
     remarks = [line for line in consequences(said, "Info") if line.startswith("differs: ")]
+    warnings = [line for line in warnings if line not in remarks]
     if b is None:
         return "refused: " + "; ".join(warnings), None, None
     beside(a, b, o.out / f"{name}.png")

@@ -529,7 +529,8 @@ def lawn():
 
 @case("particles that are objects")
 def particle_objects(scene):
-    one = cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4, (0, 50, 0))
+    bpy.ops.mesh.primitive_ico_sphere_add(radius=0.3, location=(0, 50, 0))
+    one = dress(matte("copy", (0.6, 0.2, 0.1, 1)))
     particles(lawn(), count=40, render_type='OBJECT', instance_object=one, particle_size=0.5)
 
 
@@ -540,8 +541,9 @@ def hair(scene):
 
 @case("hair of curves")
 def hair_curves(scene):
-    made = bpy.data.hair_curves.new("strands")
-    scene.collection.objects.link(bpy.data.objects.new("strands", made))
+    bpy.context.preferences.experimental.use_new_curves_tools = True
+    bpy.ops.object.curves_random_add()
+    bpy.context.object.data.materials.append(matte("strands", (0.3, 0.2, 0.1, 1)))
 
 
 @case("modifiers: subdivision, boolean")
@@ -989,7 +991,7 @@ def room(scene, made):
     key = the("key")
     key.location, key.rotation_euler, key.data.energy = (0, 0, 3.9), (0, 0, 0), 60
     c = scene.cycles
-    scene.lull.max_depth = c.max_bounces = c.diffuse_bounces = c.glossy_bounces = 32
+    scene.lull.max_depth = c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = 32
 
 
 def render(scene, engine, path, spp):
@@ -1018,7 +1020,11 @@ def main():
         c = scene.cycles
         c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
         c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = scene.lull.max_depth = 12
-        change(scene)
+        try:
+            change(scene)
+        except (RuntimeError, AttributeError, KeyError, TypeError) as e:
+            print("Info: not made:", e)
+            continue
         for engine in 'CYCLES', 'LULL':
             path = os.path.join(FOLDER, f"{name}.{engine.lower()}.exr")
             if os.path.exists(path):

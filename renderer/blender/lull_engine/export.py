@@ -1,10 +1,10 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
 The last argument is a JSON object: the file, the names of scene, view layer and its material override (or
-null), the frame, the size of baked images, whether slabs of glass become sheets, the output folder, the name
-of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
+null), the frame, the size of baked images, whether slabs of glass become sheets, the number of bounces, the output folder, the
+name of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
 of what the camera sees of a world that has another light, or null), `groups` (light groups by the names that lull takes),
-`objects` and `materials` (pass indices by name), and `warnings`.
+`objects` and `materials` (pass indices by name), `warnings`, and `remarks` on Cycles' usual settings.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
 modifiers, instances and particles. Area lights become emitting meshes, the world becomes an image.
@@ -85,6 +85,19 @@ def note_film(scene, notes):
         notes.say("pixels are square, whatever their aspect")
     if any(c.indirect_only or c.holdout for c in _collections(bpy.context.view_layer.layer_collection)):
         notes.say("collections that are indirect only or holdouts are shown as any others")
+
+
+def limits(scene, depth):
+    """Returns a sentence about the limits of Cycles that lull has not; none where Cycles has none."""
+    c, found = scene.cycles, []
+    for name in "diffuse", "glossy", "transmission":
+        if getattr(c, name + "_bounces") < min(depth, c.max_bounces):
+            found.append(f"{getattr(c, name + '_bounces')} {name} bounces")
+    if c.sample_clamp_indirect > 0 or c.sample_clamp_direct > 0:
+        found.append("clamping")
+    if not (c.caustics_reflective and c.caustics_refractive):
+        found.append("no caustics")
+    return ["differs: limits of Cycles do not hold, and rooms are brighter: " + ", ".join(found)] if found else []
 
 
 def _collections(collection):
@@ -174,7 +187,8 @@ def main():
         groups[scene.world.lightgroup] = "environment"
     with open(what["said"], "w", encoding="utf-8") as f:
         json.dump({"gltf": path, "environment": environment, "backdrop": backdrop, "groups": groups,
-                   "objects": indices(wanted), "materials": indices(bpy.data.materials), "warnings": notes.lines()}, f)
+                   "objects": indices(wanted), "materials": indices(bpy.data.materials), "warnings": notes.lines(),
+                   "remarks": limits(scene, what["depth"])}, f)
 
 
 main()

@@ -31,7 +31,8 @@ def flatten(flat, wanted, override, notes):
             if override:
                 mesh.materials[0] = override
             made.append(_place(flat, o.original, mesh, instance.matrix_world.copy()))
-        elif o.type not in _MESHES:
+            continue
+        if o.type not in _MESHES:
             if o.type not in _UNSEEN:
                 notes.add("left out, as glTF has nothing alike", o.original.name)
             continue

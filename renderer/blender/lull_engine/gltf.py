@@ -29,11 +29,24 @@ def _write(path, root, rest):
 def _let_through(material):
     """Makes the surface of a lamp a pane of air that shines: in Cycles nothing is shadowed by a lamp."""
     material["pbrMetallicRoughness"] = {"metallicFactor": 0, "roughnessFactor": 0}
-    extensions = material["extensions"]
-    extensions.pop("KHR_materials_specular", None)
+    _make_air(material)
+
+
+def _make_air(material):
+    """Makes a surface a sheet that reflects nothing, and lets through its base colour."""
+    extensions = material.setdefault("extensions", {})
+    extensions["KHR_materials_specular"] = {"specularFactor": 0}
     extensions["KHR_materials_transmission"] = {"transmissionFactor": 1}
     extensions["KHR_materials_ior"] = {"ior": 1}
     material["extras"]["lull_thin"] = 1
+
+
+def _brighten(pbr, factor, more):
+    red, green, blue, alpha = pbr.get("baseColorFactor", [1, 1, 1, 1])
+    is_plain = "baseColorTexture" not in pbr
+    # Factors of images may exceed 1 for lull.
+    brighter = (min(c * factor + more, 1) if is_plain else c * factor for c in (red, green, blue))
+    pbr["baseColorFactor"] = [*(max(0, c) for c in brighter), alpha]
 
 
 def _scatter_through(material, share, red, green, blue, is_image):
@@ -49,6 +62,10 @@ def _patch_material(material):
     material["name"] = extras.pop("lull_name", material.get("name", ""))
     if extras.get("lull_open"):
         _let_through(material)
+    if extras.pop("lull_air", None):
+        _make_air(material)
+    if brightens := extras.pop("lull_brightens", None):
+        _brighten(material["pbrMetallicRoughness"], *brightens)
     if through := extras.pop("lull_through", None):
         _scatter_through(material, *through)
     # Without this, glass would be a thin sheet; Blender's is solid.

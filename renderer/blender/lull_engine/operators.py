@@ -23,7 +23,8 @@ class LULL_OT_check(bpy.types.Operator):
     def execute(self, context):
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as folder:
-                lines = export(context.scene, context.view_layer.name, folder, _never)["warnings"]
+                lines = export(context.scene, context.view_layer.name, folder, _never)
+                lines = lines["warnings"] + lines["remarks"]
         except (Failure, OSError) as e:
             self.report({'ERROR'}, str(e))
             return {'CANCELLED'}

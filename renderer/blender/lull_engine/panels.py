@@ -4,7 +4,7 @@ import bpy
 # Panels of EEVEE and Cycles that every engine needs: properties of surfaces, the world and lights, and passes.
 _BORROWED = ("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface", "DATA_PT_EEVEE_light",
              "DATA_PT_spot", "VIEWLAYER_PT_layer_passes", "VIEWLAYER_PT_layer_passes_cryptomatte",
-             "VIEWLAYER_PT_layer_passes_lightgroups")
+             "VIEWLAYER_PT_layer_passes_lightgroups", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture")
 # Panels of features that lull does not support.
 _OTHERS = ("RENDER_PT_simplify", "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "RENDER_PT_gpencil")
 _TWICE = ("DATA_PT_light",)  # those that are borrowed, without nodes

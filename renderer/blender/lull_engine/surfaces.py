@@ -22,7 +22,10 @@ _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT
 # Parameters that are inputs of a Principled BSDF.
 _INPUTS = ('Base Color', 'Metallic', 'Roughness', 'Specular', 'Transmission', 'IOR', 'Alpha', 'Clearcoat', 'Clearcoat Roughness')
 _DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specular': 0, 'Transmission': 0, 'IOR': 1.45,
-             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0)}
+             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0),
+             'Tint': (1, 1, 1)}
+# Values of Specular, and the differences of albedos.
+_MORE_THAN_SCHLICK = (0, 0.1, 0.25, 0.5, 0.75, 1), (0, -0.0116, -0.0008, 0.0061, 0.0084, 0.0087)
 # Of one number for a whole material.
 _EVEN = ('IOR', 'Specular', 'Clearcoat', 'Clearcoat Roughness', 'Transmission')
 # Plain values of these are left out by glTF, or by its exporter.
@@ -171,6 +174,7 @@ class _Surface:
         if self.parameters is None:
             notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
             return
+        self._mark(_source(output.inputs['Surface']).node)
         if _source(output.inputs['Displacement']) and not displacement.moves(material):
             self.parameters['Normal'] = _source(output.inputs['Displacement'])  # with which the normals are baked
         for name, value in self.parameters.items():
@@ -178,6 +182,21 @@ class _Surface:
                 self.needs_mesh |= not self._is_known_normal(value)
             elif self._is_output(value) and not self._is_known(name, value):
                 self.needs_mesh |= _place_of(value) == 'mesh'
+
+    def _mark(self, node):
+        """Leaves to the written file what the exporter cannot be told."""
+        p = self.parameters
+        plain = {n: v for n, v in p.items() if not self._is_output(v)}
+        if p['Alpha'] == 0 and p['Tint'] != (1, 1, 1):
+            p.update({'Alpha': 1, 'Base Color': p['Tint'], 'Transmission': 1, 'Roughness': 0})
+            self.copy["lull_air"] = True
+        elif HAS_ADDED_INTERFACE and node.type == 'BSDF_PRINCIPLED' and {'Roughness', 'Specular'} <= set(plain) and \
+                plain.get('Metallic') == 0 and plain.get('Transmission') == 0:
+            # Under even light: the albedo of Disney's diffuse lobe (Burley 2015), that of a white Lambertian one being 1, and
+            # what a smooth interface reflects by Fresnel's formula more than by Schlick's.
+            roughness = plain['Roughness']
+            self.copy["lull_brightens"] = [0.9529 + roughness * (0.1098 + 0.0025 * roughness),
+                                           float(np.interp(plain['Specular'], *_MORE_THAN_SCHLICK))]
 
     # Surfaces
 
@@ -252,7 +271,7 @@ class _Surface:
         return 0 if getattr(node, "distribution", '') == 'SHARP' else self._value(node.inputs['Roughness'])
 
     def _bsdf_transparent(self, node):
-        return dict(_DEFAULTS, Alpha=0)
+        return dict(_DEFAULTS, Alpha=0, Tint=self._value(node.inputs['Color']))
 
     def _emission(self, node):
         light = self._times(self._value(node.inputs['Color']), self._value(node.inputs['Strength']))
@@ -269,6 +288,8 @@ class _Surface:
             return b if factor else a
         for clear, other, share in (a, b, factor), (b, a, self._minus(factor)):
             if clear['Alpha'] == 0:
+                if clear['Tint'] != (1, 1, 1):
+                    self.notes.add("without colour where they are transparent", self.name, "materials")
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
         if 'Normal' in a or 'Normal' in b:

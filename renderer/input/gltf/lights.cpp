@@ -22,7 +22,7 @@ void AddSphere(const Rgb& intensity, double radius, const LightEntity& light,
     write.Float("metallicfactor", 0);
     write.Float("roughnessfactor", 0);
     write.Float("transmissionfactor", 1);
-    write.Float("ior", 1);
+    write.Float("specularfactor", 0);
     ShapeEntity sphere;
     sphere.name = "sphere";
     sphere.loc = loc;
