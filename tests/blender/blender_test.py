@@ -46,7 +46,7 @@ class AddOn(unittest.TestCase):
         os.makedirs(user / "scripts/addons")
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
-        for frame, names in (1, ["factory", "lamps", "glass", "veil", "nodes", "pane"]), (11, ["skin"]):
+        for frame, names in (1, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur"]), (11, ["skin"]):
             what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": 4 * SPP,
                     "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
@@ -137,6 +137,31 @@ class AddOn(unittest.TestCase):
         self.assert_close("nodes", passes, 0.01, 0.02)
         self.assertNotIn("Warning", said)
 
+    def test_hair_leaves_and_what_cameras_see(self):
+        passes, said = self.render("fur")
+        self.assert_close("fur", passes, 0.02, 0.04)
+        self.assertNotIn("Warning", said)
+
+    def test_passes_of_view_layers(self):
+        passes, said = self.render("passes")
+        cycles = self.read("passes.cycles", None)
+        self.assertIn("passes that lull lacks are missing: uv", said)
+        self.assert_close("passes", passes, 0.01, 0.02)
+        for name, near in ("Mist.Z", 0.01), ("Position.X", 0.02), ("Position.Y", 0.02), ("Position.Z", 0.02):
+            self.assertLess(np.median(abs(passes[name] - cycles[name])), near, name)
+        for name, index in ("IndexOB.X", 3), ("IndexMA.X", 5):
+            found, wanted = passes[name] == index, cycles[name] == index
+            self.assertGreater(wanted.sum(), 20)
+            self.assertLess((found != wanted).sum(), 0.2 * wanted.sum(), name)
+            self.assertEqual(set(np.unique(passes[name])), {0, index})
+        for kind in "CryptoObject00", "CryptoMaterial00":  # ids are hashes of names
+            ids, wanted = passes[kind + ".R"].view(np.uint32), cycles[kind + ".R"].view(np.uint32)
+            self.assertGreater((ids == wanted).mean(), 0.9, kind)
+        for group in "warm", "cold", "sky":
+            got, wanted = (rgb(p, "Combined_" + group).mean() for p in (passes, cycles))
+            self.assertAlmostEqual(got / wanted, 1, delta=0.02, msg=group)
+        self.assertEqual(rgb(passes, "Combined_none").max(), 0)
+
     def test_brightens_as_the_film_and_the_view_do(self):
         _, said = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2; scene.view_settings.exposure = 1")
         self.assertNotIn("Error", said)
@@ -216,6 +241,7 @@ bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
         self.assertIn("TEXT 'Nothing will look different.", said)
         command = next(line[line.index("lull render"):] for line in said.splitlines() if "lull render" in line)
         self.assertEqual(sorted(f.name for f in path.parent.iterdir()), ["lamps.bin", "lamps.gltf"])
+        self.assertNotIn("Warning", said)
         picture = path.with_name("picture.exr")
         subprocess.run(shlex.split(command) + ["-o", picture, "--quiet"], env=self.environment, check=True,
                        stdout=subprocess.DEVNULL)
@@ -223,16 +249,29 @@ bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
         once, _ = self.render("lamps")
         self.assertLess(abs(np.stack([channels[c] for c in "RGB"], -1) - rgb(once)).max(), 1e-5)
 
+    def test_exports_one_file(self):
+        path = self.folder / "one" / "passes.glb"
+        path.parent.mkdir()
+        said = self.blender(*self.command("passes", SAMPLES + f"bpy.ops.lull.export(filepath={str(path)!r})")[:-2])
+        command = next(line[line.index("lull render"):] for line in said.splitlines() if "lull render" in line)
+        self.assertEqual(sorted(f.name for f in path.parent.iterdir()), ["passes.glb", "passes.world.exr"])
+        picture = path.with_name("picture.exr")
+        subprocess.run(shlex.split(command) + ["-o", picture, "--quiet"], env=self.environment, check=True,
+                       stdout=subprocess.DEVNULL)
+        channels, _ = exr.read(picture)
+        once, _ = self.render("passes")
+        self.assertLess(abs(np.stack([channels[c] for c in "RGB"], -1) - rgb(once)).max(), 1e-5)
+
     def test_warns_by_name(self):
         _, said = self.render("factory", SAMPLES + """
 cube = bpy.data.objects['Cube']
-cube.modifiers.new('hair', 'PARTICLE_SYSTEM').particle_system.name = 'fur'
+cube.is_holdout = True
 nodes = cube.active_material.node_tree.nodes
 noise = nodes.new('ShaderNodeTexNoise')
 cube.active_material.node_tree.links.new(noise.outputs['Color'], nodes['Principled BSDF'].inputs['Base Color'])
 nodes['Principled BSDF'].inputs['Subsurface'].default_value = 0.5
 bpy.data.lights['Light'].type = 'SPOT'""")
-        for text in ("1 object is without hair: 'Cube'", "1 material is without subsurface: 'Material'",
+        for text in ("1 object is shown as surfaces, not as shadow catchers or holdouts: 'Cube'", "1 material is without subsurface: 'Material'",
                      "1 light is without a radius, with sharp shadows: 'Light'"):
             self.assertEqual(said.count(text), 1, said)
 

@@ -259,6 +259,71 @@ def skin(folder):
     camera((5, -5, 3), (1.2, 0, math.pi / 4))
 
 
+def passes(folder):
+    """What view layers ask for: mist, positions, indices, mattes, and the light of two groups and of the world."""
+    scene = bpy.context.scene
+    layer = scene.view_layers[0]
+    floor(matte()).name = "floor"
+    sphere(matte("red", (0.7, 0.1, 0.1, 1)), (-1, 0, 0.7)).name = "ball"
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(1, 0, 0.5))
+    dress(matte("blue", (0.1, 0.1, 0.7, 1))).pass_index = 3
+    bpy.data.materials["red"].pass_index = 5
+    bpy.ops.mesh.primitive_plane_add(size=1, location=(2.5, 0, 3), rotation=(math.pi, 0, 0))
+    dress(material("glowing", 'Emission', Strength=5)).lightgroup = "warm"
+    lamp('POINT', 100, (-3, -2, 3), shadow_soft_size=0.2).lightgroup = "warm"
+    lamp('AREA', 100, (0, -1, 4), (0.2, 0, 0), size=1).lightgroup = "cold"
+    world = scene.world = bpy.data.worlds.new("grey")
+    world.use_nodes, world.lightgroup = True, "sky"
+    world.mist_settings.start, world.mist_settings.depth = 2, 10
+    for name in "warm", "cold", "sky", "none":
+        layer.lightgroups.add().name = name
+    for name in "mist", "position", "object_index", "material_index", "cryptomatte_object", "cryptomatte_material", "uv":
+        setattr(layer, "use_pass_" + name, True)
+    camera((0, -7, 3.2), (1.2, 0, 0), lens=35)
+
+
+def fur(folder):
+    """Hair, displacement, leaves that light comes through, a wall before the camera's clip start, and a world whose backdrop is
+    another than its light."""
+    scene = bpy.context.scene
+    lamp('AREA', 300, (1, 3, 4), (-0.6, 0, 0), size=2)
+    ground = floor(matte("ground", (0.2, 0.4, 0.1, 1)))
+    ground.modifiers.new("hair", 'PARTICLE_SYSTEM')
+    settings = ground.particle_systems[0].settings
+    settings.type, settings.count, settings.hair_length, settings.root_radius = 'HAIR', 500, 0.4, 4
+
+    waved = matte("waved")
+    tree = waved.node_tree
+    wave, move = tree.nodes.new('ShaderNodeTexWave'), tree.nodes.new('ShaderNodeDisplacement')
+    wave.inputs['Scale'].default_value, move.inputs['Scale'].default_value = 1, 0.2
+    tree.links.new(wave.outputs['Fac'], move.inputs['Height'])
+    tree.links.new(move.outputs[0], tree.get_output_node('CYCLES').inputs['Displacement'])
+    waved.cycles.displacement_method = 'DISPLACEMENT'
+    sphere(waved, (-1.3, 0, 0.8))
+
+    leaf = material("leaf", 'BsdfDiffuse', Color=(0.2, 0.5, 0.1, 1))
+    tree = leaf.node_tree
+    front = next(n for n in tree.nodes if n.type == 'BSDF_DIFFUSE')
+    behind, mix = tree.nodes.new('ShaderNodeBsdfTranslucent'), tree.nodes.new('ShaderNodeMixShader')
+    behind.inputs['Color'].default_value, mix.inputs[0].default_value = (0.6, 0.8, 0.1, 1), 0.7
+    tree.links.new(front.outputs[0], mix.inputs[1]), tree.links.new(behind.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])
+    bpy.ops.mesh.primitive_plane_add(size=1.5, location=(1.3, 0, 1), rotation=(math.pi / 2, 0, 0))
+    dress(leaf)
+
+    bpy.ops.mesh.primitive_plane_add(size=4, location=(0, -6, 2), rotation=(math.pi / 2, 0, 0))
+    dress(matte("outside"))
+    world = scene.world = bpy.data.worlds.new("sky")
+    world.use_nodes = True
+    tree = world.node_tree
+    shown, rays, mix = (tree.nodes.new('ShaderNode' + kind) for kind in ('Background', 'LightPath', 'MixShader'))
+    shown.inputs['Color'].default_value = (0.2, 0.4, 1, 1)
+    for a, b in ((rays.outputs['Is Camera Ray'], mix.inputs[0]), (tree.nodes["Background"].outputs[0], mix.inputs[1]),
+                 (shown.outputs[0], mix.inputs[2]), (mix.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])):
+        tree.links.new(a, b)
+    camera((0, -7, 2), (1.35, 0, 0), lens=35, clip_start=2)
+
+
 def factory(folder):
     """Blender's own scene."""
     bpy.ops.wm.read_factory_settings()
@@ -272,6 +337,8 @@ def main():
         scene = bpy.context.scene
         r, c = scene.render, scene.cycles
         r.resolution_x, r.resolution_y = o["size"]
+        c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
+        c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = 12
         path = os.path.join(o["folder"], name)
         bpy.ops.wm.save_as_mainfile(filepath=path + ".blend", check_existing=False)
         if not o["spp"]:
@@ -280,8 +347,6 @@ def main():
         r.image_settings.file_format, r.image_settings.color_depth = 'OPEN_EXR_MULTILAYER', '32'
         r.image_settings.exr_codec = 'ZIP'
         c.samples, c.use_denoising, c.use_adaptive_sampling = o["spp"], False, False
-        c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
-        c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = 12
         c.pixel_filter_type, c.filter_width = 'BOX', 1
         for used in scene.view_layers:
             used.use_pass_z = used.use_pass_normal = True
@@ -290,4 +355,5 @@ def main():
         bpy.ops.render.render(write_still=True)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -14,7 +14,7 @@ import bpy  # noqa: E402
 from . import engine, operators, panels, settings  # noqa: E402
 
 _CLASSES = (settings.LullPreferences, settings.LullSettings, engine.LullEngine,
-            operators.LULL_OT_check, operators.LULL_OT_export, panels.LULL_RENDER_PT_stopping, panels.LULL_RENDER_PT_sampling)
+            operators.LULL_OT_check, operators.LULL_OT_export, *panels.CLASSES)
 
 
 def register():

@@ -8,27 +8,14 @@ import time
 import bpy
 import numpy as np
 
-from . import exr
+from . import exr, passes
 from .process import Failure, Render, run
 from .settings import find_lull
 
 _EXPORT = os.path.join(os.path.dirname(__file__), "export.py")
+_ADVICE = "--solid-glass"  # which sheets of this add-on's making need not
 _SECONDS_BETWEEN_VIEWS = 0.5
 _SECONDS_BETWEEN_LINES = 10  # of progress, in a terminal
-
-# Passes beside Combined: their name, their channels for Blender, and those of the EXR.
-_PASSES = (
-    ("Depth", "Z", ("Z",)),
-    ("Normal", "XYZ", ("N.X", "N.Y", "N.Z")),
-    ("Albedo", "RGB", ("albedo.R", "albedo.G", "albedo.B")),
-    ("Samples", "X", ("spp",)),
-    ("Noise", "X", ("noise",)),
-)
-_NOISY = ("Noisy", "RGB", ("noisy.R", "noisy.G", "noisy.B"))
-
-
-def _passes(scene):
-    return _PASSES + (_NOISY,) if scene.lull.denoise else _PASSES
 
 
 def _duration(seconds):
@@ -56,9 +43,8 @@ class LullEngine(bpy.types.RenderEngine):
 
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", 'COLOR')
-        for name, channels, _ in _passes(scene):
-            kind = ('VALUE' if len(channels) == 1 else 'VECTOR' if channels == "XYZ" else 'COLOR')
-            self.register_pass(scene, renderlayer, name, len(channels), channels, kind)
+        for made in passes.wanted(scene, renderlayer):
+            self.register_pass(scene, renderlayer, made.name, len(made.channels), made.channels, made.kind)
 
     def render(self, depsgraph):
         try:
@@ -69,8 +55,8 @@ class LullEngine(bpy.types.RenderEngine):
             self.report({'ERROR'}, str(e))  # and in the terminal
 
 
-def export(scene, layer, folder, stopped, name="scene"):
-    """Writes a view layer as NAME.gltf, in another Blender, which leaves the scene unchanged.
+def export(scene, layer, folder, stopped, name="scene", suffix=".gltf"):
+    """Writes a view layer as NAME.gltf or NAME.glb, in another Blender, which leaves the scene unchanged.
 
     Returns: the result of export.py; None if `stopped` has returned true. Raises: Failure.
     """
@@ -78,8 +64,8 @@ def export(scene, layer, folder, stopped, name="scene"):
     override = scene.view_layers[layer].material_override
     bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
     what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
-            "folder": folder, "name": name, "frame": scene.frame_current, "subframe": scene.frame_subframe,
-            "texture": scene.lull.texture, "panes": scene.lull.panes, "said": said}
+            "folder": folder, "name": name, "suffix": suffix, "frame": scene.frame_current, "subframe": scene.frame_subframe,
+            "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "said": said}
     scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
     try:
         code, output, ended = run(
@@ -90,7 +76,7 @@ def export(scene, layer, folder, stopped, name="scene"):
             return None
         if code != 0 or not os.path.exists(said):
             lines = [line for line in output.splitlines() if line.strip() and
-                     not line.startswith("Blender quit")]
+                     not line.startswith(("Blender quit", "Error: script failed"))]
             raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "exit code %d" % code))
         with open(said, encoding="utf-8") as f:
             return json.load(f)
@@ -105,7 +91,7 @@ def arguments(scene, exported, size):
     said = [exported["gltf"], "--resolution", "%dx%d" % size, *scene.lull.arguments()]
     if exported["environment"]:
         said += ["--environment", exported["environment"]]
-    if scene.render.film_transparent:
+    if scene.render.film_transparent or exported["backdrop"]:
         said += ["--transparent"]
     if scene.cycles.film_exposure not in (0, 1):
         said += ["--exposure", "%.9g" % math.log2(scene.cycles.film_exposure)]
@@ -123,18 +109,22 @@ class _Job:
         self.settings = self.scene.lull
         self.is_transparent = self.scene.render.film_transparent
         self.layer = depsgraph.view_layer.name
+        self.view_layer = self.scene.view_layers[self.layer]
+        self.passes = passes.wanted(self.scene, self.view_layer)
+        self.eye = depsgraph.scene.camera.matrix_world.translation.copy() if depsgraph.scene.camera else None
         self._measure(depsgraph.scene.render)
 
     def _measure(self, render):
         """Sets the size of the whole image and the rendered part, in fractions."""
         scale = render.resolution_percentage / 100
         self.whole = int(render.resolution_x * scale), int(render.resolution_y * scale)
-        self.crop, self.size = None, self.whole
+        self.crop, self.size, self.corner = None, self.whole, (0, 0)  # the corner is the lower left one
         if render.use_border:
-            (x0, x1), (y0, y1) = ((int(low * n), int(high * n)) for low, high, n in (
+            # In single precision, as Blender has it: 0.9 of 40 pixels are 36.
+            (x0, x1), (y0, y1) = ((int(np.float32(low) * np.float32(n)), int(np.float32(high) * np.float32(n))) for low, high, n in (
                 (render.border_min_x, render.border_max_x, self.whole[0]),
                 (render.border_min_y, render.border_max_y, self.whole[1])))
-            self.size = x1 - x0, y1 - y0
+            self.size, self.corner = (x1 - x0, y1 - y0), (x0, y0)
             width, height = self.whole
             # lull rounds up: half a pixel less is the same pixel, whatever the fractions lose.
             edges = ((x0, width), (x1, width), (height - y1, height), (height - y0, height))
@@ -148,9 +138,13 @@ class _Job:
             return
         for warning in exported["warnings"]:
             engine.report({'WARNING'}, warning)
+        for remark in exported["remarks"]:
+            engine.report({'INFO'}, remark)
+        if lacked := passes.lacked(self.view_layer):
+            engine.report({'WARNING'}, "passes that lull lacks are missing: " + ", ".join(lacked))
         picture = os.path.join(self.folder, "picture.exr")
         command = [lull, "render", *arguments(self.scene, exported, self.whole), "-o", picture,
-                   "--aov", "albedo,normal,depth,noise"]
+                   *passes.arguments(self.passes, exported["groups"])]
         if self.crop:
             command += ["--crop", self.crop]
         if self.scene.render.threads_mode == 'FIXED':
@@ -161,7 +155,7 @@ class _Job:
         try:
             self._watch(render, result)
             if os.path.exists(picture):
-                self._fill(result, picture)
+                self._fill(result, picture, exported)
             elif render.code != 130:
                 raise Failure("lull: " + (" ".join(render.errors) or
                                           "ended with exit code %d" % render.code))
@@ -186,32 +180,47 @@ class _Job:
                     continue  # there each of them is a line
                 said = time.monotonic()
                 self.engine.update_stats("", _progress(what))
-            elif kind in ("warning", "note"):
+            elif kind in ("warning", "note") and _ADVICE not in what:
                 self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + what)
             if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:
                 _set(result.layers[0].passes["Combined"], view)
                 self.engine.update_result(result)
                 changed, shown = False, time.monotonic()
 
-    def _fill(self, result, picture):
+    def _fill(self, result, path, exported):
         try:
-            channels, _ = exr.read(picture)
+            channels, attributes = exr.read(path)
         except ValueError as e:
             raise Failure(str(e)) from e
-        for name, ids, _ in _passes(self.scene):
-            self.engine.add_pass(name, len(ids), ids, layer=self.layer)
-        passes = result.layers[0].passes
+        for made in self.passes:
+            self.engine.add_pass(made.name, len(made.channels), made.channels, layer=self.layer)
+        targets = result.layers[0].passes
         combined = np.ones((self.size[1], self.size[0], 4), np.float32)
         for i, name in enumerate("RGB"):
             combined[:, :, i] = channels[name]
         if self.is_transparent:  # colours are multiplied by it, as Blender wants them
             combined[:, :, 3] = channels["A"]
-        _set(passes["Combined"], combined)
-        for name, _, names in _passes(self.scene):
-            values = np.stack([channels[n] for n in names], -1)
-            if name == "Normal":  # of glTF's world, whose y is up
-                values = np.stack([values[..., 0], -values[..., 2], values[..., 1]], -1)
-            _set(passes[name], values)
+        elif exported["backdrop"]:
+            combined[:, :, :3] += (1 - channels["A"][..., None]) * self._backdrop(exported["backdrop"])
+        _set(targets["Combined"], combined)
+        picture = passes.Picture(channels, attributes, exported, self.scene, self.eye)
+        for made in self.passes:
+            _set(targets[made.name], made.fill(picture))
+        for field, value in passes.cryptomatte_fields(self.layer, attributes):
+            result.stamp_data_add_field(field, value)
+
+    def _backdrop(self, path):
+        """Returns the rendered part of what the camera sees of the world."""
+        image = bpy.data.images.load(path)
+        try:
+            width, height = image.size
+            pixels = np.empty(width * height * 4, np.float32)
+            image.pixels.foreach_get(pixels)
+        finally:
+            bpy.data.images.remove(image)
+        x, y = self.corner
+        shown = pixels.reshape(height, width, 4)[y:y + self.size[1], x:x + self.size[0], :3]
+        return shown[::-1] * (self.scene.cycles.film_exposure or 1)
 
 
 def _set(target, values):

@@ -1,26 +1,28 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
 The last argument is a JSON object: the file, the names of scene, view layer and its material override (or
-null), the frame, the size of baked images, whether slabs of glass become sheets, the output folder, the name
-of the files in it, and the file of the result, with `gltf`, `environment` (or null) and `warnings`.
+null), the frame, the size of baked images, whether slabs of glass become sheets, the number of bounces, the output folder, the
+name of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
+of what the camera sees of a world that has another light, or null), `groups` (light groups by the names that lull takes),
+`objects` and `materials` (pass indices by name), `warnings`, and `remarks` on Cycles' usual settings.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
 modifiers, instances and particles. Area lights become emitting meshes, the world becomes an image.
 Shift, depth of field and the radius of point lights are `extras`, which only lull reads.
 """
 import json
-import math
 import os
 import sys
 
 import bpy
-from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bake  # noqa: E402
 import flatten  # noqa: E402
+import gltf  # noqa: E402
 import lights  # noqa: E402
 import panes  # noqa: E402
+import strands  # noqa: E402
 import surfaces  # noqa: E402
 import world  # noqa: E402
 from notes import Notes  # noqa: E402
@@ -70,6 +72,7 @@ def show_as_rendered(scene, layer):
             modifier.show_viewport = modifier.show_render
             if hasattr(modifier, "render_levels"):
                 modifier.levels = modifier.render_levels
+    strands.prepare(scene)
     r = scene.render
     r.simplify_subdivision, r.simplify_child_particles = r.simplify_subdivision_render, r.simplify_child_particles_render
     return wanted
@@ -84,28 +87,21 @@ def note_film(scene, notes):
         notes.say("collections that are indirect only or holdouts are shown as any others")
 
 
+def limits(scene, depth):
+    """Returns a sentence about the limits of Cycles that lull has not; none where Cycles has none."""
+    c, found = scene.cycles, []
+    for name in "diffuse", "glossy", "transmission":
+        if getattr(c, name + "_bounces") < min(depth, c.max_bounces):
+            found.append(f"{getattr(c, name + '_bounces')} {name} bounces")
+    if c.sample_clamp_indirect > 0 or c.sample_clamp_direct > 0:
+        found.append("clamping")
+    if not (c.caustics_reflective and c.caustics_refractive):
+        found.append("no caustics")
+    return ["differs: limits of Cycles do not hold, and rooms are brighter: " + ", ".join(found)] if found else []
+
+
 def _collections(collection):
     return [collection] + [c for child in collection.children for c in _collections(child)]
-
-
-def note_clipping(scene, flat, notes):
-    """Notes objects that are seen before the distance at which a camera begins to see, of 16x12 rays."""
-    window = bpy.context.window
-    window.scene = flat
-    graph = bpy.context.evaluated_depsgraph_get()
-    place, data = flat.camera.matrix_world, scene.camera.data
-    right_top, _, left_bottom, _ = data.view_frame(scene=scene)
-    for i in range(16):
-        for j in range(12):
-            at = Vector((left_bottom.x + (right_top.x - left_bottom.x) * (i + 0.5) / 16,
-                         left_bottom.y + (right_top.y - left_bottom.y) * (j + 0.5) / 12, right_top.z))
-            is_flat = data.type == 'ORTHO'
-            start = Vector((at.x, at.y, 0)) if is_flat else Vector()
-            way = Vector((0, 0, -1)) if is_flat else at.normalized()
-            found = flat.ray_cast(graph, place @ start, (place.to_3x3() @ way).normalized(), distance=data.clip_start / -way.z)
-            if found[0]:
-                notes.add("seen before the camera's clip start", found[4]["lull_source"])
-    window.scene = scene
 
 
 def check_camera(scene):
@@ -120,7 +116,7 @@ def add_camera(scene, flat, notes):
     """Copies the camera, with the properties that glTF lacks as `extras`."""
     camera = scene.camera
     data = camera.data
-    lens = {}
+    lens = {"clipStart": data.clip_start, "clipEnd": data.clip_end}
     width, height = scene.render.resolution_x, scene.render.resolution_y
     fits_width = data.sensor_fit == 'HORIZONTAL' or data.sensor_fit == 'AUTO' and width >= height
     side = width if fits_width else height
@@ -138,8 +134,7 @@ def add_camera(scene, flat, notes):
         if data.dof.aperture_blades or data.dof.aperture_ratio != 1:
             notes.say(f"the aperture of camera '{camera.name}' is round")
     made = bpy.data.objects.new(camera.name, data.copy())
-    if lens:
-        made.data["lull"] = lens
+    made.data["lull"] = lens
     made.matrix_world = camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
     flat.collection.objects.link(made)
     flat.camera = made
@@ -147,38 +142,16 @@ def add_camera(scene, flat, notes):
         setattr(flat.render, name, getattr(scene.render, name))
 
 
-def patch(path):
-    """Corrects the written file where the exporter has no option."""
-    with open(path, encoding="utf-8") as f:
-        root = json.load(f)
-    for material in root.get("materials", []):
-        extensions = material.get("extensions", {})
-        # Without this, glass would be a thin sheet; Blender's is solid.
-        if "KHR_materials_transmission" in extensions and not material.get("extras", {}).pop("lull_thin", None):
-            extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
-        extras = material.get("extras", {})
-        own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"))
-               if extras.pop(mark, None)}  # Blender has numbers only
-        if own:
-            extras["lull"] = own
-        absorbs = extras.pop("lull_absorbs", None)
-        if absorbs and max(absorbs) > 0 and "KHR_materials_volume" in extensions:
-            distance = 1 / max(absorbs)
-            extensions["KHR_materials_volume"].update(
-                attenuationDistance=distance, attenuationColor=[math.exp(-a * distance) for a in absorbs])
-        # Without this, surfaces without specular reflection would reflect at grazing angles.
-        specular = extensions.get("KHR_materials_specular", {})
-        if specular.get("specularColorFactor") == [0, 0, 0]:
-            specular["specularFactor"] = 0
-    with open(path, "w", encoding="utf-8") as f:
-        json.dump(root, f)
-
-
 def export(path):
     bpy.ops.export_scene.gltf(
-        filepath=path, export_format='GLTF_SEPARATE', use_active_scene=True, use_renderable=True,
+        filepath=path, export_format='GLB' if path.endswith('.glb') else 'GLTF_SEPARATE', use_active_scene=True, use_renderable=True,
         export_cameras=True, export_lights=True, export_extras=True, export_apply=False,
         export_animations=False, export_current_frame=True, export_skins=False, export_morph=False)
+
+
+def indices(blocks):
+    """Returns the pass indices that are not 0, by name."""
+    return {block.name: block.pass_index for block in blocks if block.pass_index}
 
 
 def main():
@@ -196,7 +169,6 @@ def main():
     made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], notes)
     lamps = lights.find(scene, wanted)
     add_camera(scene, flat, notes)
-    note_clipping(scene, flat, notes)
     baker = bake.Baker(what["texture"])
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])
@@ -205,13 +177,18 @@ def main():
     if what["panes"]:
         panes.prepare(made, notes)
     lights.add(lamps, scene, flat, notes)
-    environment = world.write(scene, os.path.join(what["folder"], what["name"] + ".world.exr"), notes)
+    base = os.path.join(what["folder"], what["name"])
+    environment, backdrop = world.write(scene, flat.camera, base, notes)
     bpy.context.window.scene = flat
-    path = os.path.join(what["folder"], what["name"] + ".gltf")
+    path = base + what["suffix"]
     export(path)
-    patch(path)
+    groups = gltf.patch(path, [g.name for g in layer.lightgroups])
+    if environment and scene.world.lightgroup in layer.lightgroups:
+        groups[scene.world.lightgroup] = "environment"
     with open(what["said"], "w", encoding="utf-8") as f:
-        json.dump({"gltf": path, "environment": environment, "warnings": notes.lines()}, f)
+        json.dump({"gltf": path, "environment": environment, "backdrop": backdrop, "groups": groups,
+                   "objects": indices(wanted), "materials": indices(bpy.data.materials), "warnings": notes.lines(),
+                   "remarks": limits(scene, what["depth"])}, f)
 
 
 main()

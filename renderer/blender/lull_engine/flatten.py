@@ -4,6 +4,7 @@ import bpy
 from mathutils import Matrix
 
 import groups
+import strands
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
@@ -24,6 +25,13 @@ def flatten(flat, wanted, override, notes):
         source = instance.parent.original if instance.is_instance else o.original
         if source not in wanted or not (instance.is_instance or _shows_itself(instance, listed)):
             continue
+        if o.original.particle_systems:
+            _place_hair(flat, instance, graph, override, meshes, made)
+        if o.type == 'CURVES' and (mesh := strands.of_curves(o)):
+            if override:
+                mesh.materials[0] = override
+            made.append(_place(flat, o.original, mesh, instance.matrix_world.copy()))
+            continue
         if o.type not in _MESHES:
             if o.type not in _UNSEEN:
                 notes.add("left out, as glTF has nothing alike", o.original.name)
@@ -43,6 +51,18 @@ def _shows_itself(instance, listed):
     o = instance.object.original
     is_copied = o.parent is not None and o.parent.instance_type in ('VERTS', 'FACES')
     return instance.show_self and not is_copied and not (o.type in _CURVES and o in listed)
+
+
+def _place_hair(flat, instance, graph, override, meshes, made):
+    original = instance.object.original
+    key = "hair of " + original.name_full
+    if key not in meshes:
+        meshes[key] = strands.of_particles(original, graph)
+    away = instance.matrix_world @ original.evaluated_get(graph).matrix_world.inverted()
+    for mesh in meshes[key]:
+        if override:
+            mesh.materials[0] = override
+        made.append(_place(flat, original, mesh, away))
 
 
 def _key(o):
@@ -82,7 +102,7 @@ def _place(flat, original, mesh, matrix):
         matrix = Matrix.Identity(4)
     o = bpy.data.objects.new(original.name, mesh)
     o.matrix_world = matrix
-    o["lull_source"] = original.name
+    o["lull_source"], o["lull_group"] = original.name, original.lightgroup
     o.color, o.pass_index = original.color, original.pass_index
     flat.collection.objects.link(o)
     return o
@@ -91,8 +111,10 @@ def _place(flat, original, mesh, matrix):
 def _note_of(original, notes):
     for system in original.particle_systems:
         settings = system.settings
-        if settings.type == 'HAIR' and settings.render_type == 'PATH' or settings.render_type in ('LINE', 'HALO'):
-            notes.add("without hair", original.name)
+        if settings.render_type in ('LINE', 'HALO') or settings.type != 'HAIR' and settings.render_type == 'PATH':
+            notes.add("without particles that are lines or points", original.name)
+    if getattr(original.cycles, "use_adaptive_subdivision", False):
+        notes.add("subdivided as its modifier says, not adaptively", original.name)
     if original.is_shadow_catcher or original.is_holdout:
         notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
     if not all(getattr(original, "visible_" + name, True) for name in ("camera", "diffuse", "glossy", "transmission", "shadow")):

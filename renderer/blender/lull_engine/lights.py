@@ -5,6 +5,7 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 
 import surfaces
+from versions import principled_input
 
 
 def find(scene, wanted):
@@ -27,14 +28,23 @@ def add(lamps, scene, flat, notes):
         elif not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
                 notes.add("seen by the camera", o.name, "lights")
+        if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
+            notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
+        if light.cycles.max_bounces < 12:
+            notes.add("lighting after any number of bounces", o.name, "lights")
         if not light.use_shadow or not getattr(light.cycles, "cast_shadow", True):
             notes.add("casting shadows all the same", o.name, "lights")
         if light.type == 'AREA':
             _add_area(flat, o, light, matrix, notes)
-            continue
-        made = bpy.data.objects.new(o.name, light)
-        made.matrix_world = matrix
-        flat.collection.objects.link(made)
+        else:
+            _place(flat, o, light, matrix)
+
+
+def _place(flat, o, data, matrix):
+    made = bpy.data.objects.new(o.name, data)
+    made.matrix_world = matrix
+    made["lull_source"], made["lull_group"] = o.name, o.lightgroup
+    flat.collection.objects.link(made)
 
 
 def _folded(light, notes):
@@ -143,9 +153,7 @@ def _add_area(flat, o, light, matrix, notes):
     # Blender's watts: a Lambertian surface of this radiance emits pi / 4 of them.
     mesh.materials.append(_shining(o.name, light.color, light.energy / (4 * area)))
     mesh.materials[0]["lull_open"] = True
-    made = bpy.data.objects.new(o.name, mesh)
-    made.matrix_world = matrix
-    flat.collection.objects.link(made)
+    _place(flat, o, mesh, matrix)
 
 
 def _shining(name, color, radiance):
@@ -155,12 +163,9 @@ def _shining(name, color, radiance):
     material.use_backface_culling = True
     principled = surfaces.principled(material)
     principled.inputs['Base Color'].default_value = (0, 0, 0, 1)
-    for specular in 'Specular', 'Specular IOR Level':  # until and from Blender 4
-        if specular in principled.inputs:
-            principled.inputs[specular].default_value = 0
-    emission = 'Emission' if 'Emission' in principled.inputs else 'Emission Color'
+    principled_input(principled, 'Specular').default_value = 0
     # The exporter writes colours up to 1, and a strength.
     largest = max(*color, 1e-9)
-    principled.inputs[emission].default_value = [c / largest for c in color] + [1]
+    principled_input(principled, 'Emission').default_value = [c / largest for c in color] + [1]
     principled.inputs['Emission Strength'].default_value = radiance * largest
     return material

@@ -23,7 +23,8 @@ class LULL_OT_check(bpy.types.Operator):
     def execute(self, context):
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as folder:
-                lines = export(context.scene, context.view_layer.name, folder, _never)["warnings"]
+                lines = export(context.scene, context.view_layer.name, folder, _never)
+                lines = lines["warnings"] + lines["remarks"]
         except (Failure, OSError) as e:
             self.report({'ERROR'}, str(e))
             return {'CANCELLED'}
@@ -39,19 +40,25 @@ class LULL_OT_check(bpy.types.Operator):
 class LULL_OT_export(bpy.types.Operator, ExportHelper):
     """Write the scene as lull's render engine sees it, with its world, and print the command that renders it"""
     bl_idname, bl_label = "lull.export", "Export for lull"
-    filename_ext = ".gltf"
-    filter_glob: bpy.props.StringProperty(default="*.gltf", options={'HIDDEN'})
+    filename_ext = ".glb"
+    check_extension = None  # that of the path is kept
+    filter_glob: bpy.props.StringProperty(default="*.glb;*.gltf", options={'HIDDEN'})
 
     def execute(self, context):
         scene = context.scene
         folder, file = os.path.split(self.filepath)
+        name, suffix = os.path.splitext(file)
+        if suffix not in (".glb", ".gltf"):
+            name, suffix = file, ".glb"
         try:
-            done = export(scene, context.view_layer.name, folder, _never, os.path.splitext(file)[0])
+            done = export(scene, context.view_layer.name, folder, _never, name, suffix)
         except (Failure, OSError) as e:
             self.report({'ERROR'}, str(e))
             return {'CANCELLED'}
         for line in done["warnings"]:
             self.report({'WARNING'}, line)
+        if done["backdrop"]:
+            self.report({'WARNING'}, f"the world is left out behind the scene: put {done['backdrop']} there")
         scale = scene.render.resolution_percentage / 100
         size = int(scene.render.resolution_x * scale), int(scene.render.resolution_y * scale)
         command = ["lull", "render", *arguments(scene, done, size)]
@@ -60,4 +67,4 @@ class LULL_OT_export(bpy.types.Operator, ExportHelper):
 
 
 def menu(self, _context):
-    self.layout.operator(LULL_OT_export.bl_idname, text="lull (.gltf)")
+    self.layout.operator(LULL_OT_export.bl_idname, text="lull (.glb/.gltf)")

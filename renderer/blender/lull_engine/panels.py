@@ -1,21 +1,29 @@
 """The panels of lull, and those of Blender that are for every engine."""
 import bpy
 
-# Panels of EEVEE that every engine needs: properties of surfaces, the world and lights.
-_BORROWED = ("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface",
-             "EEVEE_WORLD_PT_surface", "DATA_PT_EEVEE_light", "DATA_PT_spot")
+# Panels of EEVEE and Cycles that every engine needs: properties of surfaces, the world and lights, and passes.
+_BORROWED = ("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface", "DATA_PT_EEVEE_light",
+             "DATA_PT_spot", "VIEWLAYER_PT_layer_passes", "VIEWLAYER_PT_layer_passes_cryptomatte",
+             "VIEWLAYER_PT_layer_passes_lightgroups", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture")
 # Panels of features that lull does not support.
-_OTHERS = ("RENDER_PT_simplify", "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "RENDER_PT_gpencil",
-           "VIEWLAYER_PT_layer_passes")
+_OTHERS = ("RENDER_PT_simplify", "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "RENDER_PT_gpencil")
+_TWICE = ("DATA_PT_light",)  # those that are borrowed, without nodes
 
 
 def _shared():
     for panel in bpy.types.Panel.__subclasses__():
-        engines = getattr(panel, "COMPAT_ENGINES", None)
-        if engines is None or panel.__name__.startswith(_OTHERS):
-            continue
-        if 'BLENDER_RENDER' in engines or panel.__name__ in _BORROWED:
-            yield engines
+        yield from _engines_of(panel)
+        for derived in panel.__subclasses__():
+            yield from _engines_of(derived)
+
+
+def _engines_of(panel):
+    engines = getattr(panel, "COMPAT_ENGINES", None)
+    name = panel.__name__
+    if engines is None or name.startswith(_OTHERS) or name in _TWICE:
+        return
+    if 'BLENDER_RENDER' in engines or name in _BORROWED:
+        yield engines
 
 
 def share(with_lull):
@@ -60,5 +68,78 @@ class LULL_RENDER_PT_sampling(_Panel, bpy.types.Panel):
     def draw(self, context):
         settings, layout = context.scene.lull, self.layout
         layout.use_property_split = True
-        for name in "guide", "max_depth", "seed", "texture", "panes":
+        for name in "integrator", "guide", "max_depth", "seed", "texture", "panes":
             layout.prop(settings, name)
+
+
+class LULL_RENDER_PT_film(_Panel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(context.scene.cycles, "film_exposure")
+        layout.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class LULL_RENDER_PT_performance(_Panel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        render, layout = context.scene.render, self.layout
+        layout.use_property_split = True
+        layout.prop(render, "threads_mode")
+        if render.threads_mode == 'FIXED':
+            layout.prop(render, "threads")
+        layout.prop(context.scene.lull, "block")
+
+
+class LULL_VIEWLAYER_PT_passes(_Panel, bpy.types.Panel):
+    bl_label, bl_context, bl_parent_id = "Data", "view_layer", "VIEWLAYER_PT_layer_passes"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        for name in "mist", "position", "object_index", "material_index":
+            layout.prop(context.view_layer, "use_pass_" + name)
+
+
+class LULL_OBJECT_PT_lightgroup(_Panel, bpy.types.Panel):
+    bl_label, bl_context = "Light Group", "object"
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        self.layout.prop_search(context.object, "lightgroup", context.view_layer, "lightgroups", text="Light Group")
+
+
+class LULL_WORLD_PT_lightgroup(_Panel, bpy.types.Panel):
+    bl_label, bl_context = "Light Group", "world"
+    bl_options = {'DEFAULT_CLOSED'}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.world
+
+    def draw(self, context):
+        self.layout.prop_search(context.world, "lightgroup", context.view_layer, "lightgroups", text="Light Group")
+
+
+class LULL_MATERIAL_PT_settings(_Panel, bpy.types.Panel):
+    bl_label, bl_context = "Settings", "material"
+    bl_options = {'DEFAULT_CLOSED'}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.material
+
+    def draw(self, context):
+        layout, material = self.layout, context.material
+        layout.use_property_split = True
+        layout.prop(material, "pass_index")
+        layout.prop(material if hasattr(material, "displacement_method") else material.cycles, "displacement_method")
+
+
+CLASSES = (LULL_RENDER_PT_stopping, LULL_RENDER_PT_sampling, LULL_RENDER_PT_film, LULL_RENDER_PT_performance,
+           LULL_VIEWLAYER_PT_passes, LULL_OBJECT_PT_lightgroup, LULL_WORLD_PT_lightgroup, LULL_MATERIAL_PT_settings)

@@ -3,6 +3,7 @@ import bpy
 import numpy as np
 
 import surfaces
+from versions import principled_input
 
 _LEAST_WIDTHS = 20  # of the thickness, that a pane has both ways
 _SMOOTH = 0.03  # roughness
@@ -26,7 +27,7 @@ def _glass(material):
     if surface is None or material.get("lull_absorbs"):
         return None
     inputs = surface.inputs
-    transmission = inputs.get('Transmission') or inputs['Transmission Weight']
+    transmission = principled_input(surface, 'Transmission')
     values = (transmission, inputs['Roughness'], inputs['Base Color'], inputs['Alpha'], inputs['Normal'])
     is_glass = (not any(s.links for s in values) and transmission.default_value > 0.99 and
                 inputs['Roughness'].default_value <= _SMOOTH and inputs['Alpha'].default_value == 1)

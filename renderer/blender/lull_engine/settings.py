@@ -35,7 +35,7 @@ class LullSettings(bpy.types.PropertyGroup):
         items=(('DEFAULT', "Invisible Noise", "Stop each block once an observer would no longer see noise in it"),
                ('SAMPLES', "Sample Count", "Render all blocks with the same sample count"),
                ('RULE', "Stopping Rule", "Stop by a rule of lull render --stop")))
-    spp: IntProperty(name="Samples", default=64, min=1, max=1 << 24,
+    spp: IntProperty(name="Samples per Pixel", default=64, min=1, max=1 << 24,
                      description="Samples per pixel of all blocks")
     rule: StringProperty(name="Rule", default="lnoise:0.3",
                          description="Rule of lull render --stop, e.g. lnoise:0.3")
@@ -52,6 +52,12 @@ class LullSettings(bpy.types.PropertyGroup):
         items=(('off', "Off", "No path guiding"),
                ('auto', "Automatic", "Guide paths in blocks where it saves time"),
                ('on', "On", "Guide paths by learned incident light")))
+    integrator: EnumProperty(
+        name="Integrator", default='path',
+        items=(('path', "Path Tracing", "Find light by paths from the camera"),
+               ('bdpt', "Bidirectional", "Find light by paths from lights, too")))
+    block: IntProperty(name="Block Size", default=200, min=8, max=1 << 16, subtype='PIXEL',
+                       description="Side of the squares that stop on their own")
     max_depth: IntProperty(name="Bounces", default=12, min=0, max=1000000,
                            description="Maximum number of bounces")
     texture: IntProperty(name="Texture Size", default=1024, min=16, max=8192, subtype='PIXEL',
@@ -65,7 +71,11 @@ class LullSettings(bpy.types.PropertyGroup):
     def arguments(self):
         """Returns the command-line arguments."""
         said = ["--cap", str(self.cap), "--max-depth", str(self.max_depth), "--seed", str(self.seed),
-                "--guide", self.guide]
+                "--block", str(self.block)]
+        if self.integrator == 'path':
+            said += ["--guide", self.guide]
+        else:
+            said += ["--integrator", self.integrator]
         if self.stop_by == 'SAMPLES':
             said += ["--spp", str(self.spp)]
         else:

@@ -6,7 +6,9 @@ left as they are, all others are baked.
 import bpy
 import numpy as np
 
+import displacement
 import groups
+from versions import HAS_ADDED_INTERFACE, principled_input
 
 # Nodes that the exporter follows from an input of a Principled BSDF to an image.
 _KNOWN = {'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP', 'SEPRGB', 'SEPARATE_COLOR', 'VERTEX_COLOR', 'REROUTE', 'TEX_COORD'}
@@ -17,24 +19,23 @@ _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT
              'TEX_CHECKER', 'TEX_BRICK', 'TEX_GRADIENT', 'TEX_WHITE_NOISE', 'TEX_ENVIRONMENT', 'TEX_SKY', 'TEX_POINTDENSITY',
              'BUMP', 'NORMAL', 'VECT_TRANSFORM', 'SCRIPT'}
 
-# Parameters, and the inputs of a Principled BSDF, until and from Blender 4.
-_INPUTS = {'Base Color': ('Base Color',), 'Metallic': ('Metallic',), 'Roughness': ('Roughness',),
-           'Specular': ('Specular', 'Specular IOR Level'), 'Transmission': ('Transmission', 'Transmission Weight'),
-           'IOR': ('IOR',), 'Alpha': ('Alpha',), 'Clearcoat': ('Clearcoat', 'Coat Weight'),
-           'Clearcoat Roughness': ('Clearcoat Roughness', 'Coat Roughness')}
-_EMISSION = ('Emission', 'Emission Color')
+# Parameters that are inputs of a Principled BSDF.
+_INPUTS = ('Base Color', 'Metallic', 'Roughness', 'Specular', 'Transmission', 'IOR', 'Alpha', 'Clearcoat', 'Clearcoat Roughness')
 _DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specular': 0, 'Transmission': 0, 'IOR': 1.45,
-             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0)}
+             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0),
+             'Tint': (1, 1, 1)}
+# Values of Specular, and the differences of albedos.
+_MORE_THAN_SCHLICK = (0, 0.1, 0.25, 0.5, 0.75, 1), (0, -0.0116, -0.0008, 0.0061, 0.0084, 0.0087)
 # Of one number for a whole material.
 _EVEN = ('IOR', 'Specular', 'Clearcoat', 'Clearcoat Roughness', 'Transmission')
 # Plain values of these are left out by glTF, or by its exporter.
-_UNSAID = ('Subsurface', 'Subsurface Weight', 'Anisotropic', 'Sheen', 'Sheen Weight', 'Specular Tint', 'Transmission Roughness',
-           'Thin Film Thickness')
+_UNSAID = ('Subsurface', 'Anisotropic', 'Sheen', 'Specular Tint', 'Transmission Roughness', 'Thin Film Thickness', 'Diffuse Roughness')
 
 
 def prepare(made, baker, notes):
     """Converts the materials of flattened objects. Returns those objects that have no surface, with their volume alone."""
     users, empty = {}, []
+    displacement.apply(made, baker)
     for o in made:
         for i, material in enumerate(o.data.materials):
             users.setdefault(material, {}).setdefault(o.data, (o, i))
@@ -88,20 +89,17 @@ def principled(material):
 
 def _of_colour(name, colour):
     material = bpy.data.materials.new(name)
+    material["lull_name"] = name
     material.use_nodes = True
     node = principled(material)
-    _input(node, 'Base Color').default_value = (*colour, 1)
-    _input(node, 'Roughness').default_value = 1
-    _input(node, 'Specular').default_value = 0
+    principled_input(node, 'Base Color').default_value = (*colour, 1)
+    principled_input(node, 'Roughness').default_value = 1
+    principled_input(node, 'Specular').default_value = 0
     return material
 
 
 def _of_viewport(material):
     return _of_colour(material.name, material.diffuse_color[:3])
-
-
-def _input(node, parameter):
-    return next(node.inputs[name] for name in _INPUTS[parameter] if name in node.inputs)
 
 
 def _source(socket):
@@ -166,22 +164,39 @@ class _Surface:
     def __init__(self, material, notes):
         self.name, self.original, self.notes = material.name, material, notes
         self.copy = material.copy()
+        self.copy["lull_name"] = material.name
         self.tree = self.copy.node_tree
         groups.inline(self.tree)
         output = self.tree.get_output_node('CYCLES')
         self.absorbs = self._absorption(output)
-        if output.inputs['Displacement'].links:
-            notes.add("without displacement", self.name, "materials")
         self.parameters = self._closure(output.inputs['Surface'])
         self.needs_mesh = False  # then all that is baked is, over the same UVs
         if self.parameters is None:
             notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
             return
+        self._mark(_source(output.inputs['Surface']).node)
+        if _source(output.inputs['Displacement']) and not displacement.moves(material):
+            self.parameters['Normal'] = _source(output.inputs['Displacement'])  # with which the normals are baked
         for name, value in self.parameters.items():
             if name == 'Normal':
                 self.needs_mesh |= not self._is_known_normal(value)
             elif self._is_output(value) and not self._is_known(name, value):
                 self.needs_mesh |= _place_of(value) == 'mesh'
+
+    def _mark(self, node):
+        """Leaves to the written file what the exporter cannot be told."""
+        p = self.parameters
+        plain = {n: v for n, v in p.items() if not self._is_output(v)}
+        if p['Alpha'] == 0 and p['Tint'] != (1, 1, 1):
+            p.update({'Alpha': 1, 'Base Color': p['Tint'], 'Transmission': 1, 'Roughness': 0})
+            self.copy["lull_air"] = True
+        elif HAS_ADDED_INTERFACE and node.type == 'BSDF_PRINCIPLED' and {'Roughness', 'Specular'} <= set(plain) and \
+                plain.get('Metallic') == 0 and plain.get('Transmission') == 0:
+            # Under even light: the albedo of Disney's diffuse lobe (Burley 2015), that of a white Lambertian one being 1, and
+            # what a smooth interface reflects by Fresnel's formula more than by Schlick's.
+            roughness = plain['Roughness']
+            self.copy["lull_brightens"] = [0.9529 + roughness * (0.1098 + 0.0025 * roughness),
+                                           float(np.interp(plain['Specular'], *_MORE_THAN_SCHLICK))]
 
     # Surfaces
 
@@ -215,15 +230,15 @@ class _Surface:
     def _bsdf_principled(self, node):
         found = self._made(node)
         for name in _INPUTS:
-            found[name] = self._value(_input(node, name))
-        if bpy.app.version < (4, 0):  # until then a coat had a quarter of its weight, and took no light from the base
+            found[name] = self._value(principled_input(node, name))
+        if HAS_ADDED_INTERFACE:
             found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
             self.copy["lull_adds"] = True
-        emission = next(node.inputs[n] for n in _EMISSION if n in node.inputs)
+        emission = principled_input(node, 'Emission')
         found['Radiance'] = self._times(self._value(emission), self._value(node.inputs['Emission Strength']))
         for name in _UNSAID:
-            unsaid = node.inputs.get(name)
-            if unsaid is not None and unsaid.type == 'VALUE' and (unsaid.links or unsaid.default_value > 0):
+            unsaid = principled_input(node, name)
+            if unsaid is not None and (unsaid.links or not _is_neutral(unsaid)):
                 self.notes.add(f"without {name.lower()}", self.name, "materials")
         return found
 
@@ -231,8 +246,7 @@ class _Surface:
         return self._made(node, Base_Color=self._value(node.inputs['Color']))
 
     def _bsdf_translucent(self, node):
-        self.notes.add("lit from the front alone, not translucent", self.name, "materials")
-        return self._bsdf_diffuse(node)
+        return self._made(node, Base_Color=(0, 0, 0), Through=self._value(node.inputs['Color']))
 
     def _as_diffuse(self, node):
         self.notes.add("shown as diffuse ones", self.name, "materials")
@@ -257,7 +271,7 @@ class _Surface:
         return 0 if getattr(node, "distribution", '') == 'SHARP' else self._value(node.inputs['Roughness'])
 
     def _bsdf_transparent(self, node):
-        return dict(_DEFAULTS, Alpha=0)
+        return dict(_DEFAULTS, Alpha=0, Tint=self._value(node.inputs['Color']))
 
     def _emission(self, node):
         light = self._times(self._value(node.inputs['Color']), self._value(node.inputs['Strength']))
@@ -274,6 +288,8 @@ class _Surface:
             return b if factor else a
         for clear, other, share in (a, b, factor), (b, a, self._minus(factor)):
             if clear['Alpha'] == 0:
+                if clear['Tint'] != (1, 1, 1):
+                    self.notes.add("without colour where they are transparent", self.name, "materials")
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
         if 'Normal' in a or 'Normal' in b:
@@ -401,11 +417,12 @@ class _Surface:
     def write(self, baker, o):
         """Returns the new material. `o` is the object on whose mesh is baked what depends on it."""
         self.baker, self.object = baker, o
+        self._divide_base()
         new = self.tree.nodes.new('ShaderNodeBsdfPrincipled')
         self._write_normal(new)
         p = self.parameters
         for name in _EVEN:
-            self._set(_input(new, name), self._even(name))
+            self._set(principled_input(new, name), self._even(name))
         self._write_radiance(new)
         if self._are_known(('Metallic', 'Roughness')):
             self._link(new, 'Metallic'), self._link(new, 'Roughness')
@@ -415,15 +432,15 @@ class _Surface:
             image = self._image(packed, 'metal', False)
             channels = self.tree.nodes.new('ShaderNodeSeparateColor')
             self.tree.links.new(image.outputs['Color'], channels.inputs[0])
-            self.tree.links.new(channels.outputs[1], _input(new, 'Roughness'))
-            self.tree.links.new(channels.outputs[2], _input(new, 'Metallic'))
+            self.tree.links.new(channels.outputs[1], principled_input(new, 'Roughness'))
+            self.tree.links.new(channels.outputs[2], principled_input(new, 'Metallic'))
         if self._are_known(('Base Color', 'Alpha')) and not (
                 self._is_output(p['Alpha']) and self._is_output(p['Base Color']) and
                 p['Alpha'].node != p['Base Color'].node):
             self._link(new, 'Base Color'), self._link(new, 'Alpha')
         else:
             self._write_colour(new)
-        is_clear = bool(_input(new, 'Alpha').links) or _input(new, 'Alpha').default_value < 1
+        is_clear = bool(principled_input(new, 'Alpha').links) or principled_input(new, 'Alpha').default_value < 1
         self.copy.blend_method = 'BLEND' if is_clear else 'OPAQUE'
         output = self.tree.get_output_node('CYCLES')
         for node in [n for n in self.tree.nodes if n.type == 'OUTPUT_MATERIAL' and n != output]:
@@ -439,10 +456,11 @@ class _Surface:
         return self.copy
 
     def _are_known(self, names):
-        return all(not self._is_output(self.parameters[n]) or self._is_known(n, self.parameters[n]) for n in names)
+        values = [(n, self.parameters[n]) for n in names]
+        return all(self._is_known(n, v) if self._is_output(v) else not isinstance(v, np.ndarray) for n, v in values)
 
     def _link(self, node, name):
-        self._set(_input(node, name), self.parameters[name])
+        self._set(principled_input(node, name), self.parameters[name])
 
     def _set(self, socket, value):
         if self._is_output(value):
@@ -455,6 +473,8 @@ class _Surface:
     def _pixels(self, name):
         """Returns three numbers, or an image of them, of a parameter."""
         value = self.parameters[name]
+        if isinstance(value, np.ndarray):
+            return value
         if not self._is_output(value):
             return np.array(_triple(value), np.float32)
         if any(n.type in _BY_VIEW for n in _upstream(value)):
@@ -507,19 +527,41 @@ class _Surface:
     def _write_colour(self, new):
         colour, alpha = self._pixels('Base Color'), self._pixels('Alpha')
         if colour.ndim == 1 and alpha.ndim == 1:
-            self._set(_input(new, 'Base Color'), tuple(colour))
-            self._set(_input(new, 'Alpha'), float(alpha[0]))
+            self._set(principled_input(new, 'Base Color'), tuple(colour))
+            self._set(principled_input(new, 'Alpha'), float(alpha[0]))
             return
         if alpha.ndim == 1 and alpha[0] >= 1:
             image = self._image(_as_image(colour), 'colour', True)
-            self.tree.links.new(image.outputs['Color'], _input(new, 'Base Color'))
+            self.tree.links.new(image.outputs['Color'], principled_input(new, 'Base Color'))
             return
         image = self._image(_packed(colour, alpha), 'colour', True)
-        self.tree.links.new(image.outputs['Color'], _input(new, 'Base Color'))
-        self.tree.links.new(image.outputs['Alpha'], _input(new, 'Alpha'))
+        self.tree.links.new(image.outputs['Color'], principled_input(new, 'Base Color'))
+        self.tree.links.new(image.outputs['Alpha'], principled_input(new, 'Alpha'))
+
+    def _divide_base(self):
+        """Divides the diffuse base as KHR_materials_diffuse_transmission does: the colour that light has on the other side is
+        one, or that of the base times one."""
+        if self.parameters['Through'] == (0, 0, 0):
+            return
+        base, through = self._pixels('Base Color'), self._pixels('Through')
+        most = float(through.max())
+        share = most / max(most + float(base.max()), 1e-6)
+        colour, is_image = through / max(share, 1e-6), through.ndim == 3
+        if is_image and not base.any():
+            base, colour, share = through, np.ones(3), 1
+        elif is_image:
+            _, base, fitted = (_resized(_as_image(p, through.shape[:2]), through.shape[:2]) for p in (base, base, through))
+            ratio = (fitted * base).sum((0, 1)) / np.maximum((base * base).sum((0, 1)), 1e-9)
+            if abs(fitted - ratio * base).mean() > 0.1 * fitted.mean():
+                self.notes.add("translucent in the colours of their front", self.name, "materials")
+            base, colour = base / (1 - share), ratio * (1 - share) / share
+        else:
+            base = base / (1 - share) if share < 1 else base
+        self.parameters['Base Color'] = base if base.ndim == 3 else tuple(float(v) for v in base)
+        self.copy["lull_through"] = [share, *(float(min(c, 1)) for c in colour), float(is_image)]
 
     def _write_radiance(self, new):
-        emission = next(new.inputs[n] for n in _EMISSION if n in new.inputs)
+        emission = principled_input(new, 'Emission')
         value = self.parameters['Radiance']
         if self._is_output(value) and self._is_known('Radiance', value):
             self.tree.links.new(value, emission)
@@ -548,6 +590,11 @@ class _Surface:
         node.uv_map = "lull"
         self.tree.links.new(image.outputs['Color'], node.inputs['Color'])
         self.tree.links.new(node.outputs[0], new.inputs['Normal'])
+
+
+def _is_neutral(socket):
+    """Returns whether an input without links changes nothing: a weight of 0, or a white tint."""
+    return socket.default_value == 0 if socket.type == 'VALUE' else min(socket.default_value[:3]) >= 1
 
 
 def _triple(value):
@@ -599,7 +646,7 @@ def _keep_used_colours(mesh):
     wanted = set()
     for material in mesh.materials:
         node = principled(material)
-        source = _source(_input(node, 'Base Color')) if node else None
+        source = _source(principled_input(node, 'Base Color')) if node else None
         if source is not None:
             wanted |= {n.layer_name for n in _upstream(source) if n.type == 'VERTEX_COLOR'}
     for layer in list(mesh.color_attributes):

@@ -3,43 +3,89 @@ import math
 
 import bpy
 
+import groups
+from versions import panorama
+
+_RAYS = "diffuse", "glossy", "transmission"
 _SMALLEST, _LARGEST = 16, 4096  # pixels across: of a plain colour, and of any world
 _USUAL = 1024
 _SPP = 4  # over a pixel each, so that no light is lost between pixels
 
 
-def write(scene, path, notes):
-    """Renders the world with Cycles, as it is seen in all directions. Returns the image's path, None
-    for a black world."""
+def write(scene, camera, base, notes):
+    """Renders the world with Cycles, as it lights the scene from all directions, to BASE.world.exr.
+
+    Returns: that path, None for a black world; and BASE.backdrop.exr, where the camera sees another world, else None.
+    """
     world = scene.world
     if world is None or _is_black(world):
-        return None
+        return None, None
     if world.use_nodes and any(link.to_socket.name == 'Volume' for link in world.node_tree.links
                                if link.to_node.type == 'OUTPUT_WORLD'):
         notes.say(f"the volume of world '{world.name}' is left out")
-    if not world.cycles_visibility.camera:
-        notes.say(f"the world '{world.name}' is seen by the camera")
-    if world.use_nodes and any(n.type == 'LIGHT_PATH' for n in world.node_tree.nodes):
-        notes.say(f"the world '{world.name}' lights the scene as the camera sees it, whatever its light paths say")
+    light = world.copy()
+    asks = light.use_nodes and _answer_rays(light, notes)
+    unseen = [name for name in _RAYS if not getattr(world.cycles_visibility, name)]
+    if unseen:
+        notes.say(f"the world '{world.name}' lights all rays but those of the camera, whatever its visibility")
+    backdrop = None
+    if not scene.render.film_transparent and (asks or not world.cycles_visibility.camera):
+        backdrop = _photograph(scene, world, camera, base + ".backdrop.exr")
+    return _surround(light, base + ".world.exr"), backdrop
+
+
+def _answer_rays(world, notes):
+    """Lets nodes that ask for the kind of a ray know that of diffuse light. Returns whether there are any."""
+    tree = world.node_tree
+    groups.inline(tree)
+    askers = [n for n in tree.nodes if n.type == 'LIGHT_PATH']
+    for node in askers:
+        for output in node.outputs:
+            if not output.links:
+                continue
+            if output.name not in ('Is Camera Ray', 'Is Diffuse Ray'):
+                notes.say(f"the world '{world.name}' lights mirrors and glass as it lights diffuse surfaces")
+            answer = tree.nodes.new('ShaderNodeValue').outputs[0]
+            answer.default_value = 1 if output.name in ('Is Diffuse Ray', 'Is Reflection Ray', 'Ray Depth', 'Diffuse Depth') else 0
+            for link in list(output.links):
+                tree.links.new(answer, link.to_socket)
+    return bool(askers)
+
+
+def _photograph(scene, world, camera, path):
+    """Renders what a camera sees of the world alone."""
+    room = bpy.data.scenes.new('lull backdrop')
+    room.camera = camera.copy()
+    room.collection.objects.link(room.camera)
+    for name in "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y":
+        setattr(room.render, name, getattr(scene.render, name))
+    return _render(room, world, path)
+
+
+def _surround(world, path):
     room = bpy.data.scenes.new('lull world')
-    room.world = world
     data = bpy.data.cameras.new('lull world')
     data.type = 'PANO'
-    settings = data if hasattr(data, "panorama_type") else data.cycles  # from Blender 4; until then
-    settings.panorama_type = 'EQUIRECTANGULAR'
+    panorama(data).panorama_type = 'EQUIRECTANGULAR'
     camera = bpy.data.objects.new('lull world', data)
     camera.rotation_euler = (math.pi / 2, 0, -math.pi / 2)
     room.collection.objects.link(camera)
     room.camera = camera
     width = _width(world)
+    r = room.render
+    r.resolution_x, r.resolution_y, r.resolution_percentage = width, width // 2, 100
+    world.cycles_visibility.camera = True
+    return _render(room, world, path)
+
+
+def _render(room, world, path):
+    room.world = world
     r, c = room.render, room.cycles
     r.engine = 'CYCLES'
-    r.resolution_x, r.resolution_y, r.resolution_percentage = width, width // 2, 100
     r.image_settings.file_format, r.image_settings.color_depth = 'OPEN_EXR', '32'
     r.image_settings.exr_codec = 'ZIP'
     r.filepath, r.use_file_extension = path, False
     r.film_transparent = False
-    world.cycles_visibility.camera = True
     c.samples, c.use_denoising, c.use_adaptive_sampling = _SPP, False, False
     c.pixel_filter_type, c.filter_width = 'BOX', 1
     bpy.ops.render.render(write_still=True, scene=room.name)

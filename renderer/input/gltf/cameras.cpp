@@ -69,7 +69,7 @@ void SetPerspective(double fov, double aspect, const FileLoc& loc, Description* 
 }
 
 // Sets the properties that glTF's cameras lack, from `extras`: the window moved by fractions of the
-// image's sides, and a thin lens.
+// image's sides, a thin lens, and distances along the axis before and beyond which it is blind.
 void SetLens(const tinygltf::Value& extras, const FileLoc& loc, Description* description) {
     if (!extras.Has("lull")) return;
     const tinygltf::Value& lens = extras.Get("lull");
@@ -81,6 +81,8 @@ void SetLens(const tinygltf::Value& extras, const FileLoc& loc, Description* des
         write.Floats(ParameterType::Float, "screenshift",
                      {number(lens.Get("shift").Get(0)), number(lens.Get("shift").Get(1))});
     if (lens.Has("lensRadius")) write.Float("lensradius", number(lens.Get("lensRadius")));
+    if (lens.Has("clipStart")) write.Float("clipstart", number(lens.Get("clipStart")));
+    if (lens.Has("clipEnd")) write.Float("clipend", number(lens.Get("clipEnd")));
     if (lens.Has("focusDistance")) write.Float("focaldistance", number(lens.Get("focusDistance")));
 }
 

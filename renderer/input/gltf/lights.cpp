@@ -10,14 +10,19 @@
 namespace lull {
 namespace {
 
-// Adds a point light that `extras` give a radius: a sphere that emits evenly, and reflects nothing.
+// Adds a point light that `extras` give a radius: a sphere that emits evenly, and is no obstacle to
+// other light, being a sheet of air.
 void AddSphere(const Rgb& intensity, double radius, const LightEntity& light,
                Description* description) {
     const FileLoc& loc = light.loc;
-    MaterialEntity black;
-    black.name = "matte";
-    black.loc = loc;
-    ParameterWriter(&black.parameters, loc).Spectrum("Kd", Rgb::Zero());
+    MaterialEntity air;
+    air.name = "metallicroughness";
+    air.loc = loc;
+    const ParameterWriter write(&air.parameters, loc);
+    write.Float("metallicfactor", 0);
+    write.Float("roughnessfactor", 0);
+    write.Float("transmissionfactor", 1);
+    write.Float("specularfactor", 0);
     ShapeEntity sphere;
     sphere.name = "sphere";
     sphere.loc = loc;
@@ -28,7 +33,7 @@ void AddSphere(const Rgb& intensity, double radius, const LightEntity& light,
     sphere.areaLight = Entity{"diffuse", {}, loc};
     ParameterWriter(&sphere.areaLight->parameters, loc)
         .Spectrum("L", intensity / float(std::numbers::pi * radius * radius));
-    description->materials.push_back(std::move(black));
+    description->materials.push_back(std::move(air));
     description->shapes.push_back(std::move(sphere));
 }
 

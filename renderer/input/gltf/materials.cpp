@@ -141,7 +141,7 @@ void GltfMaterials::AddVolume(const MaterialUse& use, GltfMaterial* result, Warn
     if (isSolid)
         result->medium = AddMedium(
             volume, document.At(use.path + "/extensions/KHR_materials_volume"), description);
-    else
+    else if (Number(Extension(use.material, "KHR_materials_ior"), "ior", 1.5) != 1)
         warnings.Add(document.At(use.path),
                      "transmission without a volume's thickness is that of a thin sheet, which "
                      "bends no light; --solid-glass makes all such materials solid");
@@ -157,6 +157,20 @@ void GltfMaterials::AddSheen(const MaterialUse& use, Warnings& warnings) {
                         warnings);
     AddExtensionTexture(use, kSheen, "sheenRoughnessTexture", "sheenroughness", GltfTexels::Alpha,
                         warnings);
+}
+
+void GltfMaterials::AddDiffuseTransmission(const MaterialUse& use, Warnings& warnings) {
+    const char* kName = "KHR_materials_diffuse_transmission";
+    const tinygltf::Value& values = Extension(use.material, kName);
+    const double factor = Number(values, "diffuseTransmissionFactor", 0);
+    if (factor <= 0) return;
+    use.write.Float("diffusetransmissionfactor", factor);
+    use.write.Spectrum("diffusetransmissioncolorfactor",
+                       Color(values, "diffuseTransmissionColorFactor", Rgb::Ones()));
+    AddExtensionTexture(use, kName, "diffuseTransmissionTexture", "diffusetransmission",
+                        GltfTexels::Alpha, warnings);
+    AddExtensionTexture(use, kName, "diffuseTransmissionColorTexture", "diffusetransmissioncolor",
+                        GltfTexels::EncodedColor, warnings);
 }
 
 void GltfMaterials::AddAnisotropy(const MaterialUse& use, GltfMaterial* result,
@@ -216,6 +230,7 @@ void GltfMaterials::AddSurface(const MaterialUse& use, const GltfTextureUse& col
     AddClearcoat(use, warnings);
     AddVolume(use, result, warnings);
     AddSheen(use, warnings);
+    AddDiffuseTransmission(use, warnings);
     AddAnisotropy(use, result, warnings);
     AddNormalMap(use, result, warnings);
     result->emission = EmissionOfSurface(use, warnings);

@@ -49,6 +49,7 @@ class GltfMaterials {
     void AddClearcoat(const MaterialUse&, Warnings&);
     void AddVolume(const MaterialUse&, GltfMaterial* result, Warnings&);
     void AddSheen(const MaterialUse&, Warnings&);
+    void AddDiffuseTransmission(const MaterialUse&, Warnings&);
     void AddAnisotropy(const MaterialUse&, GltfMaterial* result, Warnings&);
     void AddNormalMap(const MaterialUse&, GltfMaterial* result, Warnings&);
     std::optional<Entity> EmissionOfSurface(const MaterialUse&, Warnings&);

@@ -244,6 +244,10 @@ void CheckMaterial(const JsonAt& o) {
         e.NumbersWithin("sheenColorFactor", 3, 0, 1);
         e.NumberWithin("sheenRoughnessFactor", 0, 1);
     });
+    o.Extension("KHR_materials_diffuse_transmission", [](const JsonAt& e) {
+        e.NumberWithin("diffuseTransmissionFactor", 0, 1);
+        e.NumbersWithin("diffuseTransmissionColorFactor", 3, 0, 1);
+    });
     o.Extension("KHR_materials_anisotropy", [](const JsonAt& e) {
         e.NumberWithin("anisotropyStrength", 0, 1);
         e.Number("anisotropyRotation");
@@ -267,6 +271,8 @@ void CheckCamera(const JsonAt& o) {
         lens.Numbers("shift", 2);
         lens.Number("lensRadius");
         lens.Number("focusDistance");
+        lens.Number("clipStart");
+        lens.Number("clipEnd");
     });
 }
 

@@ -9,15 +9,26 @@
 
 namespace lull {
 
+Ray Camera::Clip(const Vec3f& origin, const Vec3f& direction) const {
+    const float from = clipStart / direction.z();
+    return {position + rotation * (origin + from * direction), rotation * direction,
+            clipEnd / direction.z() - from};
+}
+
 Ray Camera::GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const {
     const Vec2f plane = planeOrigin + film.cwiseProduct(planePerPixel);
     const Vec3f direction = Vec3f(plane.x(), plane.y(), 1).normalized();
-    if (lensRadius == 0) return {position, rotation * direction, kInfinity};
+    if (lensRadius == 0) {
+        if (Clips()) [[unlikely]]
+            return Clip(Vec3f::Zero(), direction);
+        return {position, rotation * direction, kInfinity};
+    }
 
     // Move the origin to the lens and aim at the point that is in focus.
     const Vec2f p = lensRadius * SampleConcentricDisk(lens);
     const Vec3f origin(p.x(), p.y(), 0);
     const Vec3f focus = direction * (focalDistance / direction.z());
+    if (Clips()) return Clip(origin, (focus - origin).normalized());
     return {position + rotation * origin, rotation * (focus - origin).normalized(), kInfinity};
 }
 
@@ -38,6 +49,7 @@ Ray Camera::GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const {
         origin = Vec3f(p.x(), p.y(), 0);
         direction = (focus - origin).normalized();
     }
+    if (Clips()) return Clip(origin, direction);
     return {position + rotation * origin, rotation * direction, kInfinity};
 }
 
@@ -166,6 +178,11 @@ void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     camera->focalDistance = params.GetFloat("focaldistance", 1e6f);
     if (!(camera->lensRadius >= 0) || !(camera->focalDistance > 0))
         throw Error(entity.loc, "\"lensradius\" has to be at least 0, \"focaldistance\" above 0");
+    // lull's own, of glTF's cameras.
+    camera->clipStart = params.GetFloat("clipstart", 0);
+    camera->clipEnd = params.GetFloat("clipend", kInfinity);
+    if (!(camera->clipStart >= 0) || !(camera->clipEnd > camera->clipStart))
+        throw Error(entity.loc, "\"clipstart\" has to be at least 0, \"clipend\" above it");
 
     if (camera->projection == Projection::Environment) {
         camera->lensRadius = 0;  // it has none, though pbrt-v3 reads the parameter
@@ -187,6 +204,7 @@ double Farthest(const Camera& camera, const FilmSettings& film) {
         const Vec2f last =
             camera.planeOrigin + film.resolution.cast<float>().cwiseProduct(camera.planePerPixel);
         size += camera.planeOrigin.cast<double>().norm() + last.cast<double>().norm();
+        size += double(camera.clipStart) * size;
         if (camera.lensRadius > 0) size += double(camera.lensRadius) + double(camera.focalDistance);
     }
     // While it moves, it is neither farther away nor larger than at one of the ends.

@@ -25,6 +25,8 @@ struct Camera {
     // (perspective), z = 0 (orthographic), or to the angles phi and theta (environment).
     Vec2f planeOrigin = Vec2f::Zero(), planePerPixel = Vec2f::Zero();
     float lensRadius = 0, focalDistance = 1e6f;
+    // Nothing is seen nearer or farther along the axis (not of environment and realistic cameras).
+    float clipStart = 0, clipEnd = kInfinity;
 
     // The rotation and position of worldFromCamera in float, for the ray loop.
     Mat3f rotation = Mat3f::Identity();
@@ -65,6 +67,9 @@ struct Camera {
     Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
+    bool Clips() const { return clipStart > 0 || clipEnd < kInfinity; }
+    // Returns a ray of camera space in the world, from where it begins to where it ends to see.
+    Ray Clip(const Vec3f& origin, const Vec3f& direction) const;
     // Of all but perspective cameras at rest: apart, so that these do not pay for it.
     Ray GenerateRareRay(const CameraSample&, float* weight) const;
     Ray Move(const Ray& ray, float time) const;

@@ -50,14 +50,17 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
       specularColor(SpectrumSlot(in, "specularcolor")),
       sheenColor(SpectrumSlot(in, "sheencolor")),
       anisotropy(SpectrumSlot(in, "anisotropy")),
+      diffuseTransmissionColor(SpectrumSlot(in, "diffusetransmissioncolor")),
       specular(FloatSlot(in, "specular")),
       transmission(FloatSlot(in, "transmission")),
       clearcoat(FloatSlot(in, "clearcoat")),
       clearcoatRoughness(FloatSlot(in, "clearcoatroughness")),
       sheenRoughness(FloatSlot(in, "sheenroughness")),
+      diffuseTransmission(FloatSlot(in, "diffusetransmission")),
       baseColorFactor(ColorFactor(in, "basecolor")),
       specularColorFactor(ColorFactor(in, "specularcolor")),
       sheenColorFactor(ColorFactor(in, "sheencolor", 0)),
+      diffuseTransmissionColorFactor(ColorFactor(in, "diffusetransmissioncolor")),
       metallicFactor(Factor(in, "metallic", 1)),
       roughnessFactor(Factor(in, "roughness", 1)),
       specularFactor(Factor(in, "specular", 1)),
@@ -66,6 +69,7 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
       clearcoatRoughnessFactor(Factor(in, "clearcoatroughness", 0)),
       sheenRoughnessFactor(Factor(in, "sheenroughness", 0)),
       anisotropyFactor(std::min(Factor(in, "anisotropy", 0), 1.f)),
+      diffuseTransmissionFactor(std::min(Factor(in, "diffusetransmission", 0), 1.f)),
       ior(in.entity.parameters.GetFloat("ior", 1.5f)),
       anisotropyRotation(in.entity.parameters.GetFloat("anisotropyrotation", 0)),
       solid(in.entity.parameters.GetBool("solid", false)),
@@ -81,7 +85,8 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
 
 MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     const bool isAnisotropic = anisotropyFactor > 0, hasSheen = !IsBlack(sheenColorFactor);
-    MaterialTraits traits = in.TraitsOf(4 + isAnisotropic + hasSheen);
+    MaterialTraits traits =
+        in.TraitsOf(4 + isAnisotropic + hasSheen + (diffuseTransmissionFactor > 0));
     VisitSlots([&](const auto& slot) {
         if (slot.texture.IsConstant()) return;
         traits.Need(in.textures.Needs(slot.texture));
@@ -148,6 +153,15 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsd
     bsdf->Add(CharlieSheen{Rgb(color * (kept * ThroughCoat(coat, cosine, 1))), alpha});
 }
 
+// The interface above takes what it reflects at normal incidence, by whatever angle light comes.
+void MetallicRoughness::AddDiffuseTransmission(const MaterialInputs& in, float share, float f0,
+                                               float coat, Bsdf* bsdf) const {
+    const Rgb color = Look(diffuseTransmissionColor, in) * diffuseTransmissionColorFactor;
+    const float left = ThroughCoat(coat, std::abs(in.hit->ns.dot(in.hit->wo)), 1) * (1 - f0);
+    if (!IsBlack(color))
+        bsdf->Add(LambertianTransmission{Rgb(share * left * color.max(0.f).min(1.f))});
+}
+
 void MetallicRoughness::AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const {
     const float roughness =
         clearcoatRoughnessFactor > 0 ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in) : 0;
@@ -199,7 +213,8 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const float transmitting = dielectric * Weight(transmission, transmissionFactor, in);
     const float coat = Weight(clearcoat, clearcoatFactor, in);
     const bool isSmooth = alpha < kSmoothAlpha && !isAnisotropic;
-    const Rgb base = (dielectric - transmitting) * color;
+    const float toOtherSide = Weight(diffuseTransmission, diffuseTransmissionFactor, in);
+    const Rgb base = (dielectric - transmitting) * (1 - toOtherSide) * color;
 
     // A thin rough sheet and a base below reflect by the same interface, in one lobe.
     const bool together = !solid && !isSmooth;
@@ -229,6 +244,8 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
         bsdf->Add(ThinTransmission{through, alpha, above, coat});
     }
 
+    if (const float share = (dielectric - transmitting) * toOtherSide; share > 0)
+        AddDiffuseTransmission(in, share, aboveBase.f0, coat, bsdf);
     AddSheen(in, coat, bsdf);
     if (coat > 0) AddClearcoat(in, coat, bsdf);
 }

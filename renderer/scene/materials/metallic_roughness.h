@@ -1,6 +1,6 @@
 // Represents glTF 2.0's material (appendix B of its specification) with the extensions
 // KHR_materials_ior, _specular, _transmission, _volume (its absorption is a medium of the shape),
-// _clearcoat, _sheen and _anisotropy.
+// _clearcoat, _sheen, _anisotropy and _diffuse_transmission.
 #pragma once
 
 #include "renderer/scene/materials/material_inputs.h"
@@ -19,17 +19,20 @@ struct UvSlot {
 // metallic in blue; the factors are "metallicfactor" and "roughnessfactor"); "specular",
 // "specularcolor", "transmission", "clearcoat", "clearcoatroughness", "sheencolor",
 // "sheenroughness", "anisotropy" (the factor is its strength in [0, 1]; red and green are a
-// direction along the tangents, blue a strength). Also "ior"; "solid": transmitted light is
-// refracted, otherwise the surface is a thin sheet; "vertexcolors": the mesh's colours multiply the
-// base colour; "anisotropyrotation": radians, from the first tangent to the second;
-// "addedinterface": the interface's reflection is added to the base, which it does not attenuate,
-// as in the Principled BSDF of Blender 3 (not energy-conserving).
+// direction along the tangents, blue a strength), "diffusetransmission" (the fraction of the
+// diffuse base that scatters to the other side) and "diffusetransmissioncolor". Also "ior";
+// "solid": transmitted light is refracted, otherwise the surface is a thin sheet; "vertexcolors":
+// the mesh's colours multiply the base colour; "anisotropyrotation": radians, from the first
+// tangent to the second; "addedinterface": the interface's reflection is added to the base, which
+// it does not attenuate, as in the Principled BSDF of Blender 3 (not energy-conserving).
 struct MetallicRoughness {
-    UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy;
-    UvSlot<FloatTexture> specular, transmission, clearcoat, clearcoatRoughness, sheenRoughness;
-    Rgb baseColorFactor, specularColorFactor, sheenColorFactor;
+    UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy,
+        diffuseTransmissionColor;
+    UvSlot<FloatTexture> specular, transmission, clearcoat, clearcoatRoughness, sheenRoughness,
+        diffuseTransmission;
+    Rgb baseColorFactor, specularColorFactor, sheenColorFactor, diffuseTransmissionColorFactor;
     float metallicFactor, roughnessFactor, specularFactor, transmissionFactor, clearcoatFactor,
-        clearcoatRoughnessFactor, sheenRoughnessFactor, anisotropyFactor;
+        clearcoatRoughnessFactor, sheenRoughnessFactor, anisotropyFactor, diffuseTransmissionFactor;
     float ior, anisotropyRotation;
     bool solid, vertexColors, addedInterface;
 
@@ -45,11 +48,11 @@ struct MetallicRoughness {
     bool CanLetThrough() const;
     template <typename F>
     void VisitSlots(F&& f) const {
-        for (const auto* slot :
-             {&baseColor, &metallicRoughness, &specularColor, &sheenColor, &anisotropy})
+        for (const auto* slot : {&baseColor, &metallicRoughness, &specularColor, &sheenColor,
+                                 &anisotropy, &diffuseTransmissionColor})
             f(*slot);
-        for (const auto* slot :
-             {&specular, &transmission, &clearcoat, &clearcoatRoughness, &sheenRoughness})
+        for (const auto* slot : {&specular, &transmission, &clearcoat, &clearcoatRoughness,
+                                 &sheenRoughness, &diffuseTransmission})
             f(*slot);
     }
     // Returns the roughness along the tangents of a surface whose own is `alpha`, and turns the
@@ -57,6 +60,9 @@ struct MetallicRoughness {
     Vec2f Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const;
     // Adds sheen over all lobes that there are, below a coat.
     void AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
+    // Adds the `share` of the base's light that leaves on the other side, below an interface.
+    void AddDiffuseTransmission(const MaterialInputs& in, float share, float f0, float coat,
+                                Bsdf* bsdf) const;
     void AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
     // Adds the interface of a solid that reflects and transmits so much.
     void AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth, const Vec2f& alphas,

@@ -174,13 +174,19 @@ TEST(GltfCameras, FillThePictureFromAnywhere) {
 
 TEST(GltfCameras, HaveLensesOfOurOwn) {
     GltfFile file = WithCameras();
-    file.root["cameras"][0]["extras"] = {
-        {"lull", {{"shift", {0.25, -0.5}}, {"lensRadius", 0.125}, {"focusDistance", 3}}}};
+    file.root["cameras"][0]["extras"] = {{"lull",
+                                          {{"shift", {0.25, -0.5}},
+                                           {"lensRadius", 0.125},
+                                           {"focusDistance", 3},
+                                           {"clipStart", 2},
+                                           {"clipEnd", 9}}}};
     const Parameters camera = kFolder.Parse(file).camera.parameters;
     ExpectNear(FloatsOf(kFolder.Parse(file).camera, ParameterType::Float, "screenshift"),
                {0.25f, -0.5f}, 0);
     EXPECT_EQ(camera.GetFloat("lensradius", 0), 0.125f);
     EXPECT_EQ(camera.GetFloat("focaldistance", 0), 3);
+    EXPECT_EQ(camera.GetFloat("clipstart", 0), 2);
+    EXPECT_EQ(camera.GetFloat("clipend", 0), 9);
     file.root["cameras"][0]["extras"] = {{"lull", {{"shift", 1}}}};
     EXPECT_EQ(kFolder.ErrorOf(file),
               "scene.gltf: /cameras/0/extras/lull/shift: has to be an array of 2 numbers");
@@ -473,6 +479,21 @@ TEST(GltfMaterials, CarrySheenAndAnisotropy) {
     const auto tangents = FloatsOf(d.shapes.at(0), ParameterType::Float, "tangent");
     ASSERT_EQ(tangents.size(), 12u);
     EXPECT_NEAR(tangents[1], 1, 1e-6);
+}
+
+TEST(GltfMaterials, CarryDiffuseTransmission) {
+    GltfFile file;
+    file.root["materials"] = {{{"extensions",
+                                {{"KHR_materials_diffuse_transmission",
+                                  {{"diffuseTransmissionFactor", 0.5},
+                                   {"diffuseTransmissionColorFactor", {0.5, 0.25, 1}}}}}}}};
+    file.root["extensionsRequired"] = {"KHR_materials_diffuse_transmission"};
+    const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"material", 0}})}});
+    const Parameters m = kFolder.Parse(file).materials.at(0).parameters;
+    EXPECT_EQ(m.GetFloat("diffusetransmissionfactor", 0), 0.5f);
+    EXPECT_TRUE(
+        m.GetSpectrum("diffusetransmissioncolorfactor", Rgb::Zero()).isApprox(Rgb(0.5f, 0.25f, 1)));
 }
 
 GltfFile WithVariants() {

@@ -64,6 +64,27 @@ TEST(Camera, FollowsScreenWindowAndAspect) {
     ExpectNear(Direction(shifted, 200, 100), Vec3f(3, -2, 1).normalized());
 }
 
+TEST(Camera, SeesBetweenTwoPlanes) {
+    for (const char* kind : {"perspective", "orthographic"})
+        for (const float lens : {0.f, 0.1f}) {
+            const Camera camera = MakeTestCamera(
+                FilmOf(200, 100),
+                {FloatParameter("clipstart", {2}), FloatParameter("clipend", {5}),
+                 FloatParameter("lensradius", {lens}), FloatParameter("focaldistance", {3})},
+                Mat4d::Identity(), kind);
+            const Ray ray = camera.GenerateRay({{20, 10}, {0.9f, 0.3f}});
+            EXPECT_NEAR(ray.o.z(), 2, 1e-5f) << kind;
+            EXPECT_NEAR((ray.o + ray.tMax * ray.d).z(), 5, 1e-5f) << kind;
+            const Ray whole = MakeTestCamera(FilmOf(200, 100),
+                                             {FloatParameter("lensradius", {lens}),
+                                              FloatParameter("focaldistance", {3})},
+                                             Mat4d::Identity(), kind)
+                                  .GenerateRay({{20, 10}, {0.9f, 0.3f}});
+            ExpectNear(ray.d, whole.d);
+            ExpectNear(ray.o, whole.o + (2 - whole.o.z()) / whole.d.z() * whole.d);
+        }
+}
+
 // glTF's cameras: all of what they show is in images of any aspect, and nothing is stretched.
 TEST(Camera, FitsWhatItHasToShow) {
     const auto corner = [](int width, int height, float x, float y, const char* kind) {

@@ -1,0 +1,122 @@
+"""Corrects files that Blender's glTF exporter has written, .gltf or .glb, where the exporter has no option."""
+import json
+import math
+import struct
+
+_MAGIC, _JSON = b"glTF", 0x4E4F534A
+_MOST_GROUPS = 16  # that lull renders
+
+
+def _read(path):
+    """Returns the JSON of a file, and the bytes that follow it in a .glb."""
+    with open(path, "rb") as f:
+        data = f.read()
+    if data[:4] != _MAGIC:
+        return json.loads(data), None
+    size, = struct.unpack_from("<I", data, 12)
+    return json.loads(data[20:20 + size]), data[20 + size:]
+
+
+def _write(path, root, rest):
+    text = json.dumps(root).encode()
+    if rest is not None:
+        text += b" " * (-len(text) % 4)
+        text = _MAGIC + struct.pack("<4I", 2, 20 + len(text) + len(rest), len(text), _JSON) + text + rest
+    with open(path, "wb") as f:
+        f.write(text)
+
+
+def _let_through(material):
+    """Makes the surface of a lamp a pane of air that shines: in Cycles nothing is shadowed by a lamp."""
+    material["pbrMetallicRoughness"] = {"metallicFactor": 0, "roughnessFactor": 0}
+    _make_air(material)
+
+
+def _make_air(material):
+    """Makes a surface a sheet that reflects nothing, and lets through its base colour."""
+    extensions = material.setdefault("extensions", {})
+    extensions["KHR_materials_specular"] = {"specularFactor": 0}
+    extensions["KHR_materials_transmission"] = {"transmissionFactor": 1}
+    extensions["KHR_materials_ior"] = {"ior": 1}
+    material["extras"]["lull_thin"] = 1
+
+
+def _brighten(pbr, factor, more):
+    red, green, blue, alpha = pbr.get("baseColorFactor", [1, 1, 1, 1])
+    is_plain = "baseColorTexture" not in pbr
+    # Factors of images may exceed 1 for lull.
+    brighter = (min(c * factor + more, 1) if is_plain else c * factor for c in (red, green, blue))
+    pbr["baseColorFactor"] = [*(max(0, c) for c in brighter), alpha]
+
+
+def _scatter_through(material, share, red, green, blue, is_image):
+    made = {"diffuseTransmissionFactor": share, "diffuseTransmissionColorFactor": [red, green, blue]}
+    base = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+    if is_image and base:
+        made["diffuseTransmissionColorTexture"] = base
+    material.setdefault("extensions", {})["KHR_materials_diffuse_transmission"] = made
+
+
+def _patch_material(material):
+    extras, extensions = material.get("extras", {}), material.get("extensions", {})
+    material["name"] = extras.pop("lull_name", material.get("name", ""))
+    if extras.get("lull_open"):
+        _let_through(material)
+    if extras.pop("lull_air", None):
+        _make_air(material)
+    if brightens := extras.pop("lull_brightens", None):
+        _brighten(material["pbrMetallicRoughness"], *brightens)
+    if through := extras.pop("lull_through", None):
+        _scatter_through(material, *through)
+    # Without this, glass would be a thin sheet; Blender's is solid.
+    if "KHR_materials_transmission" in extensions and not extras.pop("lull_thin", None):
+        extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
+    own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"))
+           if extras.pop(mark, None)}  # Blender has numbers only
+    if own:
+        extras["lull"] = own
+    absorbs = extras.pop("lull_absorbs", None)
+    if absorbs and max(absorbs) > 0 and "KHR_materials_volume" in extensions:
+        distance = 1 / max(absorbs)
+        extensions["KHR_materials_volume"].update(
+            attenuationDistance=distance, attenuationColor=[math.exp(-a * distance) for a in absorbs])
+    # Without this, surfaces without specular reflection would reflect at grazing angles.
+    specular = extensions.get("KHR_materials_specular", {})
+    if specular.get("specularColorFactor") == [0, 0, 0]:
+        specular["specularFactor"] = 0
+
+
+def _shines(root, node):
+    if "KHR_lights_punctual" in node.get("extensions", {}):
+        return True
+    parts = root["meshes"][node["mesh"]]["primitives"] if "mesh" in node else ()
+    materials = [root["materials"][p["material"]] for p in parts if "material" in p]
+    return any(max(m.get("emissiveFactor", [0])) > 0 for m in materials)
+
+
+def _patch_nodes(root, groups):
+    """Gives nodes the names of Blender's objects, or that of their light group. Returns the names of groups that shine."""
+    found = {}
+    for node in root.get("nodes", []):
+        extras = node.get("extras", {})
+        node["name"] = extras.pop("lull_source", node.get("name", ""))
+        group = extras.pop("lull_group", None)
+        if group in groups and _shines(root, node) and (group in found or len(found) < _MOST_GROUPS):
+            node["name"] = found.setdefault(group, f"light group {len(found)}")
+    return found
+
+
+def patch(path, groups):
+    """Corrects a file; `groups` are the names of the light groups that a view layer has.
+
+    Returns: the names that `lull render --light-groups` takes for those that shine.
+    """
+    root, rest = _read(path)
+    for material in root.get("materials", []):
+        _patch_material(material)
+    used = {name for m in root.get("materials", []) for name in m.get("extensions", {})}
+    if used:
+        root["extensionsUsed"] = sorted({*root.get("extensionsUsed", []), *used})
+    found = _patch_nodes(root, groups)
+    _write(path, root, rest)
+    return found

@@ -1,0 +1,115 @@
+"""Makes meshes of hair: particles that are rendered as paths, and hair curves. glTF has no curves."""
+import bpy
+import numpy as np
+
+_SIDES = 3
+_RADIUS = 0.005  # of curves that have none, as in Cycles
+
+
+def prepare(scene):
+    """Lets the hair of the viewport, which can be read, be that of a render."""
+    for o in scene.objects:
+        for system in o.particle_systems:
+            settings = system.settings
+            settings.display_step = settings.render_step
+            settings.child_nbr = settings.rendered_child_count
+
+
+def of_particles(o, graph):
+    """Returns meshes, in the world, of the hair of an object that is rendered, with its materials."""
+    seen, found = o.evaluated_get(graph), []
+    for modifier in seen.modifiers:
+        if modifier.type != 'PARTICLE_SYSTEM' or not modifier.show_render:
+            continue
+        system = modifier.particle_system
+        settings = system.settings
+        if settings.type != 'HAIR' or settings.render_type != 'PATH':
+            continue
+        parents, children = len(system.particles), len(system.child_particles)
+        first = parents if children and not settings.use_parent_particles else 0
+        steps = (1 << settings.display_step) + 1
+        points = np.array([system.co_hair(seen, particle_no=i, step=s) for i in range(first, parents + children)
+                           for s in range(steps)]).reshape(-1, steps, 3)
+        slots = [slot.material for slot in o.material_slots]
+        material = slots[min(settings.material, len(slots)) - 1] if slots else None
+        uvs = _uvs(seen, modifier, system, range(first, parents + children))
+        found.append(_tubes(o.name, points, np.broadcast_to(_radii(settings, steps), points.shape[:2]), material, uvs))
+    return [mesh for mesh in found if mesh]
+
+
+def _radii(settings, steps):
+    """Returns the radius at each step, as Cycles has it."""
+    left = 1 - np.linspace(0, 1, steps)
+    shape = settings.shape
+    left = left ** (1 + shape if shape < 0 else 1 / max(1 - shape, 1e-6))
+    root, tip = (0.5 * settings.radius_scale * r for r in (settings.root_radius, settings.tip_radius))
+    radii = left * (root - tip) + tip
+    if settings.use_close_tip:
+        radii[-1] = 0
+    return radii
+
+
+def _uvs(o, modifier, system, numbers):
+    """Returns where each strand stands on the UVs of its emitter; None without UVs."""
+    if o.type != 'MESH' or not o.data.uv_layers or not system.particles:
+        return None
+    first = system.particles[0]
+    own = len(system.particles)
+    return np.array([system.uv_on_emitter(modifier, particle=system.particles[i] if i < own else first, particle_no=i, uv_no=0)
+                     for i in numbers])
+
+
+def of_curves(o):
+    """Returns a mesh, in the space of the object, of evaluated hair curves; None without any."""
+    data = o.data
+    if not len(data.curves):
+        return None
+    points = np.empty(3 * len(data.points))
+    data.attributes["position"].data.foreach_get("vector", points)
+    points = points.reshape(-1, 3)
+    radii = np.full(len(points), _RADIUS)
+    if "radius" in data.attributes:
+        data.attributes["radius"].data.foreach_get("value", radii)
+    counts = np.array([c.points_length for c in data.curves])
+    starts = np.array([c.first_point_index for c in data.curves])
+    steps = int(counts.max())
+    # The last point is repeated where a curve has fewer.
+    at = starts[:, None] + np.minimum(np.arange(steps), counts[:, None] - 1)
+    material = o.material_slots[0].material if o.material_slots else None
+    return _tubes(o.name, points[at], radii[at], material and material.original, None)
+
+
+def _tubes(name, points, radii, material, uvs):
+    """Makes a mesh of tubes around lines: arrays of strands x steps x 3, and of strands x steps."""
+    count, steps = points.shape[:2]
+    if not count or steps < 2:
+        return None
+    along = np.gradient(points, axis=1)
+    along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-12)
+    # A frame that does not turn along a strand: perpendicular to its whole and to what it is least along.
+    whole = points[:, -1] - points[:, 0]
+    least = np.eye(3)[np.argmin(abs(whole), axis=1)]
+    side = np.cross(along, least[:, None])
+    side /= np.maximum(np.linalg.norm(side, axis=-1, keepdims=True), 1e-12)
+    other = np.cross(along, side)
+    angles = 2 * np.pi * np.arange(_SIDES) / _SIDES
+    ring = side[..., None, :] * np.cos(angles)[:, None] + other[..., None, :] * np.sin(angles)[:, None]
+    vertices = points[..., None, :] + radii[..., None, None] * ring
+    number = np.arange(count * steps * _SIDES).reshape(count, steps, _SIDES)
+    low, high = number[:, :-1], number[:, 1:]
+    quads = np.stack([low, np.roll(low, -1, 2), np.roll(high, -1, 2), high], -1).reshape(-1, 4)
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(vertices.size // 3)
+    mesh.vertices.foreach_set("co", vertices.ravel())
+    mesh.loops.add(quads.size)
+    mesh.loops.foreach_set("vertex_index", quads.ravel())
+    mesh.polygons.add(len(quads))
+    mesh.polygons.foreach_set("loop_start", 4 * np.arange(len(quads)))
+    mesh.polygons.foreach_set("loop_total", np.full(len(quads), 4))
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(quads), bool))
+    mesh.update(calc_edges=True)
+    if uvs is not None:
+        layer = mesh.uv_layers.new(name="UVMap")
+        layer.data.foreach_set("uv", np.repeat(uvs, (steps - 1) * _SIDES * 4, 0).ravel())
+    mesh.materials.append(material)
+    return mesh

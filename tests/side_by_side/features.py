@@ -1,0 +1,152 @@
+#!/usr/bin/python3
+"""Renders scenes of one feature of Blender each with Cycles and with the add-on, and writes the table of features.
+
+    cmake --build --preset release --target lull blender_addon
+    tests/side_by_side/features.py blender build/release/share/lull/lull-blender.zip build/release/renderer/lull OUT [NAME...]
+
+A feature is right if means of R, G and B are within 2 % of Cycles' and blocks of 10x10 pixels within 5 % of the mean, on average;
+refused if there is no picture; else warned. One that differs without a warning is silent, and the exit code is 1. Pictures stay
+in the folder OUT, `NAME.png` with Cycles on the left; what is there already is not rendered again, unless it is named. `--write`
+replaces the table in renderer/docs/blender.md. Not part of CI.
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT / "renderer/python/lull"))
+import exr  # noqa: E402
+
+BEGIN, END = "<!-- features.py writes this table -->\n", "<!-- end of the table -->\n"
+SIZE, MEANS, BLOCKS = (60, 40), 0.02, 0.05
+
+
+def blender(o, environment, *arguments):
+    return subprocess.Popen([o.blender, "-b", "-noaudio", "--factory-startup", *arguments], text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, env=environment)
+
+
+def run(o, folder):
+    """Renders what is named, or missing in OUT. Returns the names of all features."""
+    environment = dict(os.environ, BLENDER_USER_SCRIPTS=f"{folder}/scripts", BLENDER_USER_CONFIG=f"{folder}/config",
+                       PATH=f"{pathlib.Path(o.lull).resolve().parent}:{os.environ['PATH']}")
+    os.makedirs(f"{folder}/scripts/addons")
+    blender(o, environment, "--python-expr",
+            f"import bpy; bpy.ops.preferences.addon_install(filepath={str(o.addon)!r})").communicate()
+    there = [] if o.names else [path.stem for path in o.out.glob("*.json")]
+    what = {"names": o.names, "there": there, "size": SIZE, "spp": o.spp, "folder": str(o.out)}
+    process = blender(o, environment, "--addons", "lull_engine", "--python", str(HERE / "features_in_blender.py"), "--",
+                      json.dumps(what))
+    said, name, names = [], None, None
+    with open(o.out / "log.txt", "w", encoding="utf-8") as log:
+        for line in process.stdout:
+            log.write(line)
+            if line.startswith("CASE "):
+                name, title = line[5:].strip().split(" | ")
+                said = []
+            elif line == "MADE\n":
+                (o.out / f"{name}.json").write_text(json.dumps({"title": title, "said": said}), encoding="utf-8")
+                print(name, flush=True)
+            elif line.startswith("ALL "):
+                names = line.split()[1:]
+            elif re.match("(Warning|Error|Info): ", line):
+                said.append(line.strip())
+    if names is None:
+        sys.exit(f"Blender ended early; see {o.out}/log.txt")
+    return names
+
+
+def picture(path):
+    """Returns R, G, B and alpha; None without the file."""
+    if not path.exists():
+        return None
+    channels, _ = exr.read(path)
+    return np.stack([next(v for k, v in channels.items() if k.split(".")[-1] == c) for c in "RGBA"], -1)
+
+
+def blocks(values, n=10):
+    height, width = (n * (side // n) for side in values.shape[:2])
+    return values[:height, :width].reshape(height // n, n, width // n, n, -1).mean((1, 3))
+
+
+def beside(a, b, path):
+    from PIL import Image
+    both = np.concatenate([a[..., :3], np.ones((len(a), 3, 3)), b[..., :3]], 1).clip(0, 1)
+    both = np.where(both < 0.0031308, both * 12.92, 1.055 * both ** (1 / 2.4) - 0.055)
+    shown = Image.fromarray((255 * both).astype(np.uint8))
+    shown.resize((3 * shown.width, 3 * shown.height), 0).save(path)
+
+
+def clean(line):
+    line = re.sub("^((Warning|Error|Info): )+", "", line)
+    line = re.sub(r"lull: \S+: /\S+: warning: ", "lull: ", line)
+    return line.removeprefix("The scene cannot be exported: ").replace("|", "\\|")
+
+
+def consequences(said, kinds="Warning|Error"):
+    """Returns what is said of a feature, once each, without the names."""
+    lines = [clean(line) for line in said if re.match(f"({kinds}): ", line)]
+    return list(dict.fromkeys(re.sub(r": '.*$", "", line) for line in lines))
+
+
+def judge(o, name, said):
+    """Returns the verdict, the largest difference of means, and that of blocks, the latter None without a picture."""
+    a, b = (picture(o.out / f"{name}.{engine}.exr") for engine in ("cycles", "lull"))
+    warnings = consequences(said)
+    remarks = [line for line in consequences(said, "Info") if line.startswith("differs: ")]
+    warnings = [line for line in warnings if line not in remarks]
+    if b is None:
+        return "refused: " + "; ".join(warnings), None, None
+    beside(a, b, o.out / f"{name}.png")
+    means = b.mean((0, 1)) / np.maximum(a.mean((0, 1)), 1e-9) - 1
+    apart = means[np.argmax(abs(means))]
+    off = abs(blocks(a) - blocks(b))[..., :3].mean() / a[..., :3].mean()
+    is_right = abs(apart) <= MEANS and off <= BLOCKS
+    texts = "; ".join(warnings + remarks)
+    verdict = "right" if is_right else "warned" if texts else "**silent**"
+    return verdict + (f": {texts}" if texts else ""), apart, off
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("blender")
+    parser.add_argument("addon", type=lambda path: pathlib.Path(path).resolve())
+    parser.add_argument("lull")
+    parser.add_argument("out", type=lambda path: pathlib.Path(path).resolve())
+    parser.add_argument("names", nargs="*", help="features, by the names of their functions [all]")
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--write", action="store_true", help="replace the table in renderer/docs/blender.md")
+    o = parser.parse_args()
+    os.makedirs(o.out, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        names = run(o, folder)
+    rows = ["| feature | lull | means | blocks |", "|---|---|---|---|"]
+    silent = []
+    for name in names:
+        if not (o.out / f"{name}.json").exists():
+            continue
+        feature = json.loads((o.out / f"{name}.json").read_text(encoding="utf-8"))
+        verdict, apart, off = judge(o, name, feature["said"])
+        silent += [name] if "silent" in verdict else []
+        figures = "| |" if apart is None else f"{100 * apart:+.1f} % | {100 * off:.1f} % |"
+        rows.append(f"| {feature['title']} | {verdict} | {figures}")
+    table = "\n".join(rows) + "\n"
+    print(table)
+    (o.out / "features.md").write_text(table, encoding="utf-8")
+    if o.write:
+        page = ROOT / "renderer/docs/blender.md"
+        before, rest = page.read_text(encoding="utf-8").split(BEGIN)
+        page.write_text(before + BEGIN + "\n" + table + "\n" + END + rest.split(END)[1], encoding="utf-8")
+    if silent:
+        sys.exit("silent: " + ", ".join(silent))
+
+
+main()

@@ -1,0 +1,1037 @@
+"""Makes scenes of one feature of Blender each, and renders them with Cycles and with lull. Runs inside Blender, for features.py:
+the last argument is a JSON object of names (none: all but those that are there), there, size, spp and folder.
+
+Prints "CASE name | title" before each scene, "MADE" behind, and "ALL" with all names at the end. Pictures are FOLDER/NAME.cycles.exr and NAME.lull.exr.
+"""
+import json
+import math
+import os
+import pathlib
+import sys
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "blender"))
+from scenes import camera, dress, floor, lamp, material, matte  # noqa: E402
+
+CASES = {}
+FOLDER = ""
+
+
+def case(title):
+    """Lists a function that changes the scene of begin()."""
+    def add(function):
+        CASES[function.__name__] = title, function
+        return function
+    return add
+
+
+def begin():
+    """A ball on a floor, under a square lamp and a grey sky. Returns the scene."""
+    scene, others = bpy.data.scenes.new("case"), list(bpy.data.scenes)
+    for kind in ("objects", "meshes", "materials", "lights", "cameras", "worlds", "node_groups", "particles", "curves", "images",
+                 "texts", "collections"):
+        blocks = getattr(bpy.data, kind)
+        for block in list(blocks):
+            blocks.remove(block)
+    bpy.context.window.scene = scene
+    for other in others:
+        if other != scene:
+            bpy.data.scenes.remove(other)
+    world = scene.world = bpy.data.worlds.new("world")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs[0].default_value = (0.3, 0.33, 0.4, 1)
+    floor(matte("floor", (0.5, 0.5, 0.5, 1))).name = "floor"
+    ball(matte("ball", (0.6, 0.2, 0.1, 1)))
+    lamp('AREA', 400, (1.5, -2, 5), (0.35, 0, 0.26), size=1).name = "key"
+    camera((0, -6, 2.5), (1.25, 0, 0), lens=35)
+    return scene
+
+
+def ball(made):
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, 0.7), radius=0.7, segments=32, ring_count=16)
+    bpy.context.object.name = "ball"
+    return dress(made, smooth=True)
+
+
+def the(name):
+    return bpy.data.objects[name]
+
+
+def without(*names):
+    for name in names:
+        bpy.data.objects.remove(the(name))
+
+
+def cube(made, size=1.0, at=(0, 0, 0.5), **more):
+    bpy.ops.mesh.primitive_cube_add(size=size, location=at, **more)
+    return dress(made)
+
+
+def wall(made, x=1.5, y=0.0, z=2.0):
+    """Puts a rectangle with UVs in the place of the ball."""
+    if "ball" in bpy.data.objects:
+        without("ball")
+    mesh = bpy.data.meshes.new("wall")
+    mesh.from_pydata([(-x, y, 0), (x, y, 0), (x, y, z), (-x, y, z)], [], [(0, 1, 2, 3)])
+    layer = mesh.uv_layers.new(name="UVMap")
+    for loop, uv in zip(layer.data, ((0, 0), (1, 0), (1, 1), (0, 1))):
+        loop.uv = uv
+    mesh.materials.append(made)
+    o = bpy.data.objects.new("wall", mesh)
+    bpy.context.collection.objects.link(o)
+    return o
+
+
+def node(tree, kind, **values):
+    """Adds a node. `values` are inputs by their names, with _ for spaces, and properties."""
+    made = tree.nodes.new(kind)
+    for key, value in values.items():
+        if key in made.bl_rna.properties:
+            setattr(made, key, value)
+        else:
+            made.inputs[key.replace("_", " ")].default_value = value
+    return made
+
+
+def surface(kind, **values):
+    """Returns a new material of one node, the node and its tree."""
+    made = material("surface", kind, **{k.replace("_", " "): v for k, v in values.items()})
+    return made, made.node_tree.nodes[-1], made.node_tree
+
+
+def cover(socket_owner, tree):
+    tree.links.new(socket_owner.outputs[0], tree.get_output_node('ALL').inputs[0])
+
+
+def principled(**values):
+    return surface('BsdfPrincipled', **values)
+
+
+def dressed(made, name="ball"):
+    the(name).data.materials[0] = made
+
+
+def checks():
+    return np.stack([(np.indices((64, 64)).sum(0) // 8 % 2) * 0.6 + 0.2] * 3, -1)
+
+
+def image(values, name="image", colours='sRGB'):
+    """Returns a PNG of encoded values."""
+    full = np.ones((*values.shape[:2], 4), np.float32)
+    full[:, :, :values.shape[2]] = values
+    made = bpy.data.images.new(name, full.shape[1], full.shape[0], alpha=values.shape[2] == 4)
+    made.colorspace_settings.name = colours
+    made.pixels.foreach_set(full.ravel())
+    made.filepath_raw, made.file_format = os.path.join(FOLDER, name + ".png"), 'PNG'
+    made.save()
+    return made
+
+
+def textured(values=None, **texture):
+    """Returns a material whose colour is an image, the image's node, the surface's and the tree."""
+    made, bsdf, tree = principled()
+    shown = node(tree, 'ShaderNodeTexImage', image=image(checks() if values is None else values), **texture)
+    tree.links.new(shown.outputs[0], bsdf.inputs['Base Color'])
+    return made, shown, bsdf, tree
+
+
+# Camera and film
+
+@case("shift, portrait")
+def shift(scene):
+    scene.camera.data.shift_x, scene.camera.data.shift_y = 0.15, 0.2
+    scene.render.resolution_x, scene.render.resolution_y = scene.render.resolution_y, scene.render.resolution_x
+
+
+@case("vertical sensor fit")
+def sensor(scene):
+    scene.camera.data.sensor_fit, scene.camera.data.shift_y = 'VERTICAL', 0.2
+
+
+@case("orthographic camera")
+def orthographic(scene):
+    scene.camera.data.type, scene.camera.data.ortho_scale = 'ORTHO', 6
+
+
+@case("panoramic camera")
+def panorama(scene):
+    scene.camera.data.type = 'PANO'
+
+
+@case("depth of field")
+def depth_of_field(scene):
+    dof = scene.camera.data.dof
+    dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 3, 0.2
+
+
+@case("aperture blades")
+def blades(scene):
+    depth_of_field(scene)
+    scene.camera.data.dof.aperture_blades = 3
+
+
+@case("clip start before a wall")
+def clip_start(scene):
+    o = wall(matte("outside"), 3, -4, 4)
+    o.name = "outside"
+    ball(matte("ball", (0.6, 0.2, 0.1, 1)))
+    scene.camera.data.clip_start = 3
+
+
+@case("clip end")
+def clip_end(scene):
+    scene.camera.data.clip_end = 6.5
+
+
+@case("motion blur")
+def motion_blur(scene):
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1
+    for frame, x in (0, -1), (1, 0), (2, 1):
+        the("ball").location.x = x
+        the("ball").keyframe_insert("location", frame=frame)
+
+
+@case("percentage of the resolution")
+def percentage(scene):
+    scene.render.resolution_percentage = 50
+
+
+@case("pixel aspect")
+def pixel_aspect(scene):
+    scene.render.pixel_aspect_x = 2
+
+
+@case("border, cropped")
+def border(scene):
+    r = scene.render
+    r.use_border = r.use_crop_to_border = True
+    r.border_min_x, r.border_max_x, r.border_min_y, r.border_max_y = 0.21, 0.83, 0.3, 0.9
+
+
+@case("exposure of the film")
+def exposure(scene):
+    scene.cycles.film_exposure = 2.5
+
+
+@case("transparent film")
+def transparent(scene):
+    scene.render.film_transparent = True
+
+
+@case("transparent film, with transparent glass")
+def transparent_glass(scene):
+    transparent(scene)
+    scene.cycles.film_transparent_glass = True
+    dressed(surface('BsdfGlass', Roughness=0, IOR=1.05)[0])
+
+
+@case("Cycles' own limits: 4 diffuse bounces, indirect light clamped at 10")
+def limits(scene):
+    interior(scene)
+    c = scene.cycles
+    c.diffuse_bounces, c.glossy_bounces, c.sample_clamp_indirect = 4, 4, 10
+
+
+# Lamps
+
+def only(kind, energy, at, turned=(0, 0, 0), **more):
+    without("key")
+    made = lamp(kind, energy, at, turned, **more)
+    made.name = "only"
+    return made
+
+
+@case("area lamp: square, rectangle, disk, ellipse")
+def area_shapes(scene):
+    without("key")
+    for x, shape in zip((-3, -1, 1, 3), ('SQUARE', 'RECTANGLE', 'DISK', 'ELLIPSE')):
+        lamp('AREA', 100, (x, -1, 3), (0.3, 0, 0), shape=shape, size=1, size_y=0.4)
+
+
+@case("area lamp before a sun, from behind and from the front")
+def area_shadow(scene):
+    only('SUN', 4, (0, 0, 9), angle=0)
+    lamp('AREA', 20, (-1.5, 0, 3.5), size=2)
+    lamp('AREA', 20, (1.5, 0, 3.5), (math.pi, 0, 0), size=2)
+
+
+@case("spread of an area lamp")
+def area_spread(scene):
+    the("key").data.spread = 0.6
+
+
+@case("area lamp that the camera does not see")
+def area_unseen(scene):
+    lamp('AREA', 50, (-1.5, 1, 1.5), (math.pi / 2, 0, 0), size=1).visible_camera = False
+
+
+@case("area lamp as a portal")
+def portal(scene):
+    lamp('AREA', 100, (0, 2, 1.5), (-1.57, 0, 0), size=2).data.cycles.is_portal = True
+
+
+@case("lamp in the reflection of a mirror")
+def reflected(scene):
+    dressed(surface('BsdfGlossy', Roughness=0)[0])
+
+
+@case("sun without an angle")
+def sun(scene):
+    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=0)
+
+
+@case("sun of 0.5 degrees")
+def sun_small(scene):
+    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=math.radians(0.5))
+
+
+@case("sun of 10 degrees")
+def sun_large(scene):
+    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=math.radians(10))
+
+
+@case("point lamp without a radius")
+def point(scene):
+    only('POINT', 300, (1, -2, 3), shadow_soft_size=0)
+
+
+@case("point lamp with a radius")
+def point_radius(scene):
+    only('POINT', 300, (1, -2, 3), shadow_soft_size=0.3)
+
+
+@case("point lamp with a radius, between a sun and the ball")
+def point_shadow(scene):
+    only('SUN', 3, (0, 0, 5), angle=0)
+    lamp('POINT', 20, (0, 0, 3), shadow_soft_size=0.6)
+
+
+@case("spot lamp")
+def spot(scene):
+    only('SPOT', 800, (2, -3, 4), (0.65, 0, 0.6), shadow_soft_size=0, spot_size=0.8, spot_blend=0.5)
+
+
+@case("spot lamp with a radius")
+def spot_radius(scene):
+    only('SPOT', 800, (2, -3, 4), (0.65, 0, 0.6), shadow_soft_size=0.5, spot_size=0.8)
+
+
+@case("lamp without shadows")
+def no_shadow(scene):
+    the("key").data.use_shadow = the("key").data.cycles.cast_shadow = False
+
+
+@case("lamp by rays: no diffuse light")
+def lamp_rays(scene):
+    the("key").visible_diffuse = False
+
+
+@case("max bounces of a lamp")
+def lamp_bounces(scene):
+    the("key").data.cycles.max_bounces = 0
+
+
+def noded(light):
+    light.use_nodes = True
+    return light.node_tree, light.node_tree.nodes["Emission"]
+
+
+@case("colour of a lamp by a blackbody")
+def blackbody(scene):
+    tree, emission = noded(the("key").data)
+    tree.links.new(node(tree, 'ShaderNodeBlackbody', Temperature=3000).outputs[0], emission.inputs[0])
+
+
+@case("falloff of a lamp")
+def falloff(scene):
+    tree, emission = noded(only('POINT', 50, (1, -2, 3), shadow_soft_size=0).data)
+    tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Linear'], emission.inputs[1])
+
+
+@case("IES profile")
+def ies(scene):
+    tree, emission = noded(only('POINT', 30, (0, -1, 3), shadow_soft_size=0).data)
+    profile = bpy.data.texts.new("lamp.ies")
+    profile.write("IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 30 90\n0\n1000 100 0\n")
+    tree.links.new(node(tree, 'ShaderNodeTexIES', ies=profile).outputs[0], emission.inputs[1])
+
+
+@case("texture of a lamp")
+def lamp_texture(scene):
+    tree, emission = noded(the("key").data)
+    tree.links.new(node(tree, 'ShaderNodeTexChecker', Scale=1).outputs[0], emission.inputs[0])
+
+
+# World
+
+def sky(scene, kind, **values):
+    tree = scene.world.node_tree
+    made = node(tree, kind, **values)
+    tree.links.new(made.outputs[0], tree.nodes["Background"].inputs[0])
+    return made, tree
+
+
+@case("world: image, turned")
+def world_image(scene):
+    made, tree = sky(scene, 'ShaderNodeTexEnvironment', image=image(np.repeat(np.repeat(np.random.default_rng(1).random((4, 8, 3)), 8, 0), 8, 1), "sky"))
+    turn, where = node(tree, 'ShaderNodeMapping', Rotation=(0.3, 0, 0.7)), node(tree, 'ShaderNodeTexCoord')
+    tree.links.new(where.outputs['Generated'], turn.inputs['Vector'])
+    tree.links.new(turn.outputs[0], made.inputs[0])
+
+
+@case("world: sky with the sun's disc")
+def world_sky(scene):
+    without("key")
+    sky(scene, 'ShaderNodeTexSky', sky_type='NISHITA', sun_elevation=0.8, sun_rotation=2.5, sun_intensity=0.2)
+    scene.world.node_tree.nodes["Background"].inputs[1].default_value = 0.1
+
+
+@case("world: backdrop other than the light")
+def world_backdrop(scene):
+    tree = scene.world.node_tree
+    shown = node(tree, 'ShaderNodeBackground', Color=(1, 1, 1, 1), Strength=3)
+    rays, mix = tree.nodes.new('ShaderNodeLightPath'), tree.nodes.new('ShaderNodeMixShader')
+    tree.links.new(rays.outputs['Is Camera Ray'], mix.inputs[0])
+    tree.links.new(tree.nodes["Background"].outputs[0], mix.inputs[1])
+    tree.links.new(shown.outputs[0], mix.inputs[2])
+    cover(mix, tree)
+
+
+@case("world: other light for mirrors")
+def world_glossy(scene):
+    world_backdrop(scene)
+    tree = scene.world.node_tree
+    tree.links.new(next(n for n in tree.nodes if n.type == 'LIGHT_PATH').outputs['Is Glossy Ray'],
+                   next(n for n in tree.nodes if n.type == 'MIX_SHADER').inputs[0])
+    dressed(surface('BsdfGlossy', Roughness=0.1)[0])
+
+
+@case("world that the camera does not see")
+def world_unseen(scene):
+    scene.world.cycles_visibility.camera = False
+
+
+@case("world without diffuse light")
+def world_rays(scene):
+    scene.world.cycles_visibility.diffuse = False
+
+
+@case("world: volume")
+def world_volume(scene):
+    tree = scene.world.node_tree
+    tree.links.new(node(tree, 'ShaderNodeVolumeScatter', Density=0.1).outputs[0], tree.get_output_node('ALL').inputs['Volume'])
+
+
+# Objects
+
+@case("object that the camera does not see")
+def unseen(scene):
+    the("ball").visible_camera = False
+
+
+@case("object without a shadow")
+def shadowless(scene):
+    the("ball").visible_shadow = False
+
+
+@case("holdout")
+def holdout(scene):
+    the("ball").is_holdout = scene.render.film_transparent = True
+
+
+@case("shadow catcher")
+def catcher(scene):
+    the("floor").is_shadow_catcher = scene.render.film_transparent = True
+
+
+@case("collection: indirect only")
+def indirect_only(scene):
+    made = bpy.data.collections.new("indirect")
+    scene.collection.children.link(made)
+    made.objects.link(the("ball"))
+    scene.collection.objects.unlink(the("ball"))
+    scene.view_layers[0].layer_collection.children["indirect"].indirect_only = True
+
+
+@case("material override of a view layer")
+def override(scene):
+    scene.view_layers[0].material_override = matte("clay", (0.8, 0.8, 0.8, 1))
+
+
+@case("sheared object")
+def sheared(scene):
+    without("ball")
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    parent.scale = (3, 1, 1)
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), rotation=(0, 0, 0.7))
+    o.parent = parent
+
+
+@case("negative scale")
+def negative(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_monkey_add(size=1.6, location=(0, 0, 0.8))
+    dress(matte("red", (0.6, 0.2, 0.1, 1))).scale = (-1, 1, 1)
+
+
+@case("text, curves and metaballs")
+def text(scene):
+    without("ball")
+    bpy.ops.object.text_add(location=(-1, 0, 0.2), rotation=(1.2, 0, 0))
+    bpy.context.object.data.body, bpy.context.object.data.extrude = "lull", 0.1
+    bpy.context.object.data.materials.append(matte("ink", (0.6, 0.2, 0.1, 1)))
+    bpy.ops.curve.primitive_bezier_circle_add(location=(1.5, 0, 0.8))
+    bpy.context.object.data.bevel_depth = 0.2
+    bpy.ops.object.metaball_add(location=(-2, 0, 0.8), radius=1)
+
+
+@case("instances on faces")
+def faces(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=4, location=(0, 0, 0.3))
+    carrier = dress(None)
+    cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4).parent = carrier
+    carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
+
+
+@case("instances of geometry nodes")
+def geometry_nodes(scene):
+    without("ball")
+    one = cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4, (0, 50, 0))
+    group = bpy.data.node_groups.new("scatter", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, put, info = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeInstanceOnPoints', 'GeometryNodeObjectInfo'))
+    info.inputs[0].default_value = one
+    for a, b in ((inlet.outputs[0], put.inputs['Points']), (info.outputs['Geometry'], put.inputs['Instance']),
+                 (put.outputs[0], outlet.inputs[0])):
+        group.links.new(a, b)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3, location=(0, 0, 0.4))
+    dress(None).modifiers.new("scatter", 'NODES').node_group = group
+
+
+def particles(o, **values):
+    o.modifiers.new("particles", 'PARTICLE_SYSTEM')
+    settings = o.particle_systems[0].settings
+    settings.type = 'HAIR'
+    for key, value in values.items():
+        setattr(settings, key, value)
+
+
+def lawn():
+    without("ball")
+    bpy.ops.mesh.primitive_grid_add(size=3, location=(0, 0, 0.1))
+    return dress(matte("lawn", (0.1, 0.3, 0.1, 1)))
+
+
+@case("particles that are objects")
+def particle_objects(scene):
+    bpy.ops.mesh.primitive_ico_sphere_add(radius=0.3, location=(0, 50, 0))
+    one = dress(matte("copy", (0.6, 0.2, 0.1, 1)))
+    particles(lawn(), count=40, render_type='OBJECT', instance_object=one, particle_size=0.5)
+
+
+@case("hair of particles")
+def hair(scene):
+    particles(lawn(), count=1000, hair_length=0.6, root_radius=5)
+
+
+@case("hair of curves")
+def hair_curves(scene):
+    bpy.context.preferences.experimental.use_new_curves_tools = True
+    bpy.ops.object.curves_random_add()
+    bpy.context.object.data.materials.append(matte("strands", (0.3, 0.2, 0.1, 1)))
+
+
+@case("modifiers: subdivision, boolean")
+def modifiers(scene):
+    the("ball").hide_render = True
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 1.4, (0, 0, 0.7))
+    o.modifiers.new("round", 'SUBSURF').render_levels = 3
+    cut = o.modifiers.new("cut", 'BOOLEAN')
+    cut.object = the("ball")
+
+
+@case("adaptive subdivision")
+def dicing(scene):
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 1.4, (0, 0, 0.7))
+    without("ball")
+    scene.cycles.feature_set = 'EXPERIMENTAL'
+    o.modifiers.new("round", 'SUBSURF').levels = 3
+    o.cycles.use_adaptive_subdivision = True
+
+
+@case("simplify")
+def simplify(scene):
+    scene.render.use_simplify, scene.render.simplify_subdivision_render = True, 0
+    the("ball").modifiers.new("round", 'SUBSURF').render_levels = 3
+
+
+@case("smooth shading with an angle, auto smooth")
+def auto_smooth(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.7, depth=1.2, location=(0, 0, 0.6))
+    o = dress(surface('BsdfGlossy', Roughness=0.2)[0], smooth=True)
+    o.data.use_auto_smooth, o.data.auto_smooth_angle = True, 0.6
+
+
+@case("volume of an object without a surface")
+def volume(scene):
+    made, _, tree = principled()
+    tree.nodes.remove(next(n for n in tree.nodes if n.type == 'BSDF_PRINCIPLED'))
+    tree.links.new(node(tree, 'ShaderNodeVolumePrincipled').outputs[0], tree.get_output_node('ALL').inputs['Volume'])
+    cube(made, 1.5, (0, 0, 0.8))
+    without("ball")
+
+
+@case("unit scale of a scene")
+def units(scene):
+    scene.unit_settings.scale_length = 0.01
+
+
+# Surfaces
+
+@case("Principled: metal, rough and smooth")
+def metal(scene):
+    dressed(principled(Metallic=1, Roughness=0.3, Base_Color=(0.9, 0.6, 0.3, 1))[0])
+
+
+@case("Principled: plastic")
+def plastic(scene):
+    dressed(principled(Roughness=0.3, Base_Color=(0.1, 0.3, 0.7, 1))[0])
+
+
+@case("Principled: glass")
+def principled_glass(scene):
+    dressed(principled(Transmission=1, Roughness=0)[0])
+
+
+@case("Principled: clear coat")
+def coat(scene):
+    dressed(principled(Clearcoat=1, Roughness=0.8, Base_Color=(0.5, 0.05, 0.05, 1))[0])
+
+
+@case("Principled: sheen")
+def sheen(scene):
+    dressed(principled(Sheen=1, Roughness=1, Specular=0, Base_Color=(0.3, 0.1, 0.1, 1))[0])
+
+
+@case("Principled: subsurface")
+def subsurface(scene):
+    dressed(principled(Subsurface=0.5, Subsurface_Color=(0.8, 0.2, 0.1, 1))[0])
+
+
+@case("Principled: anisotropy")
+def anisotropic(scene):
+    dressed(principled(Metallic=1, Roughness=0.4, Anisotropic=0.8)[0])
+
+
+@case("Principled: tinted specular reflection")
+def tint(scene):
+    dressed(principled(Specular_Tint=1, Specular=1, Roughness=0.2, Base_Color=(0.7, 0.1, 0.1, 1))[0])
+
+
+@case("Diffuse, with roughness")
+def oren_nayar(scene):
+    dressed(surface('BsdfDiffuse', Color=(0.7, 0.6, 0.5, 1), Roughness=1)[0])
+
+
+@case("Glossy")
+def glossy(scene):
+    dressed(surface('BsdfGlossy', Roughness=0.3, Color=(0.9, 0.7, 0.4, 1))[0])
+
+
+@case("Glass")
+def glass(scene):
+    dressed(surface('BsdfGlass', Roughness=0, IOR=1.45)[0])
+
+
+@case("rough glass")
+def rough_glass(scene):
+    dressed(surface('BsdfGlass', Roughness=0.4, IOR=1.45)[0])
+
+
+@case("Refraction")
+def refraction(scene):
+    dressed(surface('BsdfRefraction', Roughness=0, IOR=1.45)[0])
+
+
+@case("glass with absorption")
+def absorption(scene):
+    made, _, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
+    tree.links.new(node(tree, 'ShaderNodeVolumeAbsorption', Color=(0.8, 0.3, 0.1, 1), Density=2).outputs[0],
+                   tree.get_output_node('ALL').inputs['Volume'])
+    dressed(made)
+
+
+@case("pane of glass, as a slab")
+def pane(scene):
+    wall(matte("red", (0.6, 0.2, 0.1, 1)))
+    made = cube(surface('BsdfGlass', Roughness=0, IOR=1.45)[0], 1, (0, -1, 1))
+    made.scale = (3, 0.02, 2)
+
+
+@case("Translucent")
+def translucent(scene):
+    o = wall(surface('BsdfTranslucent', Color=(0.6, 0.7, 0.3, 1))[0])
+    o.location.y = -1.5
+
+
+@case("leaf: Diffuse and Translucent mixed")
+def leaf(scene):
+    made, front, tree = surface('BsdfDiffuse', Color=(0.2, 0.5, 0.1, 1))
+    behind, mix = node(tree, 'ShaderNodeBsdfTranslucent', Color=(0.5, 0.7, 0.1, 1)), node(tree, 'ShaderNodeMixShader')
+    tree.links.new(front.outputs[0], mix.inputs[1]), tree.links.new(behind.outputs[0], mix.inputs[2])
+    cover(mix, tree)
+    wall(made).location.y = -1.5
+
+
+@case("Velvet")
+def velvet(scene):
+    dressed(surface('BsdfVelvet', Color=(0.5, 0.1, 0.1, 1))[0])
+
+
+@case("Toon")
+def toon(scene):
+    dressed(surface('BsdfToon', Color=(0.5, 0.1, 0.1, 1))[0])
+
+
+@case("Subsurface Scattering")
+def scattering(scene):
+    dressed(surface('SubsurfaceScattering', Color=(0.8, 0.4, 0.3, 1))[0])
+
+
+@case("Emission, seen from both sides")
+def emission(scene):
+    without("key")
+    bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0.5, 1.6))
+    dress(surface('Emission', Strength=4)[0])
+
+
+@case("Emission from an image of high range")
+def emission_image(scene):
+    shown = bpy.data.images.new("bright", 32, 16, float_buffer=True)
+    shown.pixels.foreach_set(np.tile(np.array([3, 2, 1, 1], np.float32), 512))
+    shown.filepath_raw, shown.file_format = os.path.join(FOLDER, "bright.exr"), 'OPEN_EXR'
+    shown.save()
+    made, bsdf, tree = surface('Emission')
+    tree.links.new(node(tree, 'ShaderNodeTexImage', image=shown).outputs[0], bsdf.inputs[0])
+    wall(made)
+
+
+def half(values=4):
+    pixels = np.ones((8, 8, 4), np.float32)
+    pixels[:, :, :3], pixels[:, 4:, 3] = (0.1, 0.4, 0.1), 0
+    return pixels
+
+
+@case("alpha of an image, whatever the blend mode")
+def alpha(scene):
+    made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+    tree.links.new(shown.outputs[1], bsdf.inputs['Alpha'])
+    made.blend_method = 'OPAQUE'
+    wall(made)
+
+
+@case("Mix with Transparent")
+def mix_transparent(scene):
+    made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+    clear, mix = tree.nodes.new('ShaderNodeBsdfTransparent'), tree.nodes.new('ShaderNodeMixShader')
+    for a, b in ((shown.outputs[1], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (bsdf.outputs[0], mix.inputs[2])):
+        tree.links.new(a, b)
+    cover(mix, tree)
+    wall(made)
+
+
+@case("coloured Transparent")
+def transparent_colour(scene):
+    wall(surface('BsdfTransparent', Color=(0.8, 0.3, 0.2, 1))[0]).location.y = -1
+    ball(matte("ball", (0.6, 0.2, 0.1, 1)))
+
+
+@case("surface by kinds of rays: shadows without glass")
+def glass_by_rays(scene):
+    made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
+    rays, clear, mix = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader'))
+    for a, b in ((rays.outputs['Is Shadow Ray'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2])):
+        tree.links.new(a, b)
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("Mix by Fresnel: Diffuse and Glossy")
+def coated(scene):
+    made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
+    shine, fresnel, mix = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfGlossy', 'Fresnel', 'MixShader'))
+    shine.inputs['Roughness'].default_value = 0.2
+    for a, b in ((fresnel.outputs[0], mix.inputs[0]), (base.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2])):
+        tree.links.new(a, b)
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("Mix of Diffuse and Glossy by a number")
+def mixed(scene):
+    made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
+    shine, mix = node(tree, 'ShaderNodeBsdfGlossy', Roughness=0.3), node(tree, 'ShaderNodeMixShader', Fac=0.3)
+    tree.links.new(base.outputs[0], mix.inputs[1]), tree.links.new(shine.outputs[0], mix.inputs[2])
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("Add of Diffuse and Emission")
+def added(scene):
+    made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
+    light, add = node(tree, 'ShaderNodeEmission', Strength=0.5), tree.nodes.new('ShaderNodeAddShader')
+    tree.links.new(base.outputs[0], add.inputs[0]), tree.links.new(light.outputs[0], add.inputs[1])
+    cover(add, tree)
+    dressed(made)
+
+
+@case("unknown surface (Hair BSDF)")
+def unknown(scene):
+    dressed(surface('BsdfHairPrincipled')[0])
+
+
+@case("material without nodes")
+def no_nodes(scene):
+    made = bpy.data.materials.new("plain")
+    made.diffuse_color = (0.2, 0.5, 0.2, 1)
+    dressed(made)
+
+
+@case("group of nodes")
+def group(scene):
+    inner = bpy.data.node_groups.new("paint", 'ShaderNodeTree')
+    inner.outputs.new('NodeSocketShader', "Shader")
+    outlet, paint = inner.nodes.new('NodeGroupOutput'), node(inner, 'ShaderNodeBsdfPrincipled', Base_Color=(0.1, 0.5, 0.1, 1))
+    inner.links.new(paint.outputs[0], outlet.inputs[0])
+    made, bsdf, tree = principled()
+    outside = node(tree, 'ShaderNodeGroup', node_tree=inner)
+    cover(outside, tree)
+    tree.nodes.remove(bsdf)
+    dressed(made)
+
+
+# Textures
+
+@case("image texture, repeated and turned")
+def repeated(scene):
+    made, shown, _, tree = textured()
+    turn, where = node(tree, 'ShaderNodeMapping', Scale=(2, 3, 1), Rotation=(0, 0, 0.4)), tree.nodes.new('ShaderNodeTexCoord')
+    tree.links.new(where.outputs['UV'], turn.inputs[0]), tree.links.new(turn.outputs[0], shown.inputs[0])
+    dressed(made)
+
+
+@case("image texture: Clip")
+def clip(scene):
+    made, shown, _, tree = textured(np.ones((8, 8, 3)) * (0.8, 0.1, 0.1), extension='CLIP')
+    scale, where = node(tree, 'ShaderNodeMapping', Scale=(2, 2, 1)), tree.nodes.new('ShaderNodeTexCoord')
+    tree.links.new(where.outputs['UV'], scale.inputs[0]), tree.links.new(scale.outputs[0], shown.inputs[0])
+    wall(made)
+
+
+@case("image texture: Closest")
+def closest(scene):
+    wall(textured(checks()[::8, ::8], interpolation='Closest')[0])
+
+
+@case("image texture: box projection")
+def box(scene):
+    made, shown, _, tree = textured(projection='BOX')
+    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Object'], shown.inputs[0])
+    dressed(made)
+
+
+@case("image texture over object coordinates")
+def object_coordinates(scene):
+    made, shown, _, tree = textured()
+    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Object'], shown.inputs[0])
+    dressed(made)
+
+
+@case("image texture without UVs")
+def no_uvs(scene):
+    dressed(textured()[0])
+    layers = the("ball").data.uv_layers
+    layers.remove(layers[0])
+
+
+@case("image texture times a colour")
+def multiplied(scene):
+    made, shown, bsdf, tree = textured()
+    times = node(tree, 'ShaderNodeMixRGB', blend_type='MULTIPLY', Fac=1, Color2=(1, 0.2, 0.2, 1))
+    tree.links.new(shown.outputs[0], times.inputs[1]), tree.links.new(times.outputs[0], bsdf.inputs['Base Color'])
+    dressed(made)
+
+
+@case("image texture through ramp and curves")
+def ramp(scene):
+    made, shown, bsdf, tree = textured()
+    ramped, curved = node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeRGBCurve')
+    ramped.color_ramp.elements[0].color = (0.1, 0.3, 0.1, 1)
+    for a, b in ((shown.outputs[0], ramped.inputs[0]), (ramped.outputs[0], curved.inputs['Color']), (curved.outputs[0], bsdf.inputs['Base Color'])):
+        tree.links.new(a, b)
+    dressed(made)
+
+
+@case("missing image")
+def missing(scene):
+    made, shown, _, _ = textured()
+    shown.image = bpy.data.images.load(image(checks(), "other").filepath_raw)
+    shown.image.filepath = "/nowhere/a.png"
+    dressed(made)
+
+
+@case("movie or sequence of images")
+def movie(scene):
+    made, shown, _, _ = textured()
+    shown.image.source = 'SEQUENCE'
+    dressed(made)
+
+
+@case("procedural textures: noise, Voronoi, bricks")
+def noise(scene):
+    made, bsdf, tree = principled()
+    tree.links.new(node(tree, 'ShaderNodeTexVoronoi', Scale=4).outputs['Color'], bsdf.inputs['Base Color'])
+    dressed(made)
+    floored, bsdf, tree = principled()
+    tree.links.new(node(tree, 'ShaderNodeTexBrick', Scale=3).outputs['Color'], bsdf.inputs['Base Color'])
+    dressed(floored, "floor")
+
+
+@case("colours of vertices, used")
+def colours(scene):
+    made, bsdf, tree = principled()
+    tree.links.new(node(tree, 'ShaderNodeVertexColor', layer_name="mask").outputs[0], bsdf.inputs['Base Color'])
+    dressed(made)
+    layer = the("ball").data.color_attributes.new("mask", 'BYTE_COLOR', 'CORNER')
+    for i, one in enumerate(layer.data):
+        one.color = (0.8, 0.2, 0.1 + 0.5 * (i % 2), 1)
+
+
+@case("colours of vertices, not used")
+def unused_colours(scene):
+    layer = the("ball").data.color_attributes.new("mask", 'BYTE_COLOR', 'CORNER')
+    for one in layer.data:
+        one.color = (1, 0, 0, 1)
+
+
+@case("colour of the object")
+def object_colour(scene):
+    made, bsdf, tree = principled()
+    tree.links.new(tree.nodes.new('ShaderNodeObjectInfo').outputs['Color'], bsdf.inputs['Base Color'])
+    the("ball").color = (0.2, 0.7, 0.3, 1)
+    dressed(made)
+
+
+def waves():
+    y, x = np.mgrid[0:256, 0:256] / 256
+    return np.repeat((0.5 + 0.5 * np.sin(x * 50) * np.sin(y * 50))[..., None], 3, -1)
+
+
+@case("bump of an image")
+def bump(scene):
+    made, bsdf, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
+    shown, bumped = node(tree, 'ShaderNodeTexImage', image=image(waves(), "waves", 'Non-Color')), node(tree, 'ShaderNodeBump', Strength=0.3)
+    tree.links.new(shown.outputs[0], bumped.inputs['Height']), tree.links.new(bumped.outputs[0], bsdf.inputs['Normal'])
+    dressed(made)
+
+
+@case("normal map")
+def normal_map(scene):
+    made, bsdf, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
+    tilted = np.ones((8, 8, 3)) * (0.5, 0.5, 1)
+    tilted[:, ::2] = (0.7, 0.5, 0.93)
+    shown, mapped = node(tree, 'ShaderNodeTexImage', image=image(tilted, "tilted", 'Non-Color')), tree.nodes.new('ShaderNodeNormalMap')
+    tree.links.new(shown.outputs[0], mapped.inputs['Color']), tree.links.new(mapped.outputs[0], bsdf.inputs['Normal'])
+    dressed(made)
+
+
+@case("displacement of a material")
+def displacement(scene):
+    made, _, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
+    shown, moved = node(tree, 'ShaderNodeTexImage', image=image(waves(), "waves", 'Non-Color')), node(tree, 'ShaderNodeDisplacement', Scale=0.1)
+    tree.links.new(shown.outputs[0], moved.inputs['Height'])
+    tree.links.new(moved.outputs[0], tree.get_output_node('ALL').inputs['Displacement'])
+    made.cycles.displacement_method = 'BOTH'
+    dressed(made)
+    the("ball").modifiers.new("fine", 'SUBSURF').render_levels = 3
+
+
+@case("Bevel and Ambient Occlusion")
+def bevel(scene):
+    without("ball")
+    made, bsdf, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
+    tree.links.new(node(tree, 'ShaderNodeBevel', Radius=0.1).outputs[0], bsdf.inputs['Normal'])
+    tree.links.new(tree.nodes.new('ShaderNodeAmbientOcclusion').outputs[0], bsdf.inputs['Base Color'])
+    cube(made)
+
+
+# Rooms
+
+@case("room of diffuse surfaces, lit by an area lamp")
+def interior(scene):
+    room(scene, matte("white", (0.8, 0.8, 0.8, 1)))
+
+
+@case("room of Principled surfaces")
+def interior_principled(scene):
+    room(scene, principled(Base_Color=(0.8, 0.8, 0.8, 1))[0])
+
+
+def room(scene, made):
+    without("ball", "floor")
+    cube(made, 4, (0, 0, 2))
+    scene.camera.location, scene.camera.rotation_euler = (0, -1.8, 2), (math.pi / 2, 0, 0)
+    scene.camera.data.lens = 18
+    key = the("key")
+    key.location, key.rotation_euler, key.data.energy = (0, 0, 3.9), (0, 0, 0), 60
+    c = scene.cycles
+    scene.lull.max_depth = c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = 32
+
+
+def render(scene, engine, path, spp):
+    r, c, l = scene.render, scene.cycles, scene.lull
+    r.engine, r.filepath = engine, path
+    r.image_settings.file_format, r.image_settings.color_depth, r.image_settings.color_mode = 'OPEN_EXR', '32', 'RGBA'
+    r.image_settings.exr_codec = 'ZIP'
+    c.samples, c.use_denoising, c.use_adaptive_sampling = spp, False, False
+    c.pixel_filter_type, c.filter_width = 'BOX', 1
+    l.stop_by, l.spp, l.denoise = 'SAMPLES', spp, False
+    try:
+        bpy.ops.render.render(write_still=True)
+    except RuntimeError as e:
+        print("Error:", str(e).strip())
+
+
+def main():
+    global FOLDER
+    o = json.loads(sys.argv[-1])
+    FOLDER = o["folder"]
+    for name in o["names"] or [n for n in CASES if n not in o["there"]]:
+        title, change = CASES[name]
+        print(f"CASE {name} | {title}", flush=True)
+        scene = begin()
+        scene.render.resolution_x, scene.render.resolution_y = o["size"]
+        c = scene.cycles
+        c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
+        c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = scene.lull.max_depth = 12
+        try:
+            change(scene)
+        except (RuntimeError, AttributeError, KeyError, TypeError) as e:
+            print("Info: not made:", e)
+            continue
+        for engine in 'CYCLES', 'LULL':
+            path = os.path.join(FOLDER, f"{name}.{engine.lower()}.exr")
+            if os.path.exists(path):
+                os.remove(path)
+            render(scene, engine, path, o["spp"])
+        print("MADE", flush=True)
+    print("ALL", *CASES, flush=True)
+
+
+main()
