@@ -262,7 +262,7 @@ template <typename Recorder>
     stride.ray = start.ray;
     // Of a camera whose transform scales, rays are not of unit length; recorders know them so.
     const float length = start.ray.d.norm();
-    if (std::abs(length - 1) > 1e-5f) stride.ray.d /= length;
+    if (std::abs(length - 1) > 1e-5f) stride.ray.d /= length, stride.ray.tMax *= length;
     stride.beta = Rgb::Ones();
     stride.p = start.ray.o;
     stride.n = stride.ray.d;

@@ -14,9 +14,9 @@ struct CameraView {
 };
 
 // Returns whether a camera's view of points can be computed: perspective cameras, with thin lenses
-// or none, that move or not.
+// or none, that move or not, and see what is near and far.
 inline bool SeesPoints(const Camera& camera) {
-    return camera.projection == Projection::Perspective;
+    return camera.projection == Projection::Perspective && !camera.Clips();
 }
 
 // Returns how such a camera sees the point p, `lens` and `time` as in CameraSample; nothing if it

@@ -58,5 +58,12 @@ TEST(CameraView, IsWhereRaysComeFrom) {
     }
 }
 
+// Light paths would show it what is nearer, or beyond.
+TEST(CameraView, IsNotThatOfClippedCameras) {
+    const auto scene = SceneOf(
+        WorldText("Shape \"sphere\"\n", "Camera \"perspective\" \"float clipstart\" [2]\n"));
+    EXPECT_FALSE(SeesPoints(scene->camera));
+}
+
 }  // namespace
 }  // namespace lull::camera_view_test
