@@ -31,7 +31,7 @@ std::string EscapedForXml(const std::string& text) {
     return escaped;
 }
 
-bool IsDrawn(const Verdict& verdict, const CurvesOfRule& rule) {
+bool IsDrawn(const BlockVerdict& verdict, const CurvesOfRule& rule) {
     return rule.threshold > 0 && std::isfinite(verdict.score);
 }
 
@@ -50,7 +50,7 @@ SppAxis AxisOf(const std::vector<CurvesOfRule>& rules) {
     for (const CurvesOfRule& rule : rules)
         for (const BlockOutcome& block : rule.outcome->blocks) {
             most = std::max({most, double(block.human), double(block.outcome.stop)});
-            for (const Verdict& verdict : block.outcome.verdicts) {
+            for (const BlockVerdict& verdict : block.outcome.verdicts) {
                 least = std::min(least, double(verdict.spp));
                 most = std::max(most, double(verdict.spp));
             }
@@ -96,7 +96,7 @@ std::string CurveOf(const CurvesOfRule& rule, const BlockOutcome& block, const c
                     const SppAxis& axis) {
     std::string points;
     double stopHeight = kPanelHeight / 2.0;
-    for (const Verdict& verdict : block.outcome.verdicts) {
+    for (const BlockVerdict& verdict : block.outcome.verdicts) {
         if (!IsDrawn(verdict, rule)) continue;
         const double y = HeightOf(verdict.score, rule.threshold);
         points +=
@@ -154,7 +154,7 @@ std::string CurvesCsv(const std::vector<CurvesOfRule>& rules) {
     std::string csv = "rule,viewpoint,block,human,stop,spp,value,threshold,noisy\n";
     for (const CurvesOfRule& rule : rules)
         for (const BlockOutcome& block : rule.outcome->blocks)
-            for (const Verdict& verdict : block.outcome.verdicts)
+            for (const BlockVerdict& verdict : block.outcome.verdicts)
                 if (IsDrawn(verdict, rule))
                     csv += fmt::format("{},{},{},{},{},{},{:.9g},{:g},{}\n", CsvField(rule.name),
                                        CsvField(rule.outcome->name), block.block, block.human,

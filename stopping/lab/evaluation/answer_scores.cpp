@@ -50,7 +50,7 @@ struct Curve {
 
 Curve CurveOf(const RuleOutcome& outcome, int end, bool isProbability) {
     Curve curve;
-    for (const Verdict& verdict : outcome.verdicts) {
+    for (const BlockVerdict& verdict : outcome.verdicts) {
         if (verdict.spp > end || std::isinf(verdict.score)) continue;
         curve.logSpp.push_back(std::log(verdict.spp));
         curve.values.push_back(Abscissa(verdict.score, isProbability));

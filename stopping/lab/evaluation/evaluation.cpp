@@ -27,7 +27,7 @@ struct Verdicts {
     std::array<double, 2> count = {}, right = {};  // by label
 
     void Add(const BlockOutcome& block) {
-        for (const Verdict& v : block.outcome.verdicts) {
+        for (const BlockVerdict& v : block.outcome.verdicts) {
             const bool noisy = block.human > v.spp;
             scores.push_back(float(v.score));
             labels.push_back(noisy);

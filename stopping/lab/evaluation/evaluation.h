@@ -12,7 +12,7 @@
 namespace lull {
 
 // Verdict of a rule on a block at some spp.
-struct Verdict {
+struct BlockVerdict {
     int spp = 0;
     double score = 0;  // the larger, the noisier; comparable between blocks; may be infinite
     bool noisy = false;
@@ -24,7 +24,7 @@ struct RuleOutcome {
     // Whether the recording ends below the cap and the rule had not stopped the block there: it
     // stops at the end then or, on a recording that was extended, beyond it.
     bool open = false;
-    std::vector<Verdict> verdicts = {};
+    std::vector<BlockVerdict> verdicts = {};
 };
 
 // Returns the outcome of which only the stop is known: noisy below it at the spp 20, 20 + grid, ...

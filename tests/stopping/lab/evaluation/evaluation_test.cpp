@@ -100,7 +100,7 @@ TEST(Scores, AveragesOverViewpoints) {
 TEST(Scores, BalancesTheClasses) {
     // People see noise below 100 spp. Of the two spp below, one is called noisy; of the three from
     // there on, one. Three and a half of the six pairs of scores are in the right order.
-    const std::vector<Verdict> verdicts = {
+    const std::vector<BlockVerdict> verdicts = {
         {20, 0.9, true}, {60, 0.4, false}, {100, 0.4, false}, {140, 0.7, true}, {180, 0.6, false}};
     const ViewpointOutcome viewpoint{
         .name = "a", .blocks = {{.human = 100, .outcome = {.stop = 60, .verdicts = verdicts}}}};

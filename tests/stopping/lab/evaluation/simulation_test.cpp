@@ -113,7 +113,7 @@ TEST(Simulation, VotesOnRecordedPasses) {
 
     // Verdicts come at 20, 60, ..., 580, and not at 600, the end of the recording.
     ASSERT_EQ(outcome.verdicts.size(), 15u);
-    for (const Verdict& v : outcome.verdicts) {
+    for (const BlockVerdict& v : outcome.verdicts) {
         EXPECT_EQ((v.spp - 20) % 40, 0);
         EXPECT_EQ(v.noisy, v.spp < 380 || v.spp == 420) << v.spp;
         EXPECT_NEAR(v.score, v.noisy ? 0.6 : 0.4, 1e-6);
@@ -180,7 +180,7 @@ TEST(Simulation, TakesTheRecordedStopsOfCycles) {
     const LabelledBlock block = MakeBlock(recording);
     const RuleOutcome outcome = MakeSimulator("cycles:0.06")(block);
     EXPECT_EQ(outcome.stop, 340);
-    for (const Verdict& v : outcome.verdicts) {
+    for (const BlockVerdict& v : outcome.verdicts) {
         EXPECT_EQ(v.noisy, v.spp < 340);
         EXPECT_DOUBLE_EQ(v.score, 340.0 / v.spp);
     }
