@@ -19,7 +19,6 @@ constexpr int kLeastSide = 20;  // pixels of a picture that is looked at in half
 // between: even, so that a crop is halved as the whole is.
 constexpr int kMargin = 2 * kChoiceReach + 4;
 static_assert(kMargin % 2 == 0);
-constexpr int kBandRows = 256;  // even, as kMargin; many, as rows next to a band are fitted twice
 constexpr int kFitReach = 2 * kPatches.radius;  // pixels from which a fit depends on features
 
 // Inputs of one scale.
@@ -97,10 +96,10 @@ struct CandidateRows {
 Halves FilterLevel(const Level& level, Planes* features) {
     const int width = level.Width(), height = level.Height();
     Halves result{Planes(width, height, kColours), Planes(width, height, kColours)};
-    CandidateRows rows(width, std::min(height, kBandRows + 2 * kMargin));
+    CandidateRows rows(width, std::min(height, BandRows(height) + 2 * kMargin));
     int done = 0, forgotten = 0;
-    for (int y0 = 0; y0 < height; y0 += kBandRows) {
-        const int y1 = std::min(height, y0 + kBandRows);
+    for (int y0 = 0; y0 < height; y0 += BandRows(height)) {
+        const int y1 = std::min(height, y0 + BandRows(height));
         rows.Fit(level, y0, y1);
         features->ForgetRows(forgotten, std::max(forgotten, y1 - kFitReach));
         forgotten = std::max(forgotten, y1 - kFitReach);
