@@ -44,6 +44,7 @@ struct Camera {
     Vec2f perPixel = Vec2f::Zero();    // theirs: the share of the film
 
     bool HasLens() const { return lensRadius > 0 || lenses; }
+    bool Clips() const { return clipStart > 0 || clipEnd < kInfinity; }
 
     // Returns the ray of a sample; direction unit. The radiance that it finds counts *weight times,
     // which is 1 but for realistic cameras, and 0 where nothing passes their lenses.
@@ -67,7 +68,6 @@ struct Camera {
     Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
-    bool Clips() const { return clipStart > 0 || clipEnd < kInfinity; }
     // Returns a ray of camera space in the world, from where it begins to where it ends to see.
     Ray Clip(const Vec3f& origin, const Vec3f& direction) const;
     // Of all but perspective cameras at rest: apart, so that these do not pay for it.
