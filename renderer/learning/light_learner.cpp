@@ -44,8 +44,9 @@ LightLearner::LightLearner(const Scene& scene, const LearningOptions&, int64_t)
 
 // Returns false if there is nothing to learn from.
 bool LightLearner::BeginToRecord(const Film& film) {
-    usual = MeanLuminance(film);
-    if (!(usual > 0 && usual < double(kInfinity))) return false;
+    const double mean = MeanLuminance(film);
+    if (!(mean > 0 && mean < double(kInfinity))) return false;
+    usual = mean;
     if (LearnsLights(*scene)) {
         lights = LightChoiceGuide(scene->shapes.bounds, scene->lights.Count());
         lightRecord = LightChoiceRecord(lights);
