@@ -60,7 +60,7 @@ class AddOn(unittest.TestCase):
     def blender(cls, *arguments, fails=False):
         ran = subprocess.run([BLENDER, "-b", "-noaudio", "--python-exit-code", "3", *arguments],
                              text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                             env=cls.environment, timeout=300)
+                             env=cls.environment, timeout=600)
         assert (ran.returncode != 0) == fails, ran.stdout
         return ran.stdout
 
@@ -155,8 +155,11 @@ class AddOn(unittest.TestCase):
             self.assertLess((found != wanted).sum(), 0.2 * wanted.sum(), name)
             self.assertEqual(set(np.unique(passes[name])), {0, index})
         for kind in "CryptoObject00", "CryptoMaterial00":  # ids are hashes of names
-            ids, wanted = passes[kind + ".R"].view(np.uint32), cycles[kind + ".R"].view(np.uint32)
+            ids, wanted = (p[kind + ".r"].view(np.uint32) for p in (passes, cycles))
             self.assertGreater((ids == wanted).mean(), 0.9, kind)
+        _, attributes = exr.read(self.folder / "passes.lull.0001.exr")
+        names = [value for key, value in attributes.items() if key.startswith("cryptomatte/") and key.endswith("/name")]
+        self.assertEqual(sorted(names), [b"ViewLayer.CryptoMaterial", b"ViewLayer.CryptoObject"])
         for group in "warm", "cold", "sky":
             got, wanted = (rgb(p, "Combined_" + group).mean() for p in (passes, cycles))
             self.assertAlmostEqual(got / wanted, 1, delta=0.02, msg=group)

@@ -111,8 +111,8 @@ def judge(o, name, said):
     off = abs(blocks(a) - blocks(b))[..., :3].mean() / a[..., :3].mean()
     is_right = abs(apart) <= MEANS and off <= BLOCKS
     texts = "; ".join(warnings + remarks)
-    verdict = "right" if is_right else "warned" if texts else "**silent**"
-    return verdict + (f": {texts}" if texts else ""), apart, off
+    verdict = "right" if is_right else "" if texts else "**silent**"
+    return ", ".join(filter(None, (verdict, f"warned: {texts}" if texts else ""))), apart, off
 
 
 def main():
@@ -123,11 +123,15 @@ def main():
     parser.add_argument("out", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("names", nargs="*", help="features, by the names of their functions [all]")
     parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--table", action="store_true", help="render nothing, and judge what is in OUT")
     parser.add_argument("--write", action="store_true", help="replace the table in renderer/docs/blender.md")
     o = parser.parse_args()
     os.makedirs(o.out, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        names = run(o, folder)
+    if o.table:
+        names = re.findall(r"^@case.*\ndef (\w+)", (HERE / "features_in_blender.py").read_text(encoding="utf-8"), re.M)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            names = run(o, folder)
     rows = ["| feature | lull | means | blocks |", "|---|---|---|---|"]
     silent = []
     for name in names:

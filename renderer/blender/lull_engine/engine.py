@@ -207,7 +207,7 @@ class _Job:
         for made in self.passes:
             _set(targets[made.name], made.fill(picture))
         for field, value in passes.cryptomatte_fields(self.layer, attributes):
-            result.stamp_data_add_field(field, value)
+            self.engine.get_result().stamp_data_add_field(field, value)
 
     def _backdrop(self, path):
         """Returns the rendered part of what the camera sees of the world."""

@@ -106,7 +106,7 @@ def wanted(scene, layer):
     for kind in "Object", "Material":
         if getattr(layer, "use_pass_cryptomatte_" + kind.lower()):
             names = [f"Crypto{kind}{i:02}" for i in range(layers)]
-            found += [Pass(n, "RGBA", "cryptomatte", _channels(*(f"{n}.{c}" for c in "RGBA"))) for n in names]
+            found += [Pass(n, "rgba", "cryptomatte", _channels(*(f"{n}.{c}" for c in "RGBA"))) for n in names]
     return found + [Pass("Combined_" + g.name, "RGB", "", _of_group(g.name)) for g in layer.lightgroups]
 
 

@@ -72,6 +72,15 @@ TEST(MetallicRoughness, WithoutHighlightsIsLambertian) {
     EXPECT_FLOAT_EQ(LobeAt<LambertianReflection>(bsdf, 0).r.r, 0.5f);
 }
 
+TEST(MetallicRoughness, ScattersToTheOtherSide) {
+    SceneWith b(
+        {{"metallicfactor", 0}, {"specularfactor", 0}, {"diffusetransmissionfactor", 0.25f}});
+    const Bsdf bsdf = b.MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 2);
+    EXPECT_FLOAT_EQ(LobeAt<LambertianReflection>(bsdf, 0).r.r, 0.375f);
+    EXPECT_FLOAT_EQ(LobeAt<LambertianTransmission>(bsdf, 1).t.r, 0.25f);  // white by default
+}
+
 TEST(MetallicRoughness, TakesItsInterfaceFromTheIndex) {
     const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"ior", 2}}).MakeBsdf(0);
     EXPECT_NEAR(LobeAt<LayeredReflection>(bsdf, 0).f0.r, 1 / 9., 1e-6);
