@@ -67,7 +67,7 @@ class FirstHitRecorder : public NoRecorder {
         done = true;
         StoreColor(color, path);
         hit->position = p;
-        hit->depth = distance * DepthPerDistance();
+        hit->depth = Depth();
         hit->found = p.allFinite() && std::isfinite(hit->depth);
     }
 
@@ -77,12 +77,13 @@ class FirstHitRecorder : public NoRecorder {
         for (int c = 0; c < 3; ++c) hit->albedo[c] = seen[c] > 0 ? std::min(seen[c], 1.f) : 0;
     }
 
-    float DepthPerDistance() const {
+    float Depth() const {
         const Camera& camera = scene.camera;
-        if (camera.projection == Projection::Environment) return 1;
+        if (camera.projection == Projection::Environment) return distance;
         Vec3f axis = camera.rotation.col(2);
         if (camera.motion) axis = TransformVector(camera.motion->At(time), axis);
-        return direction.dot(axis) / axis.norm();
+        const float scale = axis.norm();
+        return distance * (direction.dot(axis) / scale) + camera.clipStart * scale;
     }
 
     const Scene& scene;
@@ -90,7 +91,7 @@ class FirstHitRecorder : public NoRecorder {
     const Vec3f direction;
     const float time;
     FirstHit* hit;
-    float distance = 0;  // of the path so far
+    float distance = 0;  // of the path so far, from where its first ray begins
     bool done = false;
     bool isDirect = true;  // nothing has scattered the path
 };

@@ -94,7 +94,9 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     });
     if (vertexColors) traits.Need(kNeedsColor);
     if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
-    if (hasSheen) traits.isConstant = false;  // the light left to the rest depends on the view
+    // The light that a coat or sheen leaves to the rest depends on the view.
+    if (hasSheen || (diffuseTransmissionFactor > 0 && clearcoatFactor > 0))
+        traits.isConstant = false;
     if (CanLetThrough()) traits.needs = traits.needs | kLetsThrough;
     return traits;
 }
@@ -157,7 +159,9 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsd
 void MetallicRoughness::AddDiffuseTransmission(const MaterialInputs& in, float share, float f0,
                                                float coat, Bsdf* bsdf) const {
     const Rgb color = Look(diffuseTransmissionColor, in) * diffuseTransmissionColorFactor;
-    const float left = ThroughCoat(coat, std::abs(in.hit->ns.dot(in.hit->wo)), 1) * (1 - f0);
+    const float uncoated =
+        coat > 0 ? ThroughCoat(coat, std::abs(in.hit->ns.dot(in.hit->wo)), 1) : 1;
+    const float left = uncoated * (1 - f0);
     if (!IsBlack(color))
         bsdf->Add(LambertianTransmission{Rgb(share * left * color.max(0.f).min(1.f))});
 }

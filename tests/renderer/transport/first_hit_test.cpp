@@ -62,6 +62,19 @@ TEST(FirstHit, IsWhatIsSeen) {
     }
 }
 
+// What is nearer than that is not seen, and the depth is still that from the camera.
+TEST(FirstHit, IsBeyondWhereCamerasBeginToSee) {
+    const auto scene =
+        SceneOf(WorldText(Wall(0) + Wall(2),
+                          "LookAt 0 0 -3  0 0 0  0 1 0\n"
+                          "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" [1]\n"
+                          "Camera \"perspective\" \"float fov\" [20] \"float clipstart\" [4]\n"));
+    const FirstHit hit = Find(*scene, Estimator::Combined);
+    ASSERT_TRUE(hit.found);
+    EXPECT_NEAR(hit.depth, 5, 1e-4f);
+    EXPECT_NEAR(hit.position.z(), 2, 1e-4f);
+}
+
 TEST(FirstHit, KnowsTheLampSeenDirectly) {
     const std::string lamp =
         "AttributeBegin\nAreaLightSource \"area\" \"rgb L\" [4 5 6]\n"
