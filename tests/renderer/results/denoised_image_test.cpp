@@ -19,9 +19,16 @@ TEST(DenoisedImage, IsAcceptedWhereTheRuleStops) {
     EXPECT_EQ(ParseRule(kDenoisedRuleName, context).threshold, kVisibilityThreshold);
 }
 
+PathSample WithoutSpikes(Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                         const SampleDetail& detail) {
+    PathSample sample = SyntheticSample(sampler, pixel, index, detail);
+    sample.radiance = sample.radiance.min(1.f);
+    return sample;
+}
+
 // A large one is denoised at a lower resolution.
 TEST(DenoisePreview, IsQuick) {
-    const FeatureRender render(1);
+    const FeatureRender render(1, 36, WithoutSpikes);
     const DenoisedImage whole = DenoisePreview(render.film),
                         quick = DenoisePreview(render.film, 700);
     double sum = 0, sumOfQuick = 0;
