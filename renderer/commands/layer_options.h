@@ -9,17 +9,13 @@
 
 namespace lull {
 
-// Options of AOVs.
-//
 // Adds --aov and --aov-through-specular.
 void AddAovOptions(CLI::App& app, AovSet* wanted);
 
-// Throws Error where the memory cannot hold a film with layers, what is made of them in the end,
-// and `more` bytes a pixel.
+// Throws Error where the memory cannot hold a film with layers, the planes into which the denoiser
+// turns them, and `more` bytes a pixel.
 void CheckLayersFit(const FilmOptions&, const PixelRect& region, int64_t more = 0);
 
-// Options of light groups.
-//
 // Adds --light-groups.
 void AddLightGroupOption(CLI::App& app, std::vector<std::string>* names);
 

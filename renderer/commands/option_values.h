@@ -1,4 +1,5 @@
-// Options whose values are names, or numbers in a range.
+// Options whose values are names, or numbers in a range. All options check their numbers by these:
+// CLI11's own checks pass NaN, and whole numbers beyond their type's range.
 #pragma once
 
 #include <fmt/format.h>
@@ -59,9 +60,6 @@ CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
         ->default_str(NameOf(*value));
 }
 
-// Checks the numbers of options, all of them: CLI11's own checks pass NaN, and whole numbers beyond
-// their type's range.
-//
 // Checks that a value is a number from `least` to `most`.
 template <typename T>
 CLI::Validator Between(T least, T most) {

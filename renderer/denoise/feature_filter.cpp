@@ -18,8 +18,8 @@ constexpr int kBand = 64;                       // rows that are in memory at a 
 constexpr int kDisparity = kFeatures - 1;
 
 // Returns the median of one over the depth, where there is anything; 0 if there is nothing at all.
-// So that the values need not be kept, they are counted twice: by the upper half of their bits, in
-// whose order positive floats are, and those of the middle by the lower half.
+// A radix selection in two passes, as the values are too many to keep: positive floats are in the
+// order of their bits, which are counted by the upper half, then by the lower.
 float MedianDisparity(int height, const FeatureReader& read) {
     constexpr uint32_t kCounters = 1 << 16;
     std::vector<int64_t> high(kCounters), low(kCounters);

@@ -210,7 +210,7 @@ class _Job:
             self.engine.get_result().stamp_data_add_field(field, value)
 
     def _backdrop(self, path):
-        """Returns the rendered part of what the camera sees of the world."""
+        """Returns the rendered part of the backdrop."""
         image = bpy.data.images.load(path)
         try:
             width, height = image.size

@@ -106,24 +106,24 @@ class LULL_VIEWLAYER_PT_passes(_Panel, bpy.types.Panel):
             layout.prop(context.view_layer, "use_pass_" + name)
 
 
-class LULL_OBJECT_PT_lightgroup(_Panel, bpy.types.Panel):
-    bl_label, bl_context = "Light Group", "object"
-    bl_options = {'DEFAULT_CLOSED'}
-
-    def draw(self, context):
-        self.layout.prop_search(context.object, "lightgroup", context.view_layer, "lightgroups", text="Light Group")
-
-
-class LULL_WORLD_PT_lightgroup(_Panel, bpy.types.Panel):
-    bl_label, bl_context = "Light Group", "world"
-    bl_options = {'DEFAULT_CLOSED'}
+class _LightGroupPanel(_Panel):
+    bl_label, bl_options = "Light Group", {'DEFAULT_CLOSED'}
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and context.world
+        return super().poll(context) and getattr(context, cls.bl_context)
 
     def draw(self, context):
-        self.layout.prop_search(context.world, "lightgroup", context.view_layer, "lightgroups", text="Light Group")
+        owner = getattr(context, self.bl_context)
+        self.layout.prop_search(owner, "lightgroup", context.view_layer, "lightgroups", text="Light Group")
+
+
+class LULL_OBJECT_PT_lightgroup(_LightGroupPanel, bpy.types.Panel):
+    bl_context = "object"
+
+
+class LULL_WORLD_PT_lightgroup(_LightGroupPanel, bpy.types.Panel):
+    bl_context = "world"
 
 
 class LULL_MATERIAL_PT_settings(_Panel, bpy.types.Panel):

@@ -86,7 +86,7 @@ def _tubes(name, points, radii, material, uvs):
         return None
     along = np.gradient(points, axis=1)
     along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-12)
-    # A frame that does not turn along a strand: perpendicular to its whole and to what it is least along.
+    # A frame that does not turn along a strand, from the axis at the largest angle to its chord.
     whole = points[:, -1] - points[:, 0]
     least = np.eye(3)[np.argmin(abs(whole), axis=1)]
     side = np.cross(along, least[:, None])

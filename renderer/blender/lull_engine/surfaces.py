@@ -184,7 +184,7 @@ class _Surface:
                 self.needs_mesh |= _place_of(value) == 'mesh'
 
     def _mark(self, node):
-        """Leaves to the written file what the exporter cannot be told."""
+        """Leaves to the written file the values that the exporter cannot write."""
         p = self.parameters
         plain = {n: v for n, v in p.items() if not self._is_output(v)}
         if p['Alpha'] == 0 and p['Tint'] != (1, 1, 1):
@@ -193,7 +193,7 @@ class _Surface:
         elif HAS_ADDED_INTERFACE and node.type == 'BSDF_PRINCIPLED' and {'Roughness', 'Specular'} <= set(plain) and \
                 plain.get('Metallic') == 0 and plain.get('Transmission') == 0:
             # Under even light: the albedo of Disney's diffuse lobe (Burley 2015), that of a white Lambertian one being 1, and
-            # what a smooth interface reflects by Fresnel's formula more than by Schlick's.
+            # the reflectance of a smooth interface by Fresnel's formula less that by Schlick's.
             roughness = plain['Roughness']
             self.copy["lull_brightens"] = [0.9529 + roughness * (0.1098 + 0.0025 * roughness),
                                            float(np.interp(plain['Specular'], *_MORE_THAN_SCHLICK))]

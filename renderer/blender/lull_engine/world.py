@@ -53,7 +53,7 @@ def _answer_rays(world, notes):
 
 
 def _photograph(scene, world, camera, path):
-    """Renders what a camera sees of the world alone."""
+    """Renders the world alone, as the background of a camera."""
     room = bpy.data.scenes.new('lull backdrop')
     room.camera = camera.copy()
     room.collection.objects.link(room.camera)
