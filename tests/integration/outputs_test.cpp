@@ -145,7 +145,7 @@ TEST(Outputs, PreviewsAreWrittenOnTheWay) {
     const Inputs directory;
     const Outcome outcome = RunAndSignal(
         directory, "LULL render scene.pbrt --spp 1000000 --quiet -o out.exr --preview 0.1", SIGKILL,
-        "out.png");
+        "out.exr out.png");
     EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
     const ExrImage image = ReadExr(directory.File("out.exr"));
     EXPECT_TRUE(Contains(std::get<std::string>(image.attributes.at("note")), "interrupted"));
@@ -160,7 +160,7 @@ TEST(Outputs, PreviewsAreOfTheWholePicture) {
             directory,
             "LULL render scene.pbrt --resolution 600x400 --threads 1 --quiet -o out.exr " +
                 denoise + "--cap 1000000 --stop fixed:1000000 --preview 0.1",
-            SIGKILL, "out.png");
+            SIGKILL, "out.exr out.png");
         EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
         const ExrImage image = ReadExr(directory.File("out.exr"));
         bool isDenoised = false;

@@ -7,12 +7,13 @@
 
 namespace lull {
 
-// Runs a single command, which keeps its state in the file `checkpoint`, and sends it `signal` as
-// soon as that file has been written.
+// Runs a single command, and sends it `signal` as soon as all of `files`, separated by spaces, have
+// been written.
 inline Outcome RunAndSignal(const TemporaryDirectory& directory, const std::string& command,
-                            int signal, const std::string& checkpoint) {
-    return RunShell(directory, fmt::format("LD_PRELOAD='{}' RENAMED_FILE='{}' RENAMED_SIGNAL={} {}",
-                                           SIGNAL_AT_RENAME, checkpoint, signal, command));
+                            int signal, const std::string& files) {
+    return RunShell(directory,
+                    fmt::format("LD_PRELOAD='{}' RENAMED_FILES='{}' RENAMED_SIGNAL={} {}",
+                                SIGNAL_AT_RENAME, files, signal, command));
 }
 
 }  // namespace lull
