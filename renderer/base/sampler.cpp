@@ -1,5 +1,7 @@
 #include "renderer/base/sampler.h"
 
+#include "renderer/base/half.h"
+
 namespace lull {
 namespace {
 
@@ -47,7 +49,9 @@ void Sampler::StartSample(const Vec2i& pixel, uint32_t sampleIndex) {
     state = Mix(Mix(seed + 0x9e3779b97f4a7c15ull) ^ place);
     if (kind == SamplerKind::Random)
         state = Mix(state + 0xd1342543de82ef95ull * (uint64_t(sampleIndex) + 1));
-    reversedIndex = ReverseBits(sampleIndex);
+    const bool hasHalves = kind == SamplerKind::SobolHalves;
+    if (hasHalves) state = Mix(state + 0xd1342543de82ef95ull * (InHalf(sampleIndex) ? 2 : 1));
+    reversedIndex = ReverseBits(hasHalves ? PlaceInHalf(sampleIndex) : sampleIndex);
     dimension = 0;
     nextPair = kPairs;
 }

@@ -6,7 +6,10 @@
 
 namespace lull {
 
-enum class SamplerKind { Random, Sobol };
+// The samples of one Sobol sequence complement each other, so that its halves (half.h) differ by
+// more than the noise of each. SobolHalves has a sequence for either, independent of the other,
+// from whose difference noise can be estimated.
+enum class SamplerKind { Random, Sobol, SobolHalves };
 
 class Sampler {
   public:
@@ -51,9 +54,9 @@ class Sampler {
 
     static constexpr uint32_t kPairs = 8;
     uint64_t seed;
-    uint64_t state = 0;  // random: the counter; Sobol: the hash of (seed, pixel)
-    // Sobol only: the sample's index with its bits reversed; how many pairs of dimensions have been
-    // made; the last kPairs of them, and which one is next.
+    uint64_t state = 0;  // random: the counter; Sobol: the hash of (seed, pixel, half)
+    // Sobol only: the index in the sequence with its bits reversed; how many pairs of dimensions
+    // have been made; the last kPairs of them, and which one is next.
     uint32_t reversedIndex = 0, dimension = 0, nextPair = kPairs;
     std::array<float, kPairs> xs{}, ys{};
     SamplerKind kind;

@@ -98,23 +98,25 @@ FilmOptions CheckedFilm(const PreparedRender& p) {
     return film;
 }
 
-// Returns the sampler of an image: a denoised one has the points of least noise, whatever the scene
-// asks for, unless the user does.
+// Returns the sampler of an image: a denoised one has the points of least noise that leave halves
+// independent, whatever the scene asks for, unless the user does.
 SamplerKind ChooseSampler(const RenderRequest& request, const Scene& scene) {
     const RenderSettings& settings = request.render;
     if (settings.sampler) return *settings.sampler;
     const bool isFree =
         (request.denoise || request.denoiseLayers) && settings.estimator == Estimator::Combined;
-    return isFree ? SamplerKind::Sobol : scene.sampler;
+    return isFree ? SamplerKind::SobolHalves : scene.sampler;
 }
 
 void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->sampler = ChooseSampler(p.request, *p.render.scene);
-    if (provenance->sampler != p.render.scene->sampler && !p.request.render.sampler &&
+    if (provenance->sampler != p.render.scene->sampler &&
+        p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
         !p.request.render.quiet && p.render.Leads())
         TalkOf(p.request.render)
             .Note(
-                "the denoiser's samples are those of \"sobol\", which has less noise than the "
+                "the denoiser's samples are those of \"sobol-halves\", which has less noise than "
+                "the "
                 "scene's Sampler \"random\"; --sampler random keeps that");
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;

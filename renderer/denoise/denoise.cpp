@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "renderer/denoise/fireflies.h"
 #include "renderer/denoise/structure.h"
 #include "renderer/denoise/tile.h"
 
@@ -126,15 +125,25 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
     return variance;
 }
 
+void ForgetFireflies(const std::vector<Firefly>& fireflies, const Halves& without, Planes* ofMean) {
+    if (ofMean->count == 0) return;
+    for (const Firefly& f : fireflies) {
+        const float rest = LuminanceOf(without.a, f.pixel) - LuminanceOf(without.b, f.pixel);
+        float& variance = ofMean->values[f.pixel];
+        variance = std::min(variance, Sqr(rest) / 4);
+    }
+}
+
 DenoisedPicture Denoise(NoisyPicture in, Effort effort) {
     const bool hasEmission = in.emission.a.count > 0;
     if (hasEmission) TakeEmission(&in);
     MakeSane(&in.colour);
     DenoisedPicture result;
-    result.variance = EstimateVariance(in.colour, in.variance);
-    in.variance = {};  // a large picture needs the memory, here and below
     result.noisy = std::move(in.colour);
-    const std::vector<Firefly> fireflies = TakeFireflies(kFireflyLimit, &result.noisy);
+    result.fireflies = TakeFireflies(kFireflyLimit, &result.noisy);
+    ForgetFireflies(result.fireflies, result.noisy, &in.variance);
+    result.variance = EstimateVariance(result.noisy, in.variance);
+    in.variance = {};  // a large picture needs the memory, here and below
     result.halves = FilterColours(result.noisy, std::move(in.features), result.variance, effort);
     RestoreStructure(result.noisy, result.variance, &result.halves);
     if (hasEmission) AddEmission(in.emission, &result);
@@ -145,7 +154,7 @@ DenoisedPicture Denoise(NoisyPicture in, Effort effort) {
     for (size_t i = 0; i < result.picture.values.size(); ++i)
         result.picture.values[i] =
             Sane((result.halves.a.values[i] + result.halves.b.values[i]) / 2);
-    result.returned = GiveBack(fireflies, &result.picture);
+    result.returned = GiveBack(result.fireflies, &result.picture);
     return result;
 }
 

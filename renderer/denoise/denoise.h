@@ -8,6 +8,7 @@
 
 #include "renderer/denoise/feature_filter.h"
 #include "renderer/denoise/filter_colours.h"
+#include "renderer/denoise/fireflies.h"
 
 namespace lull {
 
@@ -29,12 +30,17 @@ struct DenoisedPicture {
     Halves noisy;     // the halves of the samples without fireflies, which judge them
     Planes variance;  // of a pixel of these, R, G, B
     Planes returned;  // the standard deviation of the fireflies' light in the picture, luminance
+    std::vector<Firefly> fireflies;  // what was taken from the samples; Crop() leaves it out
 };
 
 // Estimates the variance of a pixel of either half, R, G, B, > 0, from that of the mean (see
 // NoisyPicture), if it is known, and the difference of the halves, whose values are as Sane() has
 // them.
 Planes EstimateVariance(const Halves& colour, const Planes& ofMean);
+
+// Lowers the variance of the mean, where it is known, of pixels from which fireflies were taken to
+// that of the halves without them. A single rare path would hide the error of all pixels around.
+void ForgetFireflies(const std::vector<Firefly>&, const Halves& without, Planes* ofMean);
 
 // Denoises a picture of at least one pixel, whose memory it uses. Values that are not finite or
 // negative count as 0. The same bits for any number of threads. Takes some 7.5 us of

@@ -144,10 +144,8 @@ GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blo
     GroupedResult result;
     std::vector<Blocks> errors;
     DenoisedPicture sum;
-    Halves colour;
     for (int i = 0; i < picture.groups; ++i) {
         NoisyPicture light = picture.light(i);
-        Add(light.colour, &colour);
         const bool isLast = i + 1 == picture.groups;
         light.features = isLast ? std::move(picture.features) : picture.features;
         DenoisedPicture denoised = Denoise(std::move(light), options.effort);
@@ -155,14 +153,15 @@ GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blo
         Add(denoised.halves, &sum.halves);
         Add(denoised.noisy, &sum.noisy);
         Add(denoised.returned, &sum.returned);
+        std::ranges::copy(denoised.fireflies, std::back_inserter(sum.fireflies));
         DenoiserResult own = Measured(std::move(denoised), blocks,
                                       {.withDeviation = false, .gradings = options.gradings});
         result.groups.push_back(std::move(own.rgb));
         errors.push_back(std::move(own.blocks));
     }
     // The light of groups is not independent: a sample of one lamp is none of another.
-    sum.variance = EstimateVariance(colour, picture.variance);
-    colour = {};
+    ForgetFireflies(sum.fireflies, sum.noisy, &picture.variance);
+    sum.variance = EstimateVariance(sum.noisy, picture.variance);
     result.sum = Measured(std::move(sum), blocks, options);
     for (const Blocks& group : errors) Raise(group, &result.sum.blocks);
     return result;

@@ -2,17 +2,12 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 
+#include "renderer/base/half.h"
 #include "renderer/base/math.h"
 
 namespace lull {
-
-// Returns whether sample `index` belongs to the half on which noise is estimated: the bits at its
-// odd places have odd parity. Any multiple of four samples, from 0 on, has exactly half in it,
-// and both halves of a Sobol sequence stay well distributed (Cycles chooses the same way).
-inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) & 1; }
 
 // Returns how many of the samples 0 .. count - 1 are in the half.
 uint32_t HalfCount(uint32_t count);

@@ -70,8 +70,10 @@ std::string TextOf(const RenderIdentity&);
 
 template <>
 struct EnumNames<SamplerKind> {
-    static constexpr std::pair<SamplerKind, const char*> all[] = {{SamplerKind::Random, "random"},
-                                                                  {SamplerKind::Sobol, "sobol"}};
+    static constexpr std::pair<SamplerKind, const char*> all[] = {
+        {SamplerKind::Random, "random"},
+        {SamplerKind::Sobol, "sobol"},
+        {SamplerKind::SobolHalves, "sobol-halves"}};
 };
 template <>
 struct EnumNames<Estimator> {

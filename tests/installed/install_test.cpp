@@ -110,11 +110,12 @@ TEST(Install, CompletionKnowsCommandsAndValues) {
     EXPECT_EQ(Complete(tree, "lull ren", 1), "render\n");
     for (const char* command : kCommands)
         EXPECT_TRUE(Contains(Complete(tree, "lull ''", 1), command)) << command;
-    EXPECT_EQ(Complete(tree, "lull render --sampler ''", 3), "random sobol\n");
-    EXPECT_EQ(Complete(tree, "lull render --sampler so", 3), "sobol\n");
+    EXPECT_EQ(Complete(tree, "lull render --sampler ''", 3), "random sobol sobol-halves\n");
+    EXPECT_EQ(Complete(tree, "lull render --sampler so", 3), "sobol sobol-halves\n");
     EXPECT_EQ(Complete(tree, "lull render --aov al", 3), "albedo alpha\n");
     EXPECT_EQ(Complete(tree, "lull render --aov depth,no", 3), "depth,normal depth,noise\n");
-    EXPECT_EQ(Complete(tree, "lull bench --samplers sobol,", 3), "sobol,random sobol,sobol\n");
+    EXPECT_EQ(Complete(tree, "lull bench --samplers sobol,", 3),
+              "sobol,random sobol,sobol sobol,sobol-halves\n");
     for (const char* option :
          {"render --stop", "compare --stop", "evaluate --stop", "bench --rule"})
         EXPECT_EQ(Complete(tree, "lull " + std::string(option) + " ''", 3),

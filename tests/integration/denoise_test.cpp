@@ -50,7 +50,8 @@ TEST(DenoiseOption, ImagesHaveWhatTheSamplesSayToo) {
 
     // The mean of the samples is that of a render that knows nothing of all this.
     ASSERT_TRUE(Succeeds(directory,
-                         "LULL render scene.pbrt --resolution 96x80 --block 48 --sampler sobol "
+                         "LULL render scene.pbrt --resolution 96x80 --block 48 "
+                         "--sampler sobol-halves "
                          "--stop thresholds:clean.thresholds.csv -o plain.exr"));
     const Channels plain = ChannelsOf(directory, "plain.exr");
     for (const std::string name : {"R", "G", "B"})

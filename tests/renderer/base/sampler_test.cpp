@@ -4,12 +4,14 @@
 
 #include <set>
 
+#include "renderer/base/half.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {
 namespace {
 
-constexpr SamplerKind kKinds[] = {SamplerKind::Random, SamplerKind::Sobol};
+constexpr SamplerKind kKinds[] = {SamplerKind::Random, SamplerKind::Sobol,
+                                  SamplerKind::SobolHalves};
 
 std::vector<double> Uniform(int cells) { return std::vector<double>(cells, 1.0 / cells); }
 
@@ -88,7 +90,7 @@ TEST(Sampler, IsUncorrelatedAmongNeighbours) {
     for (const SamplerKind kind : kKinds) {
         Sampler sampler(kind, 0), other(kind, 1);
         for (int what = 0; what < 4; ++what) {
-            if (what == 3 && kind == SamplerKind::Sobol) continue;
+            if (what == 3 && kind != SamplerKind::Random) continue;
             double covariance = 0;
             std::vector<int64_t> cells(256);
             for (int i = 0; i < kPairs; ++i) {
@@ -169,6 +171,40 @@ TEST(Sampler, SobolRunsAreNets) {
         }
         EXPECT_EQ(std::count(cells.begin(), cells.end(), 1), 64) << start;
     }
+}
+
+TEST(Sampler, SobolHalvesAreNets) {
+    Sampler sampler(SamplerKind::SobolHalves, 7);
+    for (const bool half : {false, true}) {
+        std::vector<int> cells(32);
+        for (uint32_t k = 0; k < 64; ++k) {
+            if (InHalf(k) != half) continue;
+            sampler.StartSample({3, 8}, k);
+            ++cells[CellOf(sampler.Get2D(), 8, 4)];
+        }
+        EXPECT_EQ(std::count(cells.begin(), cells.end(), 1), 32) << half;
+    }
+}
+
+// The halves of one sequence err in opposite directions.
+TEST(Sampler, SobolHalvesAreIndependent) {
+    constexpr int kPixels = 10000, kSamples = 16;
+    const auto correlation = [](SamplerKind kind) {
+        Sampler sampler(kind, 5);
+        double products = 0, squares = 0;
+        for (int pixel = 0; pixel < kPixels; ++pixel) {
+            double error[2] = {};
+            for (uint32_t k = 0; k < kSamples; ++k) {
+                sampler.StartSample({pixel % 100, pixel / 100}, k);
+                error[InHalf(k)] += double(sampler.Get2D().prod()) - 0.25;
+            }
+            products += error[0] * error[1];
+            squares += (error[0] * error[0] + error[1] * error[1]) / 2;
+        }
+        return products / squares;
+    };
+    EXPECT_NEAR(correlation(SamplerKind::SobolHalves), 0, 4.5 / std::sqrt(double(kPixels)));
+    EXPECT_LT(correlation(SamplerKind::Sobol), -0.3);
 }
 
 // Defines the points step by step, as the papers have them; the sampler takes short cuts.

@@ -134,8 +134,8 @@ TEST(Structure, AndErrorsHaveTheSameBitsInAnyBand) {
     const ImageTile rows{0, above, width, below};
     const auto crop = [&](const Planes& image) { return Crop(image, rows); };
     const auto cropBoth = [&](const Halves& h) { return Halves{crop(h.a), crop(h.b)}; };
-    const DenoisedPicture part{crop(tall.picture), cropBoth(tall.halves), cropBoth(tall.noisy),
-                               crop(tall.variance), crop(tall.returned)};
+    const DenoisedPicture part{crop(tall.picture),  cropBoth(tall.halves), cropBoth(tall.noisy),
+                               crop(tall.variance), crop(tall.returned),   {}};
 
     const Planes structure = StructureLeft(tall.noisy, tall.variance, tall.halves);
     EXPECT_GT(ShareFound(structure), 0.02);

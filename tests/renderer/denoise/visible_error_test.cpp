@@ -59,11 +59,27 @@ TEST(VisibleError, IsNotSeenAboveWhite) {
 TEST(VisibleError, CountsALineThatIsMissing) {
     const Planes flat(200, 200, 3, 0.2f);
     const DenoisedPicture denoised{
-        flat, {flat, flat}, {flat, flat}, Planes(200, 200, 3, 1e-6f), Planes(200, 200, 1)};
+        flat, {flat, flat}, {flat, flat}, Planes(200, 200, 3, 1e-6f), Planes(200, 200, 1), {}};
     EstimatedError error = MeasureError(denoised);
     EXPECT_LT(MeasureVisibleError(denoised, error, Whole(200)).upper, 0.01);
     for (int x = 70; x < 130; ++x) error.structure.Row(0, 100)[x] = -6;
     EXPECT_GT(MeasureVisibleError(denoised, error, Whole(200)).upper, kVisibilityThreshold);
+}
+
+// One rare path, whose light is taken off and spread, leaves the bound of its block to the others;
+// the doubt about its light stays.
+TEST(VisibleError, IsNotThatOfOnePathWhichIsTaken) {
+    constexpr float kNoise = 0.05f, kPath = 20;
+    const Planes truth(kSide, kSide, 3, 0.3f);
+    NoisyPicture without = AddNoise(truth, FlatFeatures(kSide, kSide), kNoise, 1);
+    without.variance = Planes(kSide, kSide, 1, Sqr(kNoise) / 2);
+    NoisyPicture with = without;
+    for (int c = 0; c < 3; ++c) with.colour.a.Row(c, 60)[60] += kPath;
+    with.variance.Row(0, 60)[60] = Sqr(kPath / 2);
+    const DenoisedPicture denoised = Denoise(with);
+    EXPECT_LT(ErrorOf(denoised).upper, 1.3 * ErrorOf(Denoise(without)).upper);
+    EXPECT_GT(denoised.returned.Row(0, 60)[60], 0.5 * kPath / 2 / (81 * 81));
+    EXPECT_LT(denoised.variance.Row(0, 60)[60], 0.1f);
 }
 
 // Of two halves of a picture the noisy one has the error.
