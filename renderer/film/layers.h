@@ -20,9 +20,7 @@
 // are resolved at compile time; those that are not wanted cost a comparison a sample.
 #pragma once
 
-#include <optional>
-#include <tuple>
-
+#include "renderer/base/optional_kinds.h"
 #include "renderer/film/emission_layer.h"
 #include "renderer/film/first_hit_layer.h"
 #include "renderer/film/light_group_layer.h"
@@ -36,14 +34,18 @@ class Layers {
     // No layers.
     Layers() = default;
     Layers(const PixelRect& region, const LayerOptions& wanted) : options(wanted) {
-        std::apply([&](auto&... kind) { (..., Make(region, &kind)); }, kinds);
+        ForEachOptional(kinds, [&]<typename Kind>(std::optional<Kind>& kind) {
+            if (Kind::IsWanted(options)) kind.emplace(region, options);
+        });
     }
     // Returns the memory that a pixel takes.
     static int64_t Bytes(const LayerOptions& wanted) {
-        const auto bytesOf = [&]<typename Kind>(const std::optional<Kind>&) {
-            return Kind::IsWanted(wanted) ? Kind::Bytes(wanted) : 0;
-        };
-        return std::apply([&](const auto&... kind) { return (... + bytesOf(kind)); }, Kinds());
+        int64_t bytes = 0;
+        Kinds kinds;
+        ForEachOptional(kinds, [&]<typename Kind>(const std::optional<Kind>&) {
+            if (Kind::IsWanted(wanted)) bytes += Kind::Bytes(wanted);
+        });
+        return bytes;
     }
 
     const LayerOptions& Options() const { return options; }
@@ -60,16 +62,14 @@ class Layers {
     // Call visit(kind) for each kind that is there.
     template <typename Visit>
     void ForEach(const Visit& visit) const {
-        std::apply([&](const auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
+        ForEachPresent(kinds, visit);
     }
     template <typename Visit>
     void ForEach(const Visit& visit) {
-        std::apply([&](auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
+        ForEachPresent(kinds, visit);
     }
 
-    bool IsEmpty() const {
-        return std::apply([](const auto&... kind) { return (... && !kind); }, kinds);
-    }
+    bool IsEmpty() const { return AreAllMissing(kinds); }
     bool NeedFirstHits() const {
         bool needed = false;
         ForEach([&]<typename Kind>(const Kind&) { needed |= Kind::NeedsFirstHits(options); });
@@ -89,14 +89,8 @@ class Layers {
     }
 
   private:
-    using Kinds = std::tuple<std::optional<FirstHitLayer>, std::optional<SquareLayer>,
-                             std::optional<EmissionLayer>, std::optional<MatteLayer>,
-                             std::optional<LightGroupLayer>>;
-
-    template <typename Kind>
-    void Make(const PixelRect& region, std::optional<Kind>* kind) {
-        if (Kind::IsWanted(options)) kind->emplace(region, options);
-    }
+    using Kinds =
+        OptionalKinds<FirstHitLayer, SquareLayer, EmissionLayer, MatteLayer, LightGroupLayer>;
 
     LayerOptions options;
     Kinds kinds;

@@ -26,37 +26,32 @@ class Stopwatch {
 }  // namespace
 
 Learners::Learners(const Scene& scene, const LearningOptions& options, int64_t pixels) {
-    const auto make = [&]<typename Kind>(std::optional<Kind>& kind) {
+    ForEachOptional(kinds, [&]<typename Kind>(std::optional<Kind>& kind) {
         if (Kind::IsWanted(scene, options)) kind.emplace(scene, options, pixels);
-    };
-    std::apply([&](auto&... kind) { (..., make(kind)); }, kinds);
+    });
     SetPaths();
-}
-
-bool Learners::IsEmpty() const {
-    return std::apply([](const auto&... kind) { return (... && !kind); }, kinds);
 }
 
 int Learners::RoundEnd() const {
     int end = kNoRoundEnd;
-    ForEach([&](const auto& kind) { end = std::min(end, kind.RoundEnd()); });
+    ForEachPresent(kinds, [&](const auto& kind) { end = std::min(end, kind.RoundEnd()); });
     return end;
 }
 
 void Learners::Begin(const Schedule& schedule) {
-    ForEach([&](auto& kind) { kind.Begin(schedule); });
+    ForEachPresent(kinds, [&](auto& kind) { kind.Begin(schedule); });
     SetPaths();
 }
 
 double Learners::Variance(const Film& film, const PixelRect& part) const {
     double variance = 1;
-    ForEach([&](const auto& kind) { variance *= kind.Variance(film, part); });
+    ForEachPresent(kinds, [&](const auto& kind) { variance *= kind.Variance(film, part); });
     return variance;
 }
 
 SampleSpread* Learners::SpreadOf(Film* film, const PixelRect& tile) {
     SampleSpread* spread = nullptr;
-    ForEach([&](auto& kind) {
+    ForEachPresent(kinds, [&](auto& kind) {
         if (!spread) spread = kind.SpreadOf(film, tile);
     });
     return spread;
@@ -64,27 +59,27 @@ SampleSpread* Learners::SpreadOf(Film* film, const PixelRect& tile) {
 
 void Learners::EndRound(Film* film, const lull::RoundEnd& ended) {
     const Stopwatch stopwatch(&seconds);
-    ForEach([&](auto& kind) { kind.EndRound(film, ended); });
+    ForEachPresent(kinds, [&](auto& kind) { kind.EndRound(film, ended); });
     SetPaths();
 }
 
 void Learners::SetPaths() {
     paths = Estimator::Combined;
-    ForEach([&](auto& kind) { kind.Apply(&paths); });
+    ForEachPresent(kinds, [&](auto& kind) { kind.Apply(&paths); });
 }
 
 GuideFigures Learners::Figures() const {
     GuideFigures figures;
     figures.seconds = seconds;
-    ForEach([&](const auto& kind) { kind.Describe(&figures); });
+    ForEachPresent(kinds, [&](const auto& kind) { kind.Describe(&figures); });
     return figures;
 }
 
 std::vector<std::byte> Learners::Save() const {
     StateWriter writer;
     writer.Put(kTag);
-    std::apply([&](const auto&... kind) { (..., writer.Put(uint8_t(kind.has_value()))); }, kinds);
-    ForEach([&](const auto& kind) { kind.Put(&writer); });
+    ForEachOptional(kinds, [&](const auto& kind) { writer.Put(uint8_t(kind.has_value())); });
+    ForEachPresent(kinds, [&](const auto& kind) { kind.Put(&writer); });
     writer.Put(seconds);
     return std::move(writer.bytes);
 }
@@ -92,12 +87,11 @@ std::vector<std::byte> Learners::Save() const {
 void Learners::Take(std::span<const std::byte> bytes, const Film& film) {
     StateReader reader(bytes);
     Require(reader.Get<uint32_t>() == kTag, "what it has learned is damaged");
-    const auto check = [&](const auto& kind) {
+    ForEachOptional(kinds, [&](const auto& kind) {
         Require((reader.Get<uint8_t>() != 0) == kind.has_value(),
                 "it has learned for another render");
-    };
-    std::apply([&](const auto&... kind) { (..., check(kind)); }, kinds);
-    ForEach([&](auto& kind) { kind.Get(&reader, film); });
+    });
+    ForEachPresent(kinds, [&](auto& kind) { kind.Get(&reader, film); });
     seconds = reader.Get<double>();
     reader.Finish();
     SetPaths();

@@ -31,8 +31,7 @@
 //       for a state of another scene, film or way to learn
 #pragma once
 
-#include <tuple>
-
+#include "renderer/base/optional_kinds.h"
 #include "renderer/learning/direction_learner.h"
 #include "renderer/learning/light_learner.h"
 #include "renderer/learning/strategy_learner.h"
@@ -47,7 +46,7 @@ class Learners {
     Learners(const Learners&) = delete;
     Learners& operator=(const Learners&) = delete;
 
-    bool IsEmpty() const;
+    bool IsEmpty() const { return AreAllMissing(kinds); }
     // Return the options of this round's paths, and the spp at which it ends: no block goes beyond
     // it before EndRound(). kNoRoundEnd: no kind asks for another round.
     const PathOptions& Paths() const { return paths; }
@@ -74,20 +73,9 @@ class Learners {
     void Take(std::span<const std::byte>, const Film&);
 
   private:
-    // Calls visit(kind) for each kind that is there.
-    template <typename Visit>
-    void ForEach(const Visit& visit) const {
-        std::apply([&](const auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
-    }
-    template <typename Visit>
-    void ForEach(const Visit& visit) {
-        std::apply([&](auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
-    }
     void SetPaths();
 
-    std::tuple<std::optional<LightLearner>, std::optional<DirectionLearner>,
-               std::optional<StrategyLearner>>
-        kinds;
+    OptionalKinds<LightLearner, DirectionLearner, StrategyLearner> kinds;
     PathOptions paths = Estimator::Combined;
     double seconds = 0;  // elapsed, between rounds
 };

@@ -146,6 +146,7 @@ TEST(Train, SplitsBlocks) {
     const Outcome outcome = ExpectSuccess(directory, kSmall + "-o m.h5 --split paper:split.csv");
     EXPECT_TRUE(Contains(outcome.err, "windows of 5 blocks")) << outcome.err;
     EXPECT_TRUE(Contains(outcome.out, "blocks left out"));
+    EXPECT_EQ(ExpectSuccess(directory, kSmall + "--split paper:split.csv").out, outcome.out);
 }
 
 // Runs tests/measurements/search.py, which makes s.csv and s.md.

@@ -271,15 +271,17 @@ void CompleteTrainOptions(TrainOptions* o) {
         throw CLI::ValidationError("train",
                                    "needs DATASET.h5; --preset by itself lists its values");
     if (o->plan.human.empty()) throw CLI::ValidationError("--human", "is required");
-    if (o->output.empty() && !o->plan.crossValidate)
-        throw CLI::ValidationError("train", "needs -o MODEL.h5 or --cross-validate");
+    const bool leavesOut = !o->plan.leaveOut.empty() || !o->plan.split.empty();
+    if (o->output.empty() && !o->plan.crossValidate && !leavesOut)
+        throw CLI::ValidationError("train",
+                                   "needs -o MODEL.h5, --cross-validate, --leave-out or --split");
     if (o->resume && o->output.empty())
         throw CLI::ValidationError("--resume", "needs -o MODEL.h5, beside which the checkpoint is");
-    if (o->plan.crossValidate && (!o->plan.leaveOut.empty() || !o->plan.split.empty()))
+    if (o->plan.crossValidate && leavesOut)
         throw CLI::ValidationError("--cross-validate",
                                    "chooses blocks itself, without --leave-out and --split");
     TrainingPlan& plan = o->plan;
-    plan.withLast = !o->output.empty();
+    plan.withLast = !o->output.empty() || !plan.crossValidate;
     plan.version = LULL_VERSION;
     // Recordings have every second pass, and so has a rule that votes as often as it was trained.
     if (plan.settings.voteSpacing == 0) plan.settings.voteSpacing = plan.settings.n;
