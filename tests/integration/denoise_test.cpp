@@ -59,6 +59,18 @@ TEST(DenoiseOption, ImagesHaveWhatTheSamplesSayToo) {
     EXPECT_EQ(clean.at("spp"), plain.at("spp"));
 }
 
+TEST(DenoiseOption, WarnsOfHalvesThatDependOnEachOther) {
+    const BoxDirectory directory;
+    for (const char* sampler : {"sobol", "sobol-halves", "random"}) {
+        const Outcome outcome = ExpectSuccess(
+            directory, fmt::format("render scene.pbrt --resolution 16x16 --spp 4 --denoise "
+                                   "--sampler {} -o a.exr",
+                                   sampler));
+        EXPECT_EQ(Contains(outcome.err, "complement each other"), sampler == std::string("sobol"))
+            << outcome.err;
+    }
+}
+
 // Nothing is said of a stopped block that its threshold contradicts.
 TEST(DenoiseOption, StoppedBlocksHaveTheErrorThatStoppedThem) {
     const BoxDirectory directory;
