@@ -193,8 +193,9 @@ Planes AsSeen(Planes difference) {
 }
 
 DenoisedPicture Crop(const DenoisedPicture& denoised, const ImageTile& tile) {
-    return {Crop(denoised.picture, tile), Crop(denoised.halves, tile), Crop(denoised.noisy, tile),
-            Crop(denoised.variance, tile), Crop(denoised.returned, tile)};
+    return {Crop(denoised.picture, tile),  Crop(denoised.halves, tile),
+            Crop(denoised.noisy, tile),    Crop(denoised.variance, tile),
+            Crop(denoised.returned, tile), {}};
 }
 
 EstimatedError MeasureError(const DenoisedPicture& denoised) {

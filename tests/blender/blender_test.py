@@ -76,9 +76,16 @@ class AddOn(unittest.TestCase):
         channels, _ = exr.read(self.folder / file)
         return {key.split(".", 1)[1]: plane for key, plane in channels.items()}
 
+    rendered = {}  # with no settings but the samples, by name and frame
+
     def render(self, name, settings=SAMPLES, frame=1):
-        said = self.blender(*self.command(name, settings, frame))
-        return self.read(name, frame), said
+        known = self.rendered.get((name, frame)) if settings == SAMPLES else None
+        if known is None:
+            said = self.blender(*self.command(name, settings, frame))
+            known = self.read(name, frame), said
+            if settings == SAMPLES:
+                self.rendered[name, frame] = known
+        return known
 
     def assert_close(self, name, passes, most, most_of_blocks):
         """Compares with Cycles: the mean of each channel, and blocks, on average."""
@@ -166,10 +173,9 @@ class AddOn(unittest.TestCase):
         self.assertEqual(rgb(passes, "Combined_none").max(), 0)
 
     def test_brightens_as_the_film_and_the_view_do(self):
-        _, said = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2; scene.view_settings.exposure = 1")
-        self.assertNotIn("Error", said)
         once, _ = self.render("lamps")
-        twice, _ = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2")
+        twice, said = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2; scene.view_settings.exposure = 1")
+        self.assertNotIn("Error", said)
         self.assertLess(abs(rgb(twice) - 2 * rgb(once)).max(), 1e-4)
 
     def test_lets_the_sun_through_panes(self):

@@ -13,13 +13,13 @@ extern "C" const char* lull_denoise_in_c(void);
 namespace lull::denoising_test {
 namespace {
 
-constexpr int kWidth = 90, kHeight = 70;
+constexpr int kWidth = 80, kHeight = 60;
 constexpr size_t kPixels = size_t(kWidth) * kHeight;
 
 struct Pictures {
     std::vector<float> truth, a, b, albedo;
     std::vector<float> clean = std::vector<float>(3 * kPixels, -1), error = clean;
-    lull_block_error block = {10, 20, 60, 50, -1, -1};
+    lull_block_error block = {10, 5, 60, 50, -1, -1};
     lull_noisy_picture noisy = {};
     lull_denoised_picture output = {clean.data(), error.data(), &block, 1};
 
@@ -112,7 +112,7 @@ TEST(Denoising, SurvivesNonsense) {
 
 TEST(Denoising, SaysWhatIsWrong) {
     const std::pair<const char*, std::function<void(Pictures*)>> cases[] = {
-        {"0x70", [](Pictures* p) { p->noisy.width = 0; }},
+        {"0x60", [](Pictures* p) { p->noisy.width = 0; }},
         {"65537", [](Pictures* p) { p->noisy.height = 65537; }},
         {"both halves", [](Pictures* p) { p->noisy.colour.b = nullptr; }},
         {"the same colours", [](Pictures* p) { p->noisy.colour.b = p->noisy.colour.a; }},
@@ -140,7 +140,7 @@ TEST(Denoising, SaysWhatIsWrong) {
          }},
         {"albedo", [](Pictures* p) { std::swap(p->noisy.albedo.a, p->noisy.albedo.b); }},
         {"room", [](Pictures* p) { p->output.colour = nullptr; }},
-        {"block 0", [](Pictures* p) { p->block.x = 31; }},
+        {"block 0", [](Pictures* p) { p->block.x = kWidth - 59; }},
         {"block 0", [](Pictures* p) { p->block.height = 9; }},
         {"block 0", [](Pictures* p) { p->block.width = std::numeric_limits<int>::max(); }},
         {"-1 blocks", [](Pictures* p) { p->output.block_count = -1; }}};

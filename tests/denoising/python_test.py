@@ -8,7 +8,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1))
 import lull_denoising  # noqa: E402
 
-WIDTH, HEIGHT = 130, 70
+WIDTH, HEIGHT = 90, 52
 
 
 def pictures(noise=0.08):
@@ -28,15 +28,15 @@ def rms(a, b):
 class DenoisingTest(unittest.TestCase):
     def test_takes_noise_out(self):
         truth, a, b, albedo = pictures()
-        clean = lull_denoising.denoise(a, b, albedo=albedo, block=60)
+        clean = lull_denoising.denoise(a, b, albedo=albedo, block=40)
         self.assertEqual(clean.picture.shape, truth.shape)
         self.assertEqual(clean.picture.dtype, np.float32)
         self.assertLess(rms(clean.picture, truth), rms((a + b) / 2, truth) / 4)
         self.assertEqual(clean.error.shape, (HEIGHT, WIDTH))
-        self.assertEqual(clean.blocks, [(0, 0, 60, 70), (60, 0, 70, 70)])
+        self.assertEqual(clean.blocks, [(0, 0, 40, 52), (40, 0, 50, 52)])
         self.assertEqual(clean.upper.shape, (1, 2))
         self.assertTrue((clean.upper >= clean.estimate).all())
-        less = lull_denoising.denoise(*pictures(0.02)[1:3], albedo=albedo, block=60)
+        less = lull_denoising.denoise(*pictures(0.02)[1:3], albedo=albedo, block=40)
         self.assertTrue((less.upper < clean.upper).all())
 
     def test_reads_any_layout(self):
@@ -56,12 +56,12 @@ class DenoisingTest(unittest.TestCase):
         for message, factor in ("mostly above 1", 5), ("negative", np.where(np.arange(WIDTH) % 5, 1, -1)[None, :, None]):
             with self.assertWarnsRegex(UserWarning, "a or b .*" + message):
                 lull_denoising.denoise(np.float32(factor * np.nan_to_num(a)), np.float32(factor * b))
-        self.assertRegex(repr(clean), r"^<lull_denoising.Denoised of 130 x 70 pixels: visible difference [\d.]+ in")
+        self.assertRegex(repr(clean), r"^<lull_denoising.Denoised of 90 x 52 pixels: visible difference [\d.]+ in")
 
     def test_says_what_is_wrong(self):
         _, a, b, albedo = pictures()
         for message, call in (
-                ("130 x 3", lambda: lull_denoising.denoise(a, b[:50])),
+                ("90 x 3", lambda: lull_denoising.denoise(a, b[:50])),
                 ("normal", lambda: lull_denoising.denoise(a, b, normal=albedo[..., :2])),
                 ("pair", lambda: lull_denoising.denoise(a, b, albedo=[albedo])),
                 ("uint8", lambda: lull_denoising.denoise(np.uint8(a), b)),

@@ -216,7 +216,7 @@ TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
 TEST(Compare, GoesOnAfterAnInterruption) {
     const SceneDirectory directory;
     const std::string command = std::string("compare scene.pbrt") + kSize +
-                                "--snapshots --stop dammertz:0.005 --human human.csv:a --cap 600 ";
+                                "--snapshots --stop dammertz:0.01 --human human.csv:a --cap 400 ";
     ExpectSuccess(directory, command + "-o whole");
     int kills = 0;
     for (; kills < 100; ++kills) {

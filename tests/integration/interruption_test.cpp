@@ -10,8 +10,9 @@
 namespace lull::interruption_test {
 namespace {
 
+// Blocks stop at 240 to 500 spp.
 constexpr const char* kOptions =
-    "scene.pbrt --resolution 100x90 --block 40 --stop dammertz:0.004 --cap 1500 --quiet";
+    "scene.pbrt --resolution 100x90 --block 40 --stop dammertz:0.01 --cap 500 --quiet";
 
 struct SceneDirectory : TemporaryDirectory {
     SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
@@ -45,13 +46,13 @@ TEST(Interruption, KilledRendersComeToTheSameBits) {
     int kills = 0;
     Outcome outcome;
     for (int run = 0; run < 200; ++run) {
-        // At first at random moments, some twentieth of the whole apart, then as long as it takes.
-        const double share = 0.03 + 0.05 * std::generate_canonical<double, 32>(random);
-        const double seconds = kills < 30 ? share * whole : 600;
+        // At first at random moments, some twelfth of the whole apart, then as long as it takes.
+        const double share = 0.04 + 0.08 * std::generate_canonical<double, 32>(random);
+        const double seconds = kills < 16 ? share * whole : 600;
         outcome = RunShell(
             directory, fmt::format("timeout -s KILL {:.3f} ", seconds) +
                            RenderCommand(fmt::format("-o parts.exr --threads {} --checkpoint c.h5 "
-                                                     "--checkpoint-interval 0.1 --resume",
+                                                     "--checkpoint-interval 0.02 --resume",
                                                      1 + run % 3)));
         if (outcome.exitCode == 0) break;
         ASSERT_EQ(outcome.exitCode, 137) << outcome.err;
@@ -143,12 +144,12 @@ TEST(Interruption, GoesOnToMore) {
     };
     expectSame("--spp 30", "--spp 70");
     expectSame("--stop lnoise:0.01 --cap 50", "--stop lnoise:0.01 --cap 120");
-    expectSame("--stop dammertz:0.02 --cap 300", "--stop dammertz:0.004 --cap 300");
-    expectSame("--stop lnoise:0.8 --cap 300", "--stop lnoise:0.8 --cap 300 --caution 3");
+    expectSame("--stop dammertz:0.04 --cap 100", "--stop dammertz:0.02 --cap 100");
+    expectSame("--stop lnoise:0.8 --cap 150", "--stop lnoise:0.8 --cap 150 --caution 3");
 
     // The rule that looks at passes in a row begins anew, with what there is.
     const Outcome learned =
-        ExpectSuccess(render("--checkpoint c.h5 --resume -o parts.exr --cap 400"));
+        ExpectSuccess(render("--checkpoint c.h5 --resume -o parts.exr --cap 200"));
     EXPECT_TRUE(Contains(learned.err, "going on from c.h5, with another rule")) << learned.err;
     EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
 

@@ -155,7 +155,7 @@ TEST_F(LayersTest, LeaveTheImageAsItIs) {
 TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
     const std::string options = std::string(kAllAndMattes) +
                                 "--resolution 60x50 --block 20 --stop "
-                                "dammertz:0.004 --cap 1500 --pass 20 ";
+                                "dammertz:0.01 --cap 500 --pass 20 ";
     Render(options + "--threads 1 -o whole.exr");
     const std::string render =
         "LULL render scene.pbrt --quiet " + options + "--threads 2 -o parts.exr --checkpoint c.h5 ";

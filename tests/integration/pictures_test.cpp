@@ -20,11 +20,14 @@ struct PictureDirectory : TemporaryDirectory {
         Write("scene.pbrt", SceneText(kRoom));
         std::filesystem::create_directory(path / "room");
         for (int spp = 20; spp <= 200; spp += 20) {
+            // Each takes up the samples of the one before.
             ExpectSuccess(*this, fmt::format("render scene.pbrt --resolution 100x100 --quiet --spp "
-                                             "{} --sampler random -o r.exr",
+                                             "{} --sampler random -o r.exr --checkpoint r.h5 "
+                                             "--resume --keep-checkpoint",
                                              spp));
             std::filesystem::rename(File("r.png"), File(fmt::format("room/tex_{}.png", spp)));
         }
+        std::filesystem::remove(File("r.h5"));
         Write("human.csv", "room;60;90;200;120;\nhall;20;20;20;20;\n");
     }
 };

@@ -12,7 +12,7 @@ namespace {
 
 // Returns the share of light from `wo` that a Bsdf scatters, from stratified samples.
 Rgb SampledAlbedo(const Bsdf& bsdf, const Vec3f& wo) {
-    constexpr int n = 200;
+    constexpr int n = 100;
     Eigen::Array3d sum = Eigen::Array3d::Zero();
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {

@@ -9,17 +9,16 @@
 namespace lull::bands_test {
 namespace {
 
-constexpr int kWidth = 300, kHeight = 600;
+constexpr int kWidth = 260, kHeight = 440;  // three tiles a row, four bands
 
 // Stripes with noise, fireflies and an edge that features do not show.
-NoisyPicture Large() {
-    const Planes truth = MakePlanes(kWidth, kHeight, 3, [](int c, int x, int y) {
+Halves Large(int width = kWidth, int height = kHeight) {
+    const Planes truth = MakePlanes(width, height, 3, [](int c, int x, int y) {
         return (x / 7 + y / 5) % 3 * 0.2 + 0.1 * c + (x > 2 * y - 300 ? 0.5 : 0);
     });
-    NoisyPicture noisy = AddNoise(truth, FlatFeatures(kWidth, kHeight), 0.1, 31);
-    for (size_t i = 100; i < truth.Area(); i += 4567)
-        noisy.colour.a.Plane(1)[i] = noisy.colour.b.Plane(0)[i + 2] = 200;
-    noisy.variance = Planes(kWidth, kHeight, 1, 0.005f);
+    Halves noisy = NoisyHalves(truth, 0.1, 31);
+    for (size_t i = 100; i + 2 < truth.Area(); i += 2567)
+        noisy.a.Plane(1)[i] = noisy.b.Plane(0)[i + 2] = 200;
     return noisy;
 }
 
@@ -28,15 +27,16 @@ const ImageTile kPart{100, 180, 228, 420};
 ImageTile Middle(int margin) { return kPart.Grown(-margin); }
 
 TEST(Bands, AreNotSeenInVariances) {
-    const NoisyPicture noisy = Large();
+    const Halves noisy = Large();
+    const Planes ofMean(kWidth, kHeight, 1, 0.005f);
     const ImageTile middle = Middle(11);
-    const Planes whole = EstimateVariance(noisy.colour, noisy.variance);
-    const Planes part = EstimateVariance(Crop(noisy.colour, kPart), Crop(noisy.variance, kPart));
+    const Planes whole = EstimateVariance(noisy, ofMean);
+    const Planes part = EstimateVariance(Crop(noisy, kPart), Crop(ofMean, kPart));
     EXPECT_EQ(Crop(whole, middle).values, Crop(part, middle.In(kPart)).values);
 }
 
 TEST(Bands, AreNotSeenInFireflies) {
-    Halves whole = Large().colour, part = Crop(whole, kPart);
+    Halves whole = Large(), part = Crop(whole, kPart);
     const std::vector<Firefly> all = TakeFireflies(4, &whole), some = TakeFireflies(4, &part);
     EXPECT_GT(some.size(), 5u);
     const ImageTile middle = Middle(8);
@@ -56,11 +56,11 @@ TEST(Bands, AreNotSeenInFireflies) {
 }
 
 TEST(Bands, AreNotSeenInRestoredStructure) {
-    const NoisyPicture noisy = Large();
+    const Halves noisy = Large();
     const Planes grey(kWidth, kHeight, 3, 0.3f), variance(kWidth, kHeight, 3, 0.01f);
     Halves whole{grey, grey}, part{Crop(grey, kPart), Crop(grey, kPart)};
-    RestoreStructure(noisy.colour, variance, &whole);
-    RestoreStructure(Crop(noisy.colour, kPart), Crop(variance, kPart), &part);
+    RestoreStructure(noisy, variance, &whole);
+    RestoreStructure(Crop(noisy, kPart), Crop(variance, kPart), &part);
     const ImageTile middle = Middle(3 * (kStructureReach + 2));
     EXPECT_EQ(Crop(whole.a, middle).values, Crop(part.a, middle.In(kPart)).values);
     EXPECT_NE(Crop(whole.a, middle).values, Crop(grey, middle).values);
@@ -68,15 +68,15 @@ TEST(Bands, AreNotSeenInRestoredStructure) {
 
 // Both as it is and as it is shown.
 TEST(Bands, AreNotSeenInErrors) {
-    const ImageTile tile{0, 0, 60, 270};
-    const NoisyPicture large = Large();
-    const NoisyPicture tall{Crop(large.colour, tile), Crop(large.features, tile),
-                            Crop(large.variance, tile)};
+    constexpr int kNarrow = 24, kTall = 262;  // rows for two bands
+    const Planes features = FlatFeatures(kNarrow, kTall);
+    const NoisyPicture tall{Large(kNarrow, kTall), Filtered({features, features}),
+                            Planes(kNarrow, kTall, 1, 0.005f)};
     const DenoisedPicture denoised = Denoise(tall);
     const Grading dark = [](std::span<float> rgb) {
         for (float& v : rgb) v *= 0.3f;
     };
-    const PixelRect blocks[] = {{{0, 0}, {40, 100}}, {{10, 120}, {60, 260}}};
+    const PixelRect blocks[] = {{{0, 0}, {16, 100}}, {{4, 120}, {24, 260}}};
     for (const Grading& grading : {Grading(), dark}) {
         const DenoiserResult result = RunDenoiser(tall, blocks, {.gradings = {grading}});
         EXPECT_EQ(result.rgb, Interleaved(denoised.picture));

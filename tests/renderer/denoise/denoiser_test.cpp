@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "tests/renderer/denoise/example_pictures.h"
 
 namespace lull {
@@ -46,9 +44,7 @@ TEST(RunDenoiser, IsQuickWhereAskedTo) {
 // Two lamps of which each sample finds one: their noise cancels out in the sum.
 GroupedPicture OppositeLamps(const Planes& features) {
     return {2, features, Planes(40, 30, 1, 1e-10f), [](int group) {
-                NoisyPicture light =
-                    AddNoise(Planes(40, 30, 3, 0.5f), FlatFeatures(40, 30), 0.1, 1);
-                light.features = {};
+                NoisyPicture light{NoisyHalves(Planes(40, 30, 3, 0.5f), 0.1, 1), {}, {}, {}};
                 for (Planes* half : {&light.colour.a, &light.colour.b})
                     for (float& v : half->values) v = group == 0 ? v : 1 - v;
                 return light;
@@ -79,11 +75,9 @@ TEST(RunDenoiser, AddsUpGroupsAndTakesTheLargestError) {
 // The picture can be noisy where no group is.
 TEST(RunDenoiser, HeedsTheErrorOfTheSumOfGroups) {
     const PixelRect block{{0, 0}, {40, 30}};
-    const GroupedPicture lamps{8, NoisyExample().features, {}, [](int) {
-                                   NoisyPicture light = AddNoise(Planes(40, 30, 3, 0.1f),
-                                                                 FlatFeatures(40, 30), 0.02, 1);
-                                   light.features = {};
-                                   return light;
+    const GroupedPicture lamps{4, NoisyExample().features, {}, [](int) {
+                                   const Planes dark(40, 30, 3, 0.1f);
+                                   return NoisyPicture{NoisyHalves(dark, 0.02, 1), {}, {}, {}};
                                }};
     NoisyPicture one = lamps.light(0);
     one.features = lamps.features;
@@ -94,16 +88,18 @@ TEST(RunDenoiser, HeedsTheErrorOfTheSumOfGroups) {
 // One pixel of one half, as other programs leave them: the picture keeps its look, and the error
 // says that this may be wrong.
 TEST(Denoiser, DoesNotCallAnExtremePixelClean) {
+    const int width = 60, height = 50;
+    const PixelRect block{{0, 0}, {width, height}};
+    const NoisyPicture calm =
+        AddNoise(Planes(width, height, 3, 0.3f), FlatFeatures(width, height), 0.02, 1);
+    const double usual = RunDenoiser(calm, {&block, 1}).blocks[0]->upper;
     for (const float extreme : {1e4f, 1e6f}) {
-        const Planes truth = MakePlanes(120, 100, 3, [](int, int, int) { return 0.3; });
-        NoisyPicture calm = AddNoise(truth, FlatFeatures(120, 100), 0.02, 1), picture = calm;
-        for (int c = 0; c < 3; ++c) picture.colour.a.Row(c, 40)[60] = extreme;
-        const std::array<PixelRect, 1> block = {{{{0, 0}, {120, 100}}}};
-        const DenoiserResult result = RunDenoiser(std::move(picture), block);
+        NoisyPicture picture = calm;
+        for (int c = 0; c < 3; ++c) picture.colour.a.Row(c, 20)[30] = extreme;
+        const DenoiserResult result = RunDenoiser(std::move(picture), {&block, 1});
         for (const float v : result.rgb) EXPECT_LT(v, 0.6f);
-        const double usual = RunDenoiser(std::move(calm), block).blocks[0]->upper;
         EXPECT_GT(result.blocks[0]->upper, usual + 2) << extreme;
-        EXPECT_GT(result.deviation[40 * 120 + 60], 5);
+        EXPECT_GT(result.deviation[20 * width + 30], 5);
     }
 }
 

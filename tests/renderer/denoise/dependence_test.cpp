@@ -122,7 +122,7 @@ TEST(Dependence, IsSeenInSamplesThatBothHave) {
 TEST(Dependence, IsNotLookedForInTinyPictures) {
     for (const int size : {1, 2, 17, 40}) {
         const Planes truth(size, size, 3, 0.4f);
-        EXPECT_EQ(DependenceOf(AddNoise(truth, FlatFeatures(size, size), 0.1, 1).colour), "");
+        EXPECT_EQ(DependenceOf(NoisyHalves(truth, 0.1, 1)), "");
     }
 }
 

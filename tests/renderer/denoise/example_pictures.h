@@ -37,13 +37,31 @@ inline Planes Filtered(const Halves& features) {
 }
 
 // Returns `truth` with Gaussian noise of this deviation in each half.
-inline NoisyPicture AddNoise(const Planes& truth, const Planes& features, double deviation,
-                             unsigned seed) {
+inline Halves NoisyHalves(const Planes& truth, double deviation, unsigned seed) {
     std::mt19937 generator(seed);
     std::normal_distribution<double> gauss;  // its own deviation has to be above 0
-    NoisyPicture noisy{{truth, truth}, Filtered({features, features}), {}, {}};
-    for (Planes* half : {&noisy.colour.a, &noisy.colour.b})
+    Halves noisy{truth, truth};
+    for (Planes* half : {&noisy.a, &noisy.b})
         for (float& v : half->values) v = std::max(0.f, v + float(deviation * gauss(generator)));
+    return noisy;
+}
+
+// Returns the same with features, which it filters: that takes much longer than the noise.
+inline NoisyPicture AddNoise(const Planes& truth, const Planes& features, double deviation,
+                             unsigned seed) {
+    return {NoisyHalves(truth, deviation, seed), Filtered({features, features}), {}, {}};
+}
+
+// Returns a grey picture of 110 x 50 pixels whose left half has no noise; there is much right of
+// x = 60.
+inline NoisyPicture NoiseOnTheRight() {
+    const Planes truth(110, 50, 3, 0.3f);
+    NoisyPicture noisy = AddNoise(truth, FlatFeatures(110, 50), 0, 1);
+    const Halves more = NoisyHalves(truth, 0.2, 2);
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < 50; ++y)
+            for (const auto half : {&Halves::a, &Halves::b})
+                std::copy_n((more.*half).Row(c, y) + 60, 50, (noisy.colour.*half).Row(c, y) + 60);
     return noisy;
 }
 

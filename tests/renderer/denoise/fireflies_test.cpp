@@ -12,7 +12,7 @@ Planes Grey(double value) {
 }
 
 TEST(Fireflies, AreTakenAndGivenBack) {
-    Halves halves = AddNoise(Grey(0.3), FlatFeatures(120, 100), 0.05, 1).colour;
+    Halves halves = NoisyHalves(Grey(0.3), 0.05, 1);
     for (int c = 0; c < 3; ++c) halves.a.Row(c, 40)[60] = 500;
     const std::vector<Firefly> fireflies = TakeFireflies(8, &halves);
     EXPECT_LT(halves.a.Row(1, 40)[60], 1.5f);
@@ -31,7 +31,7 @@ TEST(Fireflies, AreTakenAndGivenBack) {
 }
 
 TEST(Fireflies, AreNotWhatBothHalvesSee) {
-    Halves halves = AddNoise(Grey(0.3), FlatFeatures(120, 100), 0.05, 2).colour;
+    Halves halves = NoisyHalves(Grey(0.3), 0.05, 2);
     Planes &a = halves.a, &b = halves.b;
     for (int c = 0; c < 3; ++c) {
         a.Row(c, 40)[60] = 500, b.Row(c, 40)[60] = 499.8f;
@@ -46,7 +46,7 @@ TEST(Fireflies, AreNotWhatBothHalvesSee) {
 
 // Their noise is that of how often each half has met them.
 TEST(Fireflies, AreNotLampsOfAPixel) {
-    Halves halves = AddNoise(Grey(0.03), FlatFeatures(120, 100), 0.001, 3).colour;
+    Halves halves = NoisyHalves(Grey(0.03), 0.001, 3);
     const auto set = [&](int x, float a, float b) {
         for (int c = 0; c < 3; ++c) halves.a.Row(c, 40)[x] = a, halves.b.Row(c, 40)[x] = b;
     };

@@ -31,7 +31,7 @@ TEST(Structure, IsNotFoundInNoise) {
     std::mt19937 generator(1);
     std::uniform_real_distribution<double> uniform;
     for (const double noise : {0.3, 0.05, 0.005}) {
-        Halves noisy = AddNoise(truth, FlatFeatures(kWidth, kHeight), noise, 1).colour;
+        Halves noisy = NoisyHalves(truth, noise, 1);
         for (Planes* half : {&noisy.a, &noisy.b})  // as in dark parts noise is cut at 0
             for (size_t i = 0; i < half->values.size(); ++i)
                 if (truth.values[i] < 0.1f) half->values[i] = truth.values[i];
@@ -59,7 +59,7 @@ TEST(Structure, IsGivenBack) {
     const Planes truth = MakePlanes(kWidth, kHeight, 3,
                                     [&](int, int x, int y) { return isPattern(x, y) ? 0.2 : 0.3; });
     const double noise = 0.05;
-    const Halves noisy = AddNoise(truth, FlatFeatures(kWidth, kHeight), noise, 2).colour;
+    const Halves noisy = NoisyHalves(truth, noise, 2);
     Halves picture{flat, flat};
     const Planes before = StructureLeft(noisy, Variance(truth, noise), picture);
     EXPECT_NEAR(double(before.Row(0, 96)[106]), LightnessOf(0.2) - LightnessOf(0.3), 3);
@@ -127,8 +127,8 @@ TEST(Structure, AndErrorsHaveTheSameBitsInAnyBand) {
     const double noise = 0.05;
     DenoisedPicture tall;
     tall.picture = flat;
-    tall.noisy = AddNoise(truth, FlatFeatures(width, height), noise, 2).colour;
-    tall.halves = AddNoise(flat, FlatFeatures(width, height), noise / 10, 3).colour;
+    tall.noisy = NoisyHalves(truth, noise, 2);
+    tall.halves = NoisyHalves(flat, noise / 10, 3);
     tall.variance = Variance(truth, noise);
     tall.returned = Planes(width, height, 1, 0.01f);
     const ImageTile rows{0, above, width, below};

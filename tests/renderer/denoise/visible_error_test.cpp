@@ -70,33 +70,25 @@ TEST(VisibleError, CountsALineThatIsMissing) {
 // the doubt about its light stays.
 TEST(VisibleError, IsNotThatOfOnePathWhichIsTaken) {
     constexpr float kNoise = 0.05f, kPath = 20;
-    const Planes truth(kSide, kSide, 3, 0.3f);
-    NoisyPicture without = AddNoise(truth, FlatFeatures(kSide, kSide), kNoise, 1);
-    without.variance = Planes(kSide, kSide, 1, Sqr(kNoise) / 2);
+    constexpr int kSmall = 60, kMiddle = 30;
+    const Planes truth(kSmall, kSmall, 3, 0.3f);
+    NoisyPicture without = AddNoise(truth, FlatFeatures(kSmall, kSmall), kNoise, 1);
+    without.variance = Planes(kSmall, kSmall, 1, Sqr(kNoise) / 2);
     NoisyPicture with = without;
-    for (int c = 0; c < 3; ++c) with.colour.a.Row(c, 60)[60] += kPath;
-    with.variance.Row(0, 60)[60] = Sqr(kPath / 2);
+    for (int c = 0; c < 3; ++c) with.colour.a.Row(c, kMiddle)[kMiddle] += kPath;
+    with.variance.Row(0, kMiddle)[kMiddle] = Sqr(kPath / 2);
     const DenoisedPicture denoised = Denoise(with);
     EXPECT_LT(ErrorOf(denoised).upper, 1.3 * ErrorOf(Denoise(without)).upper);
-    EXPECT_GT(denoised.returned.Row(0, 60)[60], 0.5 * kPath / 2 / (81 * 81));
-    EXPECT_LT(denoised.variance.Row(0, 60)[60], 0.1f);
+    EXPECT_GT(denoised.returned.Row(0, kMiddle)[kMiddle], 0.5 * kPath / 2 / (81 * 81));
+    EXPECT_LT(denoised.variance.Row(0, kMiddle)[kMiddle], 0.1f);
 }
 
 // Of two halves of a picture the noisy one has the error.
 TEST(VisibleError, IsThatOfTheBlock) {
-    const Planes truth(200, 100, 3, 0.3f);
-    NoisyPicture noisy = AddNoise(truth, FlatFeatures(200, 100), 0, 1);
-    const NoisyPicture more = AddNoise(truth, FlatFeatures(200, 100), 0.2, 2);
-    for (int c = 0; c < 3; ++c)
-        for (int y = 0; y < 100; ++y)
-            for (int x = 120; x < 200; ++x) {
-                noisy.colour.a.Row(c, y)[x] = more.colour.a.Row(c, y)[x];
-                noisy.colour.b.Row(c, y)[x] = more.colour.b.Row(c, y)[x];
-            }
-    const DenoisedPicture denoised = Denoise(noisy);
+    const DenoisedPicture denoised = Denoise(NoiseOnTheRight());
     const EstimatedError error = MeasureError(denoised);
-    EXPECT_LT(MeasureVisibleError(denoised, error, Whole(100)).upper, 0.1);
-    EXPECT_GT(MeasureVisibleError(denoised, error, {{120, 0}, {200, 100}}).upper, 0.3);
+    EXPECT_LT(MeasureVisibleError(denoised, error, Whole(50)).upper, 0.1);
+    EXPECT_GT(MeasureVisibleError(denoised, error, {{60, 0}, {110, 50}}).upper, 0.3);
 }
 
 }  // namespace

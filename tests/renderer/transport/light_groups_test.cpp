@@ -123,23 +123,23 @@ TEST(GroupRadiance, AddsUpToThatOfTheSample) {
         }
 }
 
-// Mean over all pixels of what a function makes of samples, and the standard error.
-struct Mean {
-    double mean, error;
+// Means over all pixels of what a function makes of samples, and the standard errors.
+struct Means {
+    Eigen::Array3d mean, error;
 };
 
 template <typename Take>
-Mean MeanOf(const Take& take) {
+Means MeansOf(const Take& take) {
     constexpr int kSamples = 64 * 600;
-    double sum = 0, squares = 0;
+    Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = sum;
     Sampler sampler(SamplerKind::Random, 7);
     for (int i = 0; i < kSamples; ++i) {
-        const double value = take(sampler, Vec2i(i % 8, i / 8 % 8), uint32_t(i / 64));
-        sum += value;
-        squares += value * value;
+        const Eigen::Array3d values = take(sampler, Vec2i(i % 8, i / 8 % 8), uint32_t(i / 64));
+        sum += values;
+        squares += values.square();
     }
-    const double mean = sum / kSamples;
-    return {mean, std::sqrt((squares / kSamples - mean * mean) / kSamples)};
+    const Eigen::Array3d mean = sum / kSamples;
+    return {mean, ((squares / kSamples - mean.square()) / kSamples).sqrt()};
 }
 
 TEST(GroupRadiance, IsThatOfTheSceneWithItsLightsAlone) {
@@ -147,19 +147,21 @@ TEST(GroupRadiance, IsThatOfTheSceneWithItsLightsAlone) {
         for (const Estimator estimator : kBothEstimators) {
             const GroupedScene all(RoomText(room.things, {}, room.integrator));
             const Lit alone[] = {{true, false, false}, {false, false, true}, {false, true, false}};
-            for (size_t g = 0; g < 3; ++g) {
+            GroupRadiance groups(all.groups);
+            const Means ofGroups = MeansOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
+                RenderSample(*all.scene, estimator, sampler, p, k, {.groups = &groups});
+                const auto of = [&](size_t g) { return double(Luminance(groups.All()[g])); };
+                return Eigen::Array3d(of(0), of(1), of(2));
+            });
+            for (int g = 0; g < 3; ++g) {
                 const GroupedScene one(RoomText(room.things, alone[g], room.integrator));
-                GroupRadiance groups(all.groups);
-                const Mean group = MeanOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
-                    RenderSample(*all.scene, estimator, sampler, p, k, {.groups = &groups});
-                    return double(Luminance(groups.All()[g]));
+                const Means own = MeansOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
+                    const Rgb L = RenderSample(*one.scene, estimator, sampler, p, k).radiance;
+                    return Eigen::Array3d::Constant(double(Luminance(L)));
                 });
-                const Mean own = MeanOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
-                    return double(
-                        Luminance(RenderSample(*one.scene, estimator, sampler, p, k).radiance));
-                });
-                EXPECT_GT(own.mean, 0);
-                EXPECT_NEAR(group.mean, own.mean, 4.5 * std::hypot(group.error, own.error))
+                EXPECT_GT(own.mean[g], 0);
+                EXPECT_NEAR(ofGroups.mean[g], own.mean[g],
+                            4.5 * std::hypot(ofGroups.error[g], own.error[g]))
                     << room.integrator << " " << g;
             }
         }

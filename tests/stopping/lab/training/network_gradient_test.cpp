@@ -105,9 +105,9 @@ TEST(NetworkGradient, RunsTheNetworkAsRulesDo) {
 
 // Large enough that products are split among threads.
 TEST(NetworkGradient, IsTheSameOnAnyNumberOfThreads) {
-    const NetworkShape shape{.inputs = 100, .steps = 2, .lstm = {512, 64}};
+    const NetworkShape shape{.inputs = 200, .steps = 2, .lstm = {256, 64}};
     const NetworkWeights<float> weights = InitialWeights(shape, 5);
-    const SampleBatch<float> batch = MakeBatch<float>(shape, 32, true, 2);
+    const SampleBatch<float> batch = MakeBatch<float>(shape, 64, true, 2);
     std::vector<NetworkWeights<float>> gradients(3, ZerosLike(weights));
     for (int i = 0; i < 3; ++i)
         RunWithThreads(i == 2 ? 8 : i + 1,

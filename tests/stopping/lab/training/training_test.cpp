@@ -163,8 +163,8 @@ TEST(Trainer, RefusesWhatCannotBeLearned) {
     TrainingSamples same = data.samples;
     std::fill(same.noisy.begin(), same.noisy.end(), char(1));
     EXPECT_THROW(Trainer(same, SmallOptions()), std::invalid_argument);
-    EXPECT_THROW(Trainer(data.samples, {.batch = 0}), std::invalid_argument);
-    EXPECT_THROW(Trainer(data.samples, {.dropout = 1}), std::invalid_argument);
+    EXPECT_THROW(Trainer(data.samples, {.units = {4}, .batch = 0}), std::invalid_argument);
+    EXPECT_THROW(Trainer(data.samples, {.units = {4}, .dropout = 1}), std::invalid_argument);
     EXPECT_THROW(Trainer(data.samples, {.units = {0}}), std::invalid_argument);
 
     TrainingOptions wild = SmallOptions();

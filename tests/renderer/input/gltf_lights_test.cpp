@@ -1,0 +1,121 @@
+// Checks lights of glTF files.
+#include "tests/renderer/input/gltf_files.h"
+
+namespace lull::gltf_lights_test {
+namespace {
+
+const GltfFolder kFolder;
+
+TEST(GltfLights, AreTakenFromPhotometricUnits) {
+    GltfFile file;
+    file.root["extensions"] = {
+        {"KHR_lights_punctual",
+         {{"lights",
+           {{{"type", "point"}, {"intensity", 683}, {"color", {1, 0.5, 0}}},
+            {{"type", "directional"}, {"intensity", 1366}},
+            {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}}}}}}};
+    for (int i = 0; i < 3; ++i)
+        file.Node(
+            {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}, {"scale", {3, 3, 3}}});
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.lights.size(), 3u);
+    EXPECT_TRUE(d.lights[0].parameters.GetSpectrum("I", Rgb::Zero()).isApprox(Rgb(1, 0.5f, 0)));
+    EXPECT_EQ(d.lights[1].name, "distant");
+    EXPECT_TRUE(d.lights[1].parameters.GetSpectrum("L", Rgb::Zero()).isApprox(Rgb(2, 2, 2)));
+    EXPECT_EQ(d.lights[2].name, "spot-squared");
+    EXPECT_NEAR(d.lights[2].parameters.GetFloat("coneangle", 0), 0.5 * 180 / kPi, 1e-4);
+    EXPECT_NEAR(d.lights[2].parameters.GetFloat("conedeltaangle", 0), 0.3 * 180 / kPi, 1e-4);
+}
+
+// What exporters write for cones with sharp edges, and up to half of the sphere.
+TEST(GltfLights, HaveConesUpToRounding) {
+    const auto cone = [](const json& spot) {
+        GltfFile file;
+        file.root["extensions"] = {
+            {"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", spot}}}}}}};
+        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        return file;
+    };
+    const auto angles = [&](double inner, double outer) {
+        const json spot = {{"innerConeAngle", inner}, {"outerConeAngle", outer}};
+        const Parameters light = kFolder.Parse(cone(spot)).lights.at(0).parameters;
+        return std::pair(light.GetFloat("coneangle", 0), light.GetFloat("conedeltaangle", -1));
+    };
+    EXPECT_EQ(angles(0, double(1.57079637f)), std::pair(90.f, 90.f));
+    EXPECT_EQ(angles(0, 1.5708), std::pair(90.f, 90.f));  // with six digits
+    EXPECT_EQ(angles(0.5, 0.5).second, 0);
+    EXPECT_EQ(angles(0.7, double(0.7f)).second, 0);
+    EXPECT_EQ(angles(-1e-9, 0.5).second, angles(0, 0.5).second);
+    for (const auto& [inner, outer] : {std::pair(0., 1.58), {0.6, 0.5}, {-0.1, 0.5}, {0., 0.}})
+        EXPECT_NE(kFolder.ErrorOf(cone({{"innerConeAngle", inner}, {"outerConeAngle", outer}}))
+                      .find("the cone's angles are"),
+                  std::string::npos)
+            << inner << " " << outer;
+}
+
+TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.root["extensions"] = {
+        {"KHR_lights_punctual",
+         {{"lights",
+           {{{"type", "point"}, {"intensity", 683}, {"extras", {{"lull", {{"radius", 0.5}}}}}},
+            {{"type", "point"}, {"extras", {{"lull", {{"radius", 0}}}}}}}}}}};
+    for (int i = 0; i < 2; ++i)
+        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}},
+                   {"translation", {1, 2, 3}},
+                   {"scale", {3, 3, 3}}});
+    const Description d = kFolder.Parse(file);
+    EXPECT_EQ(d.lights.size(), 1u);
+    ASSERT_EQ(d.shapes.size(), 2u);
+    const ShapeEntity& sphere = d.shapes[1];
+    EXPECT_EQ(sphere.name, "sphere");
+    EXPECT_EQ(sphere.parameters.GetFloat("radius", 0), 0.5f);
+    EXPECT_TRUE(TransformPoint(sphere.worldFromObject, {0, 0.5f, 0}).isApprox(Vec3f(1, 2.5f, 3)));
+    ASSERT_TRUE(sphere.areaLight);
+    // A watt per steradian, seen as a disk of that radius.
+    EXPECT_TRUE(sphere.areaLight->parameters.GetSpectrum("L", Rgb::Zero())
+                    .isApprox(Rgb::Constant(4 / kPi)));
+}
+
+TEST(GltfLights, HaveAnAngleOfOurOwn) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    const auto parse = [&](double angle) {
+        file.root["extensions"] = {
+            {"KHR_lights_punctual",
+             {{"lights",
+               {{{"type", "directional"}, {"extras", {{"lull", {{"angle", angle}}}}}}}}}}};
+        return kFolder.Parse(file);
+    };
+    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const Description d = parse(double(kPi) / 180);
+    ASSERT_EQ(d.lights.size(), 1u);
+    EXPECT_NEAR(d.lights[0].parameters.GetFloat("angle", 0), 1, 1e-6);
+    EXPECT_EQ(parse(0).lights[0].parameters.GetFloat("angle", -1), -1);
+    EXPECT_TRUE(Contains(ErrorOf([&] { parse(-1); }), "its angle is -1"));
+}
+
+TEST(GltfLights, AreNamedByTheNodeOrTheLight) {
+    GltfFile file;
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.root["extensions"] = {
+        {"KHR_lights_punctual",
+         {{"lights",
+           {{{"type", "point"}, {"name", "bulb"}},
+            {{"type", "point"}, {"name", "ball"}, {"extras", {{"lull", {{"radius", 0.5}}}}}}}}}}};
+    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.Node({{"name", "lamp"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.lights.size(), 2u);
+    EXPECT_EQ(d.lights[0].label, "bulb");
+    EXPECT_EQ(d.lights[1].label, "lamp");
+    ASSERT_EQ(d.shapes.size(), 1u);
+    EXPECT_EQ(d.shapes[0].label, "ball");
+}
+
+}  // namespace
+}  // namespace lull::gltf_lights_test

@@ -1,0 +1,248 @@
+// Checks materials of glTF files, and their variants.
+#include "tests/renderer/input/gltf_files.h"
+
+namespace lull::gltf_materials_test {
+namespace {
+
+const GltfFolder kFolder;
+
+TEST(GltfMaterials, HaveFactorsUpToRounding) {
+    GltfFile file;
+    const auto material = [&](const json& extensions) {
+        file.root["materials"] = {{{"extensions", extensions}}};
+        file.root["meshes"][0]["primitives"][0]["material"] = 0;
+        return kFolder.ErrorOf(file);
+    };
+    file.Node({{"mesh", file.Triangle()}});
+    const double above = 1.0000001192;  // the float after 1
+    EXPECT_EQ(material({{"KHR_materials_sheen", {{"sheenColorFactor", {above, 1, 0}}}}}), "");
+    EXPECT_EQ(material({{"KHR_materials_anisotropy", {{"anisotropyStrength", above}}}}), "");
+    EXPECT_EQ(material({{"KHR_materials_volume", {{"attenuationColor", {above, -1e-9, 0}}}}}), "");
+    EXPECT_NE(material({{"KHR_materials_sheen", {{"sheenColorFactor", {1.01, 1, 0}}}}}), "");
+}
+
+TEST(GltfMaterials, MayAddTheInterfaceToTheBase) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    const auto adds = [&](const nlohmann::json& value) {
+        file.root["materials"] = {{{"extras", {{"lull", {{"addedInterface", value}}}}}}};
+        return kFolder.Parse(file).materials.at(0).parameters.GetBool("addedinterface", false);
+    };
+    EXPECT_TRUE(adds(true));
+    EXPECT_FALSE(adds(false));
+    file.root["materials"][0]["extras"]["lull"]["addedInterface"] = 1;
+    EXPECT_EQ(kFolder.ErrorOf(file),
+              "scene.gltf: /materials/0/extras/lull/addedInterface: has to be true or false");
+}
+
+TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
+    GltfFile file;
+    file.root["images"] = {{{"uri", "a%20b.png"}}};
+    file.root["samplers"] = {{{"wrapS", 33648}, {"wrapT", 33071}, {"magFilter", 9728}}};
+    file.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.root["materials"] = {
+        {{"pbrMetallicRoughness",
+          {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}},
+           {"baseColorTexture",
+            {{"index", 0},
+             {"texCoord", 1},
+             {"extensions", {{"KHR_texture_transform", {{"offset", {0.25, 0.5}}}}}}}},
+           {"metallicFactor", 0}}},
+         {"alphaMode", "MASK"},
+         {"alphaCutoff", 0.25},
+         {"extensions",
+          {{"KHR_materials_ior", {{"ior", 1.3}}},
+           {"KHR_materials_transmission", {{"transmissionFactor", 0.75}}}}}}};
+    file.root["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_iridescence"};
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    Warnings warnings;
+    const Description d = kFolder.Parse(file, {}, &warnings);
+    // Of iridescence, of a sheet that transmits, and of how both textures are filtered.
+    EXPECT_EQ(warnings.Total(), 4);
+    ASSERT_EQ(d.materials.size(), 1u);
+    const Parameters& m = d.materials[0].parameters;
+    EXPECT_EQ(d.materials[0].name, "metallicroughness");
+    EXPECT_TRUE(m.GetSpectrum("basecolorfactor", Rgb::Zero()).isApprox(Rgb(0.1f, 0.2f, 0.3f)));
+    EXPECT_EQ(m.GetInt("basecoloruv", 0), 1);
+    EXPECT_EQ(m.GetFloat("metallicfactor", 1), 0);
+    EXPECT_NEAR(m.GetFloat("ior", 0), 1.3, 1e-6);
+    EXPECT_NEAR(m.GetFloat("transmissionfactor", 0), 0.75, 1e-6);
+    ASSERT_EQ(d.textures.size(), 2u);  // its colours and its alpha
+    const TextureEntity& texture = d.textures[0];
+    EXPECT_EQ(texture.parameters.GetString("filename", ""), "a b.png");
+    EXPECT_EQ(texture.parameters.GetString("wrap", ""), "mirrored");
+    EXPECT_EQ(texture.parameters.GetString("wrapt", ""), "clamp");
+    // v turned round twice: a shift downwards by a half.
+    ExpectNear(FloatsOf(texture, ParameterType::Float, "uvtransform"), {1, 0, 0.25f, 0, 1, -0.5f},
+               0);
+    EXPECT_NEAR(d.shapes[0].parameters.GetFloat("coveragefactor", 0), 0.4, 1e-6);
+    EXPECT_NEAR(d.shapes[0].parameters.GetFloat("alphacutoff", 0), 0.25, 1e-6);
+    EXPECT_EQ(d.textures[1].parameters.GetString("channel", ""), "alpha");
+}
+
+TEST(GltfMaterials, AreSolidByVolumeOrByWish) {
+    for (const double thickness : {0., 0.5})
+        for (const bool wish : {false, true}) {
+            GltfFile file;
+            file.root["materials"] = {
+                {{"extensions",
+                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                   {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}}};
+            file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+            Warnings warnings;
+            const Description d = kFolder.Parse(file, {.solidGlass = wish}, &warnings);
+            const bool isSolid = thickness > 0 || wish;
+            EXPECT_EQ(d.materials.at(0).parameters.GetBool("solid", false), isSolid);
+            EXPECT_EQ(warnings.Total(), isSolid ? 0 : 1);
+        }
+}
+
+// A tenth of the light is left after half a unit; blue passes, green does not.
+TEST(GltfMaterials, AbsorbInTheirVolume) {
+    GltfFile file;
+    file.root["materials"] = {{{"extensions",
+                                {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                 {"KHR_materials_volume",
+                                  {{"thicknessFactor", 1},
+                                   {"attenuationDistance", 0.5},
+                                   {"attenuationColor", {0.1, 0, 1}}}}}}}};
+    file.root["extensionsRequired"] = {"KHR_materials_volume"};
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    Warnings warnings;
+    const Description d = kFolder.Parse(file, {}, &warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    ASSERT_EQ(d.media.size(), 1u);
+    const Rgb absorption = d.media[0].parameters.GetSpectrum("sigma_a", Rgb::Zero());
+    EXPECT_NEAR(absorption.x(), 2 * std::log(10), 1e-5);
+    EXPECT_GT(absorption.y(), 1e20f);
+    EXPECT_EQ(absorption.z(), 0);
+    EXPECT_TRUE(IsBlack(d.media[0].parameters.GetSpectrum("sigma_s", Rgb::Ones())));
+    EXPECT_EQ(d.shapes.at(0).insideMedium, 0);
+    EXPECT_EQ(d.shapes.at(0).outsideMedium, -1);
+    EXPECT_TRUE(IntegratorSeesMedia(d.integrator.name));
+
+    // A sheet has no inside, what is opaque or clear no need of one.
+    const auto& material = json::json_pointer("/materials/0/extensions");
+    for (const json& change :
+         {json{{"KHR_materials_volume", {{"thicknessFactor", 0}}}},
+          json{{"KHR_materials_transmission", {{"transmissionFactor", 0}}}},
+          json{{"KHR_materials_volume", {{"attenuationColor", {1, 1, 1}}}}},
+          json{{"KHR_materials_volume", {{"attenuationDistance", nullptr}}}}}) {
+        GltfFile other = file;
+        other.root[material].merge_patch(change);
+        const Description none = kFolder.Parse(other);
+        EXPECT_TRUE(none.media.empty()) << change;
+        EXPECT_EQ(none.shapes.at(0).insideMedium, -1);
+        EXPECT_EQ(none.integrator.name, "path");
+    }
+}
+
+TEST(GltfMaterials, CarrySheenAndAnisotropy) {
+    GltfFile file;
+    file.root["images"] = {{{"uri", "a.png"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    file.root["materials"] = {{{"extensions",
+                                {{"KHR_materials_sheen",
+                                  {{"sheenColorFactor", {0.5, 0.25, 1}},
+                                   {"sheenRoughnessFactor", 0.75},
+                                   {"sheenRoughnessTexture", {{"index", 0}}}}},
+                                 {"KHR_materials_anisotropy",
+                                  {{"anisotropyStrength", 0.5},
+                                   {"anisotropyRotation", 1.5},
+                                   {"anisotropyTexture", {{"index", 0}, {"texCoord", 1}}}}}}}}};
+    file.root["extensionsRequired"] = {"KHR_materials_sheen", "KHR_materials_anisotropy"};
+    const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const int n = file.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    const int uv = file.Floats({0, 0, 0, 1, 1, 0}, "VEC2");
+    file.Node({{"mesh", file.Mesh({{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_1", uv}},
+                                  {{"material", 0}})}});
+    const Description d = kFolder.Parse(file);
+    const Parameters& m = d.materials.at(0).parameters;
+    EXPECT_TRUE(m.GetSpectrum("sheencolorfactor", Rgb::Zero()).isApprox(Rgb(0.5f, 0.25f, 1)));
+    EXPECT_EQ(m.GetFloat("sheenroughnessfactor", 0), 0.75f);
+    EXPECT_EQ(m.GetFloat("anisotropyfactor", 0), 0.5f);
+    EXPECT_EQ(m.GetFloat("anisotropyrotation", 0), 1.5f);
+    EXPECT_EQ(m.GetInt("anisotropyuv", 0), 1);
+    ASSERT_TRUE(m.GetTexture("sheenroughness"));
+    const int roughness = m.GetTexture("sheenroughness")->floatIndex;
+    EXPECT_EQ(d.textures.at(size_t(roughness)).parameters.GetString("channel", ""), "alpha");
+    // The first texture coordinate grows along y; no tangents came with the mesh.
+    const auto tangents = FloatsOf(d.shapes.at(0), ParameterType::Float, "tangent");
+    ASSERT_EQ(tangents.size(), 12u);
+    EXPECT_NEAR(tangents[1], 1, 1e-6);
+}
+
+TEST(GltfMaterials, CarryDiffuseTransmission) {
+    GltfFile file;
+    file.root["materials"] = {{{"extensions",
+                                {{"KHR_materials_diffuse_transmission",
+                                  {{"diffuseTransmissionFactor", 0.5},
+                                   {"diffuseTransmissionColorFactor", {0.5, 0.25, 1}}}}}}}};
+    file.root["extensionsRequired"] = {"KHR_materials_diffuse_transmission"};
+    const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"material", 0}})}});
+    const Parameters m = kFolder.Parse(file).materials.at(0).parameters;
+    EXPECT_EQ(m.GetFloat("diffusetransmissionfactor", 0), 0.5f);
+    EXPECT_TRUE(
+        m.GetSpectrum("diffusetransmissioncolorfactor", Rgb::Zero()).isApprox(Rgb(0.5f, 0.25f, 1)));
+}
+
+GltfFile WithVariants() {
+    GltfFile file;
+    file.root["materials"] = {{{"name", "white"}}, {{"name", "red"}}, {{"name", "blue"}}};
+    file.root["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "berry"}},
+                                                                     {{"name", "sky"}}};
+    file.root["extensionsRequired"] = {"KHR_materials_variants"};
+    const json mappings = {{{"material", 1}, {"variants", {0}}},
+                           {{"material", 2}, {"variants", {1}}}};
+    file.Node(
+        {{"mesh", file.Triangle(
+                      {{"material", 0},
+                       {"extensions", {{"KHR_materials_variants", {{"mappings", mappings}}}}}})}});
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    return file;
+}
+
+TEST(GltfVariants, ChooseMaterialsByNameOrNumber) {
+    const auto namesOf = [](const std::string& variant) {
+        const Description d = kFolder.Parse(WithVariants(), {.variant = variant});
+        EXPECT_EQ(d.variants, (std::vector<std::string>{"berry", "sky"}));
+        std::vector<std::string> names;
+        for (const ShapeEntity& shape : d.shapes)
+            names.push_back(d.materials.at(size_t(shape.material)).materialName);
+        return names;
+    };
+    EXPECT_EQ(namesOf(""), (std::vector<std::string>{"white", "white"}));
+    for (const char* sky : {"sky", "1"})
+        EXPECT_EQ(namesOf(sky), (std::vector<std::string>{"blue", "white"}));
+    const std::string error = ErrorOf([&] { namesOf("fish"); });
+    EXPECT_NE(error.find("has no variant \"fish\"; it has 0 \"berry\", 1 \"sky\""),
+              std::string::npos)
+        << error;
+    GltfFile plain;
+    plain.Node({{"mesh", plain.Triangle()}});
+    const std::string none = ErrorOf([&] { kFolder.Parse(plain, {.variant = "0"}); });
+    EXPECT_NE(none.find("has no variant \"0\"; it has none"), std::string::npos) << none;
+}
+
+TEST(GltfMaterials, KeepEmbeddedImagesEncoded) {
+    GltfFile file;
+    const std::string png = "\x89PNG and so on";
+    const int view = file.View(png);
+    file.root["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}},
+                           {{"uri", "data:image/jpeg;base64," + Base64("\xff\xd8jpeg")}}};
+    file.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}},
+                               {"emissiveTexture", {{"index", 1}}},
+                               {"normalTexture", {{"index", 0}}}}};
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    const Description d = kFolder.Parse(file);
+    ASSERT_EQ(d.images.size(), 2u);
+    EXPECT_EQ(d.images[0].type, "png");
+    EXPECT_EQ(d.images[0].bytes.size(), png.size());
+    EXPECT_EQ(d.images[1].type, "jpg");
+    EXPECT_NE(d.images[0].name, d.images[1].name);
+}
+
+}  // namespace
+}  // namespace lull::gltf_materials_test
