@@ -74,7 +74,7 @@ TEST(DenoiseOption, WarnsOfHalvesThatDependOnEachOther) {
 // Nothing is said of a stopped block that its threshold contradicts.
 TEST(DenoiseOption, StoppedBlocksHaveTheErrorThatStoppedThem) {
     const BoxDirectory directory;
-    for (const int seed : {1, 6}) {  // the whole picture says 2.8 and 3.2
+    for (const int seed : {1, 6}) {  // the whole picture says 2.2 and 3.2
         const Outcome outcome = ExpectSuccess(
             directory, fmt::format("render scene.pbrt --resolution 60x60 --block 60 --denoise "
                                    "--seed {} -o a.exr --report a.json",
