@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Renders small crops of scenes of this folder, and makes two pictures of the documents in scenes/pictures.
 
-remedies.py LULL [-o FOLDER]: caution.png has one block of cornell by the default rule and by `denoised`, each with three
-thresholds; remedies.jpg has pairs of noise and remedy. A crop that FOLDER (out/remedies) has is not rendered again. Needs
-Pillow (Debian: python3-pil); about four minutes of CPU time.
+remedies.py LULL [-o FOLDER]: caution.png has one block of cornell by the default rule and by `denoised`, each with
+several thresholds; remedies.jpg has pairs of noise and remedy. A crop that FOLDER (out/remedies) has is not rendered again.
+Needs Pillow (Debian: python3-pil); about a minute of CPU time.
 """
 import argparse
 import json
@@ -21,22 +21,21 @@ CORNELL = ["cornell/scene.pbrt", "--resolution", "100x100"]
 DARK = ["dark/scene.pbrt", "--resolution", "200x200", "--crop", "0,0.5,0.5,1", "--spp", "128", "--sampler", "sobol"]
 CAUSTIC = ["caustic/scene.pbrt", "--resolution", "200x200", "--crop", "0.5,1,0.5,1", "--spp", "64", "--sampler", "sobol"]
 GLOSSY = ["glossy/scene.pbrt", "--resolution", "200x200", "--crop", "0.2,0.7,0.5,1"]
-CAUTION = {
-    "ca05": ("--caution 0.5", CORNELL + ["--caution", "0.5"]),
-    "ca1": ("--caution 1 (default)", CORNELL + ["--caution", "1"]),
-    "ca2": ("--caution 2", CORNELL + ["--caution", "2"]),
-    "de6": ("--denoise, denoised:6", CORNELL + ["--denoise", "--stop", "denoised:6"]),
-    "de31": ("--denoise (3.1)", CORNELL + ["--denoise", "--stop", "denoised:3.1"]),
-    "de15": ("--denoise, denoised:1.5", CORNELL + ["--denoise", "--stop", "denoised:1.5"]),
-}
-REMEDIES = {
-    "cz_path": ("caustic, path", CAUSTIC),
-    "dk_off": ("dark, path", DARK),
-    "dn4": ("glossy, --denoise --spp 4", GLOSSY + ["--spp", "4", "--denoise"]),
-    "cz_bdpt": ("--integrator bdpt", CAUSTIC + ["--integrator", "bdpt"]),
-    "dk_on": ("--guide on", DARK + ["--guide", "on"]),
-    "dnstop": ("--denoise", GLOSSY + ["--denoise"]),
-}
+CAUTION = [
+    {"ca05": ("--caution 0.5", CORNELL + ["--caution", "0.5"]),
+     "ca1": ("--caution 1 (default)", CORNELL + ["--caution", "1"])},
+    {"de6": ("--denoise, denoised:6", CORNELL + ["--denoise", "--stop", "denoised:6"]),
+     "de31": ("--denoise (3.1)", CORNELL + ["--denoise", "--stop", "denoised:3.1"]),
+     "de15": ("--denoise, denoised:1.5", CORNELL + ["--denoise", "--stop", "denoised:1.5"])},
+]
+REMEDIES = [
+    {"cz_path": ("caustic, path", CAUSTIC),
+     "dk_off": ("dark, path", DARK),
+     "dn4": ("glossy, --denoise --spp 4", GLOSSY + ["--spp", "4", "--denoise"])},
+    {"cz_bdpt": ("--integrator bdpt", CAUSTIC + ["--integrator", "bdpt"]),
+     "dk_on": ("--guide on", DARK + ["--guide", "on"]),
+     "dnstop": ("--denoise", GLOSSY + ["--denoise"])},
+]
 
 
 def render(lull, name, arguments, folder):
@@ -49,20 +48,21 @@ def render(lull, name, arguments, folder):
     return block["spp"], block["seconds"]
 
 
-def sheet(lull, crops, folder, columns=3):
-    """Lays crops out in rows, each with its title, samples and seconds above."""
+def sheet(lull, rows, folder):
+    """Lays rows of crops out, each crop with its title, samples and seconds above."""
     font = ImageFont.truetype(FONT, 12)
     side = 100 * SCALE
-    rows = -(-len(crops) // columns)
-    picture = Image.new("RGB", (columns * (side + GAP) + GAP, rows * (side + TEXT + GAP) + GAP), PAPER)
+    width, height = (max(map(len, rows)) * (side + GAP) + GAP, len(rows) * (side + TEXT + GAP) + GAP)
+    picture = Image.new("RGB", (width, height), PAPER)
     draw = ImageDraw.Draw(picture)
-    for place, (name, (title, arguments)) in enumerate(crops.items()):
-        spp, seconds = render(lull, name, arguments, folder)
-        x, y = GAP + place % columns * (side + GAP), GAP + place // columns * (side + TEXT + GAP)
-        draw.text((x, y + 2), title, fill=INK, font=font)
-        draw.text((x, y + 19), f"{spp:,} spp, {seconds:.1f} s", fill=INK, font=font)
-        image = Image.open(folder / f"{name}.png").convert("RGB")
-        picture.paste(image.resize((side, side), Image.NEAREST), (x, y + TEXT))
+    for row, crops in enumerate(rows):
+        for column, (name, (title, arguments)) in enumerate(crops.items()):
+            spp, seconds = render(lull, name, arguments, folder)
+            x, y = GAP + column * (side + GAP), GAP + row * (side + TEXT + GAP)
+            draw.text((x, y + 2), title, fill=INK, font=font)
+            draw.text((x, y + 19), f"{spp:,} spp, {seconds:.1f} s", fill=INK, font=font)
+            image = Image.open(folder / f"{name}.png").convert("RGB")
+            picture.paste(image.resize((side, side), Image.NEAREST), (x, y + TEXT))
     return picture
 
 
