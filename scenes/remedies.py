@@ -3,7 +3,7 @@
 
 remedies.py LULL [-o FOLDER]: caution.png has one block of cornell by the default rule and by `denoised`, each with
 several thresholds; remedies.jpg has pairs of noise and remedy. A crop that FOLDER (out/remedies) has is not rendered again.
-Needs Pillow (Debian: python3-pil); about a minute of CPU time.
+Needs Pillow (Debian: python3-pil); about two minutes of CPU time.
 """
 import argparse
 import json
@@ -23,7 +23,8 @@ CAUSTIC = ["caustic/scene.pbrt", "--resolution", "200x200", "--crop", "0.5,1,0.5
 GLOSSY = ["glossy/scene.pbrt", "--resolution", "200x200", "--crop", "0.2,0.7,0.5,1"]
 CAUTION = [
     {"ca05": ("--caution 0.5", CORNELL + ["--caution", "0.5"]),
-     "ca1": ("--caution 1 (default)", CORNELL + ["--caution", "1"])},
+     "ca1": ("--caution 1 (default)", CORNELL + ["--caution", "1"]),
+     "ca2": ("--caution 2", CORNELL + ["--caution", "2"])},
     {"de6": ("--denoise, denoised:6", CORNELL + ["--denoise", "--stop", "denoised:6"]),
      "de31": ("--denoise (3.1)", CORNELL + ["--denoise", "--stop", "denoised:3.1"]),
      "de15": ("--denoise, denoised:1.5", CORNELL + ["--denoise", "--stop", "denoised:1.5"])},
