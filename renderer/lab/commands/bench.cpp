@@ -29,7 +29,7 @@ struct Options {
     RenderSettings render;
     GuideOptions guide;
     std::vector<std::string> samplers;  // none: the usual ones
-    std::vector<std::string> rules;  // beside those that are always measured
+    std::vector<std::string> rules;     // beside those that are always measured
     bool denoise = false;
     DisplayModel display;
     std::string reference, external, output, report;
