@@ -116,8 +116,8 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
         TalkOf(p.request.render)
             .Note(
                 "the denoiser's samples are those of \"sobol-halves\", which has less noise than "
-                "the "
-                "scene's Sampler \"random\"; --sampler random keeps that");
+                "the scene's Sampler \"random\"; --sampler random keeps that");
+    p.render.CheckSampler(provenance->sampler);
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();

@@ -72,6 +72,13 @@ void RenderJob::DenoiseBlocks() {
     denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
 }
 
+void RenderJob::CheckSampler(SamplerKind sampler) const {
+    if (!denoiser || sampler != SamplerKind::Sobol || !Leads()) return;
+    TalkOf(settings).Warn(
+        "the halves of one Sobol sequence complement each other, so that the error of the denoised "
+        "image is underestimated; --sampler sobol-halves has a sequence for each half");
+}
+
 Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) const {
     std::map<std::string, SignalMeasure> measures;
     if (denoiser) measures[kDenoisedRuleName] = MeasureOf(denoiser);

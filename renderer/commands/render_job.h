@@ -44,6 +44,8 @@ class RenderJob {
     void LockCheckpoint();
     // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();
+    // Warns where blocks are denoised from samples whose halves depend on each other.
+    void CheckSampler(SamplerKind) const;
     // Reads a stopping rule that was given with `option`. Throws Error.
     Rule ReadRule(const std::string& option, const std::string& rule) const;
     // Compiles the scene, and sets the provenance; the rule is left to be filled in.

@@ -27,6 +27,9 @@ constexpr float kSeenDoubt = 1.13f;  // times the standard deviation of a sum of
 // scenes (tests/measurements/denoising.md).
 constexpr double kUsual = 1.27;
 constexpr double kUsualDoubt = 0.25;
+// Standard deviation of the logarithm of the true error about its estimate, beyond the variances of
+// the samples and of the usual ratio.
+constexpr double kModelDoubt = 0.2;
 // The bound is not below this fraction of the samples' own bound, because of errors hidden under
 // the noise of unusual pictures.
 constexpr double kTrust = 0.8;
@@ -107,7 +110,8 @@ Belief Together(const Belief& samples, Belief usual) {
     const double both = samples.variance + usual.variance;
     if (both <= 0) return samples;
     const double share = usual.variance / both;  // of the samples
-    return {share * samples.mean + (1 - share) * usual.mean, share * samples.variance};
+    const double mean = share * samples.mean + (1 - share) * usual.mean;
+    return {mean, share * samples.variance + Sqr(2 * kModelDoubt * mean)};
 }
 
 Planes LuminancesOf(const Planes& image) {

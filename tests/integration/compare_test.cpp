@@ -312,7 +312,7 @@ TEST(Bench, DenoisesToo) {
     const SceneDirectory directory;
     ExpectSuccess(directory,
                   "bench scene.pbrt --resolution 48x44 --block 44 --cap 100 "
-                  "--samplers sobol --denoise --rule denoised:20 -o room");
+                  "--samplers sobol-halves --denoise --rule denoised:20 -o room");
     std::map<std::string, double> errors, ruleSeconds;
     std::istringstream lines(ReadBytes(directory.File("room.csv")));
     for (std::string line; std::getline(lines, line);) {

@@ -59,10 +59,22 @@ TEST(DenoiseOption, ImagesHaveWhatTheSamplesSayToo) {
     EXPECT_EQ(clean.at("spp"), plain.at("spp"));
 }
 
+TEST(DenoiseOption, WarnsOfHalvesThatDependOnEachOther) {
+    const BoxDirectory directory;
+    for (const char* sampler : {"sobol", "sobol-halves", "random"}) {
+        const Outcome outcome = ExpectSuccess(
+            directory, fmt::format("render scene.pbrt --resolution 16x16 --spp 4 --denoise "
+                                   "--sampler {} -o a.exr",
+                                   sampler));
+        EXPECT_EQ(Contains(outcome.err, "complement each other"), sampler == std::string("sobol"))
+            << outcome.err;
+    }
+}
+
 // Nothing is said of a stopped block that its threshold contradicts.
 TEST(DenoiseOption, StoppedBlocksHaveTheErrorThatStoppedThem) {
     const BoxDirectory directory;
-    for (const int seed : {1, 6}) {  // the whole picture says 2.8 and 3.2
+    for (const int seed : {1, 6}) {  // the whole picture says 2.2 and 3.2
         const Outcome outcome = ExpectSuccess(
             directory, fmt::format("render scene.pbrt --resolution 60x60 --block 60 --denoise "
                                    "--seed {} -o a.exr --report a.json",

@@ -1,28 +1,32 @@
 """Compares the metric of visible differences with human thresholds.
 
     python3 visible_difference.py sensitivity PROGRAM data_individual.csv    # castleCSF's data: thresholds of single people
-    python3 visible_difference.py blocks PROGRAM FOLDER HUMAN.csv            # the blocks whose recordings people judged
+    python3 visible_difference.py blocks PROGRAM FOLDER HUMAN.csv            # blocks with human thresholds
+    python3 visible_difference.py pooling PROGRAM FOLDER HUMAN.csv           # other exponents of the pooling
 
-PROGRAM is the target `visible_difference`. FOLDER has NAME.exr or NAME-BLOCK.exr of 800x800 pixels or of one block, rendered
-with --denoise --denoise-layers; all else is made from them: the denoised picture stands for that of 10,000 spp, and the noise
-that one of fewer has beside it is drawn from the differences of both halves in the 5x5 pixels around, many times, and scaled
-to the variance v (1 / spp - 1 / 10,000). One number for all blocks, set on the other viewpoints, says where it is seen no more.
+PROGRAM is the target `visible_difference`. FOLDER has VIEWPOINT.exr of 800x800 pixels or VIEWPOINT-BLOCK.exr of 200x200,
+rendered with --denoise --denoise-layers; all else is made from them: the denoised picture stands for that of 10,000 spp, and the
+noise that one of fewer has beside it is drawn from the differences of both halves in the 5x5 pixels around, many times, and
+scaled to the variance v (1 / spp - 1 / 10,000). One number for all blocks, set on the other scenes (the word before the first
+hyphen, so that views of one scene leave together), says where it is seen no more.
 """
 
 import argparse
 import collections
 import csv
 import functools
+import glob
 import itertools
 import os
+import re
 import subprocess
 
 import numpy as np
 
 CAP, PASS, SIDE = 10000, 20, 200
-BLOCKS = {'classroom': [0, 4, 9, 12, 13, 14, 15], 'coffee-splash': range(16), 'living-room': [0, 4, 5, 7, 9, 13, 14, 15],
-          'staircase2': range(16)}
 LADDER = [250, 500, 1000, 2000, 4000, 7000, 9500]
+PLACES, BANDS = (1, 1.5, 2, 3), (1, 2, 4, np.inf)  # exponents of the pooling
+STILL = 0.577918291  # weight of still pictures in ColorVideoVDP
 
 
 def decibels(ratio):
@@ -83,17 +87,20 @@ def load_blocks(o):
     with open(o.human) as f:
         human = {line.split(';')[0]: [int(v) for v in line.strip().split(';')[1:] if v] for line in f}
     blocks = []
-    for name, numbers in BLOCKS.items():
-        whole = os.path.join(o.folder, name + '.exr')
-        for b in numbers:
-            path = whole if os.path.exists(whole) else os.path.join(o.folder, f'{name}-{b}.exr')
-            x, y = (b % 4 * SIDE, b // 4 * SIDE) if path == whole else (0, 0)
+    for path in sorted(glob.glob(os.path.join(glob.escape(o.folder), '*.exr'))):
+        name, block = re.fullmatch(r'(.*-view\d+)(?:-(\d+))?', os.path.basename(path)[:-4]).groups()
+        for b in [int(block)] if block else range(16):
+            x, y = (0, 0) if block else (b % 4 * SIDE, b // 4 * SIDE)
             colour = lambda layer: read(path)(*(layer + c for c in 'RGB'))[y:y + SIDE, x:x + SIDE]
             spp = read(path)('spp')[y:y + SIDE, x:x + SIDE]
             difference = (colour('halfA.') - colour('halfB.')) / 2 * np.sqrt(spp)
             random = np.random.default_rng([o.seed, b])
-            blocks.append((name, b, human[f'p3d_{name}-view0_part6'][b], colour(''), noise(difference, random)))
+            blocks.append((name, b, human[f'p3d_{name}_part6'][b], colour(''), noise(difference, random)))
     return blocks
+
+
+def scene(viewpoint):
+    return viewpoint.split('-')[0]
 
 
 def pooled(o, viewing, clean, pictures):
@@ -102,6 +109,23 @@ def pooled(o, viewing, clean, pictures):
     out = subprocess.run([o.program, viewing, str(w), str(h), str(SIDE)], input=data.tobytes(), stdout=subprocess.PIPE,
                          check=True).stdout.decode()
     return np.array([float(line.split()[0]) for line in out.splitlines()])
+
+
+def moments(o, block):
+    """Returns the mean powers, PLACES, of the difference at the spp of LADDER: spp x (bands, channels) x powers."""
+    _, _, _, clean, sample = block
+    pictures = [clean + sample * np.sqrt(1 / n - 1 / CAP) for n in LADDER]
+    data = np.ascontiguousarray(np.stack([clean, *pictures]), np.float32)
+    h, w, _ = clean.shape
+    out = subprocess.run([o.program, 'moments', o.viewing, str(w), str(h), *map(str, PLACES)], input=data.tobytes(),
+                         stdout=subprocess.PIPE, check=True).stdout.decode()
+    return np.array([[line.split() for line in picture.split('\n')] for picture in out.strip().split('\n\n')], float)
+
+
+def pool(powers, place, band):
+    """Returns the logarithm of the difference, pooled by two exponents."""
+    means = STILL * powers[:, :, PLACES.index(place)] ** (1 / place)
+    return np.log(np.max(means, 1) if np.isinf(band) else np.sum(means ** band, 1) ** (1 / band))
 
 
 def curve(o, viewing, block):
@@ -161,7 +185,7 @@ def correlation(a, b):
 
 
 def report(o, viewing, blocks):
-    views = list(BLOCKS)
+    views = list(dict.fromkeys(b[0] for b in blocks))
     human = {v: [b[2] for b in blocks if b[0] == v] for v in views}
     curves = {v: [curve(o, viewing, b) for b in blocks if b[0] == v] for v in views}
     limits = np.geomspace(0.2, 300, 150)
@@ -170,7 +194,7 @@ def report(o, viewing, blocks):
                     if h < CAP] for v in views}
     rows = []
     for v in views:
-        others = {w: human[w] for w in views if w != v}
+        others = {w: human[w] for w in views if scene(w) != scene(v)}
         limit = best(others, limits, stops_of)
         stops = stops_of(v, limit)
         rows.append((v, limit, 100 * critical_error(human[v], stops), correlation(human[v], stops), np.mean(human[v]), np.mean(stops),
@@ -184,7 +208,7 @@ def report(o, viewing, blocks):
           f'{np.mean([100 * critical_error(human[v], stops_of(v, limit)) for v in views]):.1f}; accepted: median '
           f'{np.median(every):.3g}, from {every.min():.3g} to {every.max():.3g}', flush=True)
     for v, limit, error, r, h, s, a, _ in rows:
-        print(f'    {v:<14} limit of the others {limit:.3g}: {error:.1f} %, correlation of logarithms within {r:.2f}, '
+        print(f'    {v:<26} limit of the others {limit:.3g}: {error:.1f} %, correlation of logarithms within {r:.2f}, '
               f'people {h:.0f} spp, predicted {s:.0f}; accepted, median {a:.3g}', flush=True)
     if o.blocks:
         for b, c in zip(blocks, itertools.chain(*(curves[v] for v in views))):
@@ -203,6 +227,39 @@ def judge_blocks(o):
         report(o, viewing, blocks)
 
 
+def jackknife(limits):
+    """Returns the standard error of the logarithm of a limit, of which there is one without each scene."""
+    logs = np.log(limits)
+    return np.sqrt((len(logs) - 1) * np.var(logs))
+
+
+def judge_pooling(o):
+    blocks = load_blocks(o)
+    powers = [moments(o, b) for b in blocks]
+    views = list(dict.fromkeys(b[0] for b in blocks))
+    scenes = sorted({scene(v) for v in views})
+    errors = {}  # of a viewpoint by limit
+    for exponents in itertools.product(PLACES, BANDS):
+        curves = [pool(m, *exponents) for m in powers]
+        limits = np.geomspace(0.2, 100, 120) * np.exp(np.median([c[3] for c in curves]) - 1)
+        mine = {v: np.mean([[critical_error([b[2]], [stop(c, limit)]) for limit in limits]
+                            for b, c in zip(blocks, curves) if b[0] == v], axis=0) for v in views}
+        errors[exponents] = limits, mine
+    def without(exponents, left):
+        limits, mine = errors[exponents]
+        total = np.mean([mine[v] for v in views if scene(v) != left], axis=0)
+        return int(np.argmin(total)), np.min(total)
+    print('| places | bands | left out, % | known, % | best limit | standard error of its logarithm |\n|' + '---|' * 6)
+    for exponents, (limits, mine) in errors.items():
+        left = np.mean([mine[v][without(exponents, scene(v))[0]] for v in views])
+        at, known = without(exponents, None)
+        doubt = jackknife([limits[without(exponents, s)[0]] for s in scenes])
+        print(f'| {exponents[0]} | {exponents[1]} | {100 * left:.1f} | {100 * known:.1f} | {limits[at]:.3g} | {doubt:.2f} |')
+    chosen = {s: min(errors, key=lambda e: without(e, s)[1]) for s in scenes}
+    nested = np.mean([errors[e][1][v][without(e, scene(v))[0]] for v in views for e in [chosen[scene(v)]]])
+    print(f'exponents chosen without the scene: {100 * nested:.1f} %, {chosen}')
+
+
 if __name__ == '__main__':
     p = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     commands = p.add_subparsers(required=True)
@@ -215,5 +272,10 @@ if __name__ == '__main__':
     s.add_argument('--blocks', action='store_true', help='a line a block')
     s.add_argument('--seed', type=int, default=1)
     s.set_defaults(run=judge_blocks)
+    s = commands.add_parser('pooling')
+    s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
+    s.add_argument('--viewing', default='100cd,40ppd,250lux')
+    s.add_argument('--seed', type=int, default=1)
+    s.set_defaults(run=judge_pooling)
     o = p.parse_args()
     o.run(o)

@@ -28,7 +28,7 @@ namespace {
 struct Options {
     RenderSettings render;
     GuideOptions guide;
-    std::vector<std::string> samplers = {"sobol", "random"};
+    std::vector<std::string> samplers;  // none: the usual ones
     std::vector<std::string> rules;  // beside those that are always measured
     bool denoise = false;
     DisplayModel display;
@@ -64,7 +64,8 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrup
 
 void AddOptions(CLI::App& app, Options* o) {
     AddRenderSettings(app, &o->render, false);
-    app.add_option("--samplers", o->samplers, "Measure these samplers [sobol,random]")
+    app.add_option("--samplers", o->samplers,
+                   "Measure these samplers [sobol,random; --denoise: sobol-halves,random]")
         ->delimiter(',')
         ->check(CLI::IsMember(ChoicesOf<SamplerKind>()))
         ->type_name("S,S");
@@ -178,6 +179,7 @@ std::unique_ptr<Bench> Prepare(const Options& options, MpiJob* ranks) {
     for (const ExternalImage& external : bench->external)
         bench->externalImages.push_back(ReadImageOfSize(external.file, region));
     render.Compile();
+    for (const Variant& variant : Variants(options)) render.CheckSampler(variant.sampler);
     CheckGuide(options.guide, *render.scene, options.render.estimator);
     bench->sceneHash = SceneHash(render.input.description);
     return bench;
@@ -303,6 +305,8 @@ ExitCode RunBench(Options options, MpiJob* ranks) {
     RenderSettings& settings = options.render;
     SetWording(settings, ranks);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
+    if (options.samplers.empty())
+        options.samplers = {options.denoise ? "sobol-halves" : "sobol", "random"};
     options.output = BeginningOfNames(options.output, SceneName(settings.scene.file) + ".bench");
     const std::unique_ptr<Bench> bench = Prepare(options, ranks);
     const std::vector<Variant> variants = Variants(options);

@@ -129,6 +129,7 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) 
     render.CheckFiles(OutputsOf(options, rendered), InputsOf(options));
     render.LockResults(options.output + ".compare.json");
     render.Compile();
+    render.CheckSampler(render.provenance.sampler);
     render.provenance.criterion = automatic.text;
     render.provenance.checksum = automatic.checksum;
     Comparison& comparison = compared->report.comparison;

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Renders small crops of scenes of this folder, and makes two pictures of the documents in scenes/pictures.
+
+remedies.py LULL [-o FOLDER]: caution.png has one block of cornell by the default rule and by `denoised`, each with
+several thresholds; remedies.jpg has pairs of noise and remedy. A crop that FOLDER (out/remedies) has is not rendered again.
+Needs Pillow (Debian: python3-pil); about two minutes of CPU time.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+
+from PIL import Image, ImageDraw, ImageFont
+
+SCENES = pathlib.Path(__file__).resolve().parent
+FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
+PAPER, INK = (250, 249, 246), (40, 42, 46)
+GAP, TEXT, SCALE = 10, 40, 2  # in pixels; each pixel of a crop is drawn SCALE pixels wide
+
+CORNELL = ["cornell/scene.pbrt", "--resolution", "100x100"]
+DARK = ["dark/scene.pbrt", "--resolution", "200x200", "--crop", "0,0.5,0.5,1", "--spp", "128", "--sampler", "sobol"]
+CAUSTIC = ["caustic/scene.pbrt", "--resolution", "200x200", "--crop", "0.5,1,0.5,1", "--spp", "64", "--sampler", "sobol"]
+GLOSSY = ["glossy/scene.pbrt", "--resolution", "200x200", "--crop", "0.2,0.7,0.5,1"]
+CAUTION = [
+    {"ca05": ("--caution 0.5", CORNELL + ["--caution", "0.5"]),
+     "ca1": ("--caution 1 (default)", CORNELL + ["--caution", "1"]),
+     "ca2": ("--caution 2", CORNELL + ["--caution", "2"])},
+    {"de6": ("--denoise, denoised:6", CORNELL + ["--denoise", "--stop", "denoised:6"]),
+     "de31": ("--denoise (3.1)", CORNELL + ["--denoise", "--stop", "denoised:3.1"]),
+     "de15": ("--denoise, denoised:1.5", CORNELL + ["--denoise", "--stop", "denoised:1.5"])},
+]
+REMEDIES = [
+    {"cz_path": ("caustic, path", CAUSTIC),
+     "dk_off": ("dark, path", DARK),
+     "dn4": ("glossy, --denoise --spp 4", GLOSSY + ["--spp", "4", "--denoise"])},
+    {"cz_bdpt": ("--integrator bdpt", CAUSTIC + ["--integrator", "bdpt"]),
+     "dk_on": ("--guide on", DARK + ["--guide", "on"]),
+     "dnstop": ("--denoise", GLOSSY + ["--denoise"])},
+]
+
+
+def render(lull, name, arguments, folder):
+    """Renders a crop unless that has been done; returns its samples per pixel and CPU seconds."""
+    report = folder / f"{name}.json"
+    if not report.exists():
+        subprocess.run([lull, "render", SCENES / arguments[0], *arguments[1:], "--threads", "1", "--quiet",
+                        "-o", folder / f"{name}.exr", "--report", report], check=True, stdout=subprocess.DEVNULL)
+    block, = json.loads(report.read_text())["blocks"]
+    return block["spp"], block["seconds"]
+
+
+def sheet(lull, rows, folder):
+    """Lays rows of crops out, each crop with its title, samples and seconds above."""
+    font = ImageFont.truetype(FONT, 12)
+    side = 100 * SCALE
+    width, height = (max(map(len, rows)) * (side + GAP) + GAP, len(rows) * (side + TEXT + GAP) + GAP)
+    picture = Image.new("RGB", (width, height), PAPER)
+    draw = ImageDraw.Draw(picture)
+    for row, crops in enumerate(rows):
+        for column, (name, (title, arguments)) in enumerate(crops.items()):
+            spp, seconds = render(lull, name, arguments, folder)
+            x, y = GAP + column * (side + GAP), GAP + row * (side + TEXT + GAP)
+            draw.text((x, y + 2), title, fill=INK, font=font)
+            draw.text((x, y + 19), f"{spp:,} spp, {seconds:.1f} s", fill=INK, font=font)
+            image = Image.open(folder / f"{name}.png").convert("RGB")
+            picture.paste(image.resize((side, side), Image.NEAREST), (x, y + TEXT))
+    return picture
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("lull")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=SCENES.parent / "out/remedies")
+    options = parser.parse_args()
+    options.output.mkdir(parents=True, exist_ok=True)
+    sheet(options.lull, CAUTION, options.output).save(SCENES / "pictures/caution.png", optimize=True)
+    sheet(options.lull, REMEDIES, options.output).save(SCENES / "pictures/remedies.jpg", quality=92)
+
+
+if __name__ == "__main__":
+    main()
