@@ -10,9 +10,9 @@
 namespace lull::interruption_test {
 namespace {
 
-// Blocks stop at 240 to 500 spp.
+// Blocks stop at 420 to 900 spp.
 constexpr const char* kOptions =
-    "scene.pbrt --resolution 100x90 --block 40 --stop dammertz:0.01 --cap 500 --quiet";
+    "scene.pbrt --resolution 100x90 --block 40 --stop dammertz:0.0075 --cap 900 --quiet";
 
 struct SceneDirectory : TemporaryDirectory {
     SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
@@ -46,8 +46,8 @@ TEST(Interruption, KilledRendersComeToTheSameBits) {
     int kills = 0;
     Outcome outcome;
     for (int run = 0; run < 200; ++run) {
-        // At first at random moments, some twelfth of the whole apart, then as long as it takes.
-        const double share = 0.04 + 0.08 * std::generate_canonical<double, 32>(random);
+        // At first at random moments, some tenth of the whole apart, then as long as it takes.
+        const double share = 0.06 + 0.1 * std::generate_canonical<double, 32>(random);
         const double seconds = kills < 16 ? share * whole : 600;
         outcome = RunShell(
             directory, fmt::format("timeout -s KILL {:.3f} ", seconds) +

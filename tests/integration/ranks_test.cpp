@@ -90,7 +90,7 @@ TEST_F(RanksTest, ComeToTheSameBits) {
 TEST_F(RanksTest, ShowPreviews) {
     const std::string render = std::string(kRender) + "--spp 250 ";
     ExpectSuccess(Run(render + "-o one.exr"));
-    ExpectSuccess(Run(Ranks(2) + render + "-o some.exr --preview 0.1"));
+    ExpectSuccess(Run(Ranks(2) + render + "-o some.exr --preview 0.3"));
     ExpectSame("one", "some");
     EXPECT_FALSE(Contains(ReadBytes(directory.File("some.exr")), "interrupted"));
 }
