@@ -81,11 +81,12 @@ RenderResult Executor::Run() {
             SpawnReady();
             tasks.Wait();
         } while (EndRound());
+        const double pause = ledger.Seconds();
         const bool isOver = !pausing || IsCancelled();
         if (schedule.TimeCalled() && isOver && !IsCancelled()) Undo();
         if (isOver || ledger.Seconds() >= nextCheckpoint) WriteCheckpoint();
         if (isOver || IsCancelled()) return Result();
-        ShowPreview();
+        ShowPreview(pause);
     }
 }
 
@@ -202,14 +203,14 @@ void Executor::WriteCheckpoint() {
     nextCheckpoint = ledger.Seconds() + checkpoints.interval;
 }
 
-void Executor::ShowPreview() {
+void Executor::ShowPreview(double pause) {
     if (!options.events.onPreview || ledger.Seconds() < nextPreview || schedule.Unlocked().Done())
         return;
-    const double start = ledger.Seconds();
     options.events.onPreview(Result());
-    // Previews that take long, as denoised ones, become up to ten times as rare.
+    // Previews that take long, as denoised ones and those of many ranks, become up to ten times as
+    // rare.
     const double end = ledger.Seconds(), interval = options.events.previewInterval;
-    nextPreview = end + std::clamp(4 * (end - start), interval, 10 * interval);
+    nextPreview = end + std::clamp(4 * (end - pause), interval, 10 * interval);
 }
 
 RenderResult Executor::Result() {

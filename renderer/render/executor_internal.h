@@ -49,7 +49,7 @@ class Executor {
     // With no task at work: write the state, show how far it is, if it is time; and return the
     // result.
     void WriteCheckpoint();
-    void ShowPreview();
+    void ShowPreview(double pause);  // since these seconds of the render nothing works for it
     RenderResult Result();
     // Begins to count the seconds to the next of them.
     void RestartIntervals();

@@ -62,7 +62,7 @@ class Leader {
                               (undo || !schedule.TimeCalled() || executor.IsCancelled());
             if (over || Seconds() >= executor.nextCheckpoint) WriteCheckpoint();
             if (over) break;
-            executor.ShowPreview();
+            executor.ShowPreview(pause);
             if (takesOver)
                 TakeOver();
             else if (deal.empty() || schedule.TimeCalled())
