@@ -103,22 +103,24 @@ def scene(viewpoint):
     return viewpoint.split('-')[0]
 
 
-def pooled(o, viewing, clean, pictures):
+def viewpoints(blocks):
+    return list(dict.fromkeys(b[0] for b in blocks))
+
+
+def measure(block, *command):
+    """Returns what a command prints of the clean picture of a block and of those at the spp of LADDER; WIDTH and HEIGHT in it
+    are those of the block."""
+    _, _, _, clean, sample = block
+    pictures = [clean + sample * np.sqrt(1 / n - 1 / CAP) for n in LADDER]
     data = np.ascontiguousarray(np.stack([clean, *pictures]), np.float32)
-    h, w, _ = clean.shape
-    out = subprocess.run([o.program, viewing, str(w), str(h), str(SIDE)], input=data.tobytes(), stdout=subprocess.PIPE,
-                         check=True).stdout.decode()
-    return np.array([float(line.split()[0]) for line in out.splitlines()])
+    size = {'WIDTH': str(clean.shape[1]), 'HEIGHT': str(clean.shape[0])}
+    return subprocess.run([size.get(word, word) for word in command], input=data.tobytes(), stdout=subprocess.PIPE,
+                          check=True).stdout.decode()
 
 
 def moments(o, block):
     """Returns the mean powers, PLACES, of the difference at the spp of LADDER: spp x (bands, channels) x powers."""
-    _, _, _, clean, sample = block
-    pictures = [clean + sample * np.sqrt(1 / n - 1 / CAP) for n in LADDER]
-    data = np.ascontiguousarray(np.stack([clean, *pictures]), np.float32)
-    h, w, _ = clean.shape
-    out = subprocess.run([o.program, 'moments', o.viewing, str(w), str(h), *map(str, PLACES)], input=data.tobytes(),
-                         stdout=subprocess.PIPE, check=True).stdout.decode()
+    out = measure(block, o.program, 'moments', o.viewing, 'WIDTH', 'HEIGHT', *map(str, PLACES))
     return np.array([[line.split() for line in picture.split('\n')] for picture in out.strip().split('\n\n')], float)
 
 
@@ -130,8 +132,8 @@ def pool(powers, place, band):
 
 def curve(o, viewing, block):
     """Returns the logarithms of the visible differences at the spp of LADDER."""
-    _, _, _, clean, sample = block
-    return np.log(pooled(o, viewing, clean, [clean + sample * np.sqrt(1 / n - 1 / CAP) for n in LADDER]))
+    out = measure(block, o.program, viewing, 'WIDTH', 'HEIGHT', str(SIDE))
+    return np.log([float(line.split()[0]) for line in out.splitlines()])
 
 
 def deviation(spp):
@@ -185,7 +187,7 @@ def correlation(a, b):
 
 
 def report(o, viewing, blocks):
-    views = list(dict.fromkeys(b[0] for b in blocks))
+    views = viewpoints(blocks)
     human = {v: [b[2] for b in blocks if b[0] == v] for v in views}
     curves = {v: [curve(o, viewing, b) for b in blocks if b[0] == v] for v in views}
     limits = np.geomspace(0.2, 300, 150)
@@ -236,7 +238,7 @@ def jackknife(limits):
 def judge_pooling(o):
     blocks = load_blocks(o)
     powers = [moments(o, b) for b in blocks]
-    views = list(dict.fromkeys(b[0] for b in blocks))
+    views = viewpoints(blocks)
     scenes = sorted({scene(v) for v in views})
     errors = {}  # of a viewpoint by limit
     for exponents in itertools.product(PLACES, BANDS):
@@ -266,16 +268,14 @@ if __name__ == '__main__':
     s = commands.add_parser('sensitivity')
     s.add_argument('program'), s.add_argument('data')
     s.set_defaults(run=sensitivity)
-    s = commands.add_parser('blocks')
-    s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
-    s.add_argument('--viewing', default=';'.join(f'{cd}cd,{ppd}ppd,250lux' for ppd in (30, 40, 50, 60) for cd in (80, 100, 200)))
-    s.add_argument('--blocks', action='store_true', help='a line a block')
-    s.add_argument('--seed', type=int, default=1)
-    s.set_defaults(run=judge_blocks)
-    s = commands.add_parser('pooling')
-    s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
-    s.add_argument('--viewing', default='100cd,40ppd,250lux')
-    s.add_argument('--seed', type=int, default=1)
-    s.set_defaults(run=judge_pooling)
+    everywhere = ';'.join(f'{cd}cd,{ppd}ppd,250lux' for ppd in (30, 40, 50, 60) for cd in (80, 100, 200))
+    for name, viewing, run in (('blocks', everywhere, judge_blocks), ('pooling', '100cd,40ppd,250lux', judge_pooling)):
+        s = commands.add_parser(name)
+        s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
+        s.add_argument('--viewing', default=viewing)
+        s.add_argument('--seed', type=int, default=1)
+        s.set_defaults(run=run)
+        if run == judge_blocks:
+            s.add_argument('--blocks', action='store_true', help='a line a block')
     o = p.parse_args()
     o.run(o)

@@ -121,7 +121,7 @@ TEST(GltfMaterials, AbsorbInTheirVolume) {
     EXPECT_EQ(d.shapes.at(0).outsideMedium, -1);
     EXPECT_TRUE(IntegratorSeesMedia(d.integrator.name));
 
-    // A sheet has no inside, what is opaque or clear no need of one.
+    // A sheet has no inside; opaque and clear surfaces need none.
     const auto& material = json::json_pointer("/materials/0/extensions");
     for (const json& change :
          {json{{"KHR_materials_volume", {{"thicknessFactor", 0}}}},

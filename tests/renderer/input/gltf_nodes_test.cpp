@@ -1,4 +1,4 @@
-// Checks nodes and cameras of glTF files, and edits of what is read.
+// Checks nodes and cameras of glTF files, and edits of scenes.
 #include "renderer/input/scene_edits.h"
 #include "tests/renderer/input/gltf_files.h"
 

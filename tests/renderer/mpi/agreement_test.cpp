@@ -1,47 +1,19 @@
-// Ranks are threads here and speak through queues.
 #include "renderer/mpi/agreement.h"
 
 #include <gtest/gtest.h>
 
-#include <deque>
 #include <future>
-#include <mutex>
+
+#include "tests/renderer/render/queue_peers.h"
 
 namespace lull {
 namespace {
 
-struct Mail {
-    std::mutex mutex;
-    std::vector<std::deque<PeerMessage>> boxes;
-};
-
-class QueuePeers final : public Peers {
-  public:
-    QueuePeers(Mail* mail, int rank) : mail(mail), rank(rank) {}
-    int Rank() const override { return rank; }
-    int Count() const override { return int(mail->boxes.size()); }
-    void Send(int to, std::vector<std::byte> message) override {
-        std::lock_guard lock(mail->mutex);
-        mail->boxes[size_t(to)].push_back({rank, std::move(message)});
-    }
-    std::optional<PeerMessage> Receive() override {
-        std::lock_guard lock(mail->mutex);
-        std::deque<PeerMessage>& box = mail->boxes[size_t(rank)];
-        if (box.empty()) return {};
-        PeerMessage message = std::move(box.front());
-        box.pop_front();
-        return message;
-    }
-    void Flush() override {}
-    void GiveUp(int) override {}
-
-  private:
-    Mail* mail;
-    int rank;
-};
+using ranks_test::Mailboxes;
+using ranks_test::QueuePeers;
 
 struct Three {
-    Mail mail;
+    Mailboxes mail;
     std::vector<QueuePeers> peers;
 
     Three() {

@@ -123,7 +123,7 @@ TEST(GroupRadiance, AddsUpToThatOfTheSample) {
         }
 }
 
-// Means over all pixels of what a function makes of samples, and the standard errors.
+// Means of a function of samples over all pixels, with standard errors.
 struct Means {
     Eigen::Array3d mean, error;
 };

@@ -1,4 +1,4 @@
-// What is learned, and light paths, are the same with any number of ranks.
+// Checks that learning and light paths are the same with any number of ranks.
 #include <gtest/gtest.h>
 
 #include <atomic>

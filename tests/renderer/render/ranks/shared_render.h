@@ -1,75 +1,15 @@
-// Renders with several ranks, which are threads here and speak through queues.
+// Renders with several ranks.
 #pragma once
 
-#include <deque>
 #include <memory>
-#include <mutex>
-#include <thread>
-#include <utility>
 
 #include "renderer/render/light_rounds.h"
-#include "renderer/render/peers.h"
-#include "renderer/render/ranks/messages.h"
+#include "tests/renderer/render/queue_peers.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull::ranks_test {
 
-struct Habits {
-    // How long rank 0 sleeps when it has sent a mere word, so that the others answer meanwhile.
-    std::chrono::milliseconds nap{0};
-    // Which rank neither says nor hears anything once it has sent so many messages; -1: none.
-    int sleeper = -1, messagesBefore = 0;
-};
-
-struct Mailboxes {
-    Habits how;
-    std::mutex mutex;
-    std::vector<std::deque<PeerMessage>> boxes;
-    int64_t bytes = 0;
-    bool isOver = false;  // for the sleeper too
-};
-
-class QueuePeers final : public Peers {
-  public:
-    QueuePeers(Mailboxes* mail, int rank) : mail(mail), rank(rank) {}
-    int Rank() const override { return rank; }
-    int Count() const override { return int(mail->boxes.size()); }
-    void Send(int to, std::vector<std::byte> message) override {
-        const bool isWord = message.size() == 1;
-        {
-            std::lock_guard lock(mail->mutex);
-            if (Sleeps()) return;
-            ++messages;
-            mail->bytes += int64_t(message.size());
-            mail->boxes[size_t(to)].push_back({rank, std::move(message)});
-        }
-        if (rank == 0 && isWord) std::this_thread::sleep_for(mail->how.nap);
-    }
-    std::optional<PeerMessage> Receive() override {
-        std::lock_guard lock(mail->mutex);
-        std::deque<PeerMessage>& box = mail->boxes[size_t(rank)];
-        if (Sleeps() && mail->isOver && !std::exchange(hasEnded, true))
-            return PeerMessage{0, Pack(RankWord::End)};
-        if (box.empty() || Sleeps()) return {};
-        PeerMessage message = std::move(box.front());
-        box.pop_front();
-        return message;
-    }
-    void Flush() override {}
-    void GiveUp(int) override {}
-
-  private:
-    bool Sleeps() const {
-        return rank == mail->how.sleeper && messages >= mail->how.messagesBefore;
-    }
-
-    Mailboxes* mail;
-    int rank;
-    int messages = 0;  // that were sent
-    bool hasEnded = false;
-};
-
-// What a render came to at rank 0.
+// A render as rank 0 has it in the end.
 struct Shared {
     std::unique_ptr<Film> film;
     RenderResult result;
