@@ -10,13 +10,9 @@ import json
 import pathlib
 import subprocess
 
-from PIL import Image, ImageDraw, ImageFont
+from crops import crop, sheet
 
 SCENES = pathlib.Path(__file__).resolve().parent
-FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
-PAPER, INK = (250, 249, 246), (40, 42, 46)
-GAP, TEXT, SCALE = 10, 40, 2  # in pixels; each pixel of a crop is drawn SCALE pixels wide
-
 CORNELL = ["cornell/scene.pbrt", "--resolution", "100x100"]
 DARK = ["dark/scene.pbrt", "--resolution", "200x200", "--crop", "0,0.5,0.5,1", "--spp", "128", "--sampler", "sobol"]
 CAUSTIC = ["caustic/scene.pbrt", "--resolution", "200x200", "--crop", "0.5,1,0.5,1", "--spp", "64", "--sampler", "sobol"]
@@ -49,22 +45,12 @@ def render(lull, name, arguments, folder):
     return block["spp"], block["seconds"]
 
 
-def sheet(lull, rows, folder):
-    """Lays rows of crops out, each crop with its title, samples and seconds above."""
-    font = ImageFont.truetype(FONT, 12)
-    side = 100 * SCALE
-    width, height = (max(map(len, rows)) * (side + GAP) + GAP, len(rows) * (side + TEXT + GAP) + GAP)
-    picture = Image.new("RGB", (width, height), PAPER)
-    draw = ImageDraw.Draw(picture)
-    for row, crops in enumerate(rows):
-        for column, (name, (title, arguments)) in enumerate(crops.items()):
-            spp, seconds = render(lull, name, arguments, folder)
-            x, y = GAP + column * (side + GAP), GAP + row * (side + TEXT + GAP)
-            draw.text((x, y + 2), title, fill=INK, font=font)
-            draw.text((x, y + 19), f"{spp:,} spp, {seconds:.1f} s", fill=INK, font=font)
-            image = Image.open(folder / f"{name}.png").convert("RGB")
-            picture.paste(image.resize((side, side), Image.NEAREST), (x, y + TEXT))
-    return picture
+def pictures(lull, rows, folder):
+    """Returns the sheet of rows of crops, each crop with its title, samples and seconds above."""
+    def labelled(name, title, arguments):
+        spp, seconds = render(lull, name, arguments, folder)
+        return [title, f"{spp:,} spp, {seconds:.1f} s"], crop(folder / f"{name}.png")
+    return sheet([[labelled(name, *how) for name, how in row.items()] for row in rows])
 
 
 def main():
@@ -73,8 +59,8 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, default=SCENES.parent / "out/remedies")
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
-    sheet(options.lull, CAUTION, options.output).save(SCENES / "pictures/caution.png", optimize=True)
-    sheet(options.lull, REMEDIES, options.output).save(SCENES / "pictures/remedies.jpg", quality=92)
+    pictures(options.lull, CAUTION, options.output).save(SCENES / "pictures/caution.png", optimize=True)
+    pictures(options.lull, REMEDIES, options.output).save(SCENES / "pictures/remedies.jpg", quality=92)
 
 
 if __name__ == "__main__":
