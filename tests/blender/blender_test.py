@@ -271,6 +271,21 @@ bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
         once, _ = self.render("passes")
         self.assertLess(abs(np.stack([channels[c] for c in "RGB"], -1) - rgb(once)).max(), 1e-5)
 
+    def test_exports_copies_as_one_mesh(self):
+        path = self.folder / "copies.gltf"
+        self.blender(*self.command("factory", SAMPLES + f"""
+cube = bpy.data.objects['Cube']
+for k in (1, 2):
+    copy = bpy.data.objects.new(f'Copy {{k}}', cube.data)
+    copy.location.x = 3 * k
+    scene.collection.objects.link(copy)
+bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
+        nodes = {node["name"]: node for node in json.loads(path.read_text())["nodes"]}
+        cube, first, second = (nodes[name] for name in ("Cube", "Copy 1", "Copy 2"))
+        self.assertEqual((first["mesh"], second["mesh"]), (cube["mesh"], cube["mesh"]))
+        self.assertEqual([first["translation"][0], second["translation"][0]], [3, 6])
+        self.assertNotIn("lull_mesh", str(nodes))
+
     def test_warns_by_name(self):
         _, said = self.render("factory", SAMPLES + """
 cube = bpy.data.objects['Cube']

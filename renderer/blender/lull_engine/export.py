@@ -177,6 +177,7 @@ def main():
     if what["panes"]:
         panes.prepare(made, notes)
     lights.add(lamps, scene, flat, notes)
+    flatten.leave_copies(flat)
     base = os.path.join(what["folder"], what["name"])
     environment, backdrop = world.write(scene, flat.camera, base, notes)
     bpy.context.window.scene = flat

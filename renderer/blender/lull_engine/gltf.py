@@ -95,10 +95,16 @@ def _shines(root, node):
 
 
 def _patch_nodes(root, groups):
-    """Gives nodes the names of Blender's objects, or that of their light group. Returns the names of groups that shine."""
+    """Gives nodes the meshes that they share with others, and the names of Blender's objects, or that of their light group.
+
+    Returns: the names of groups that shine.
+    """
     found = {}
+    meshes = {node["name"]: node["mesh"] for node in root.get("nodes", []) if "mesh" in node}
     for node in root.get("nodes", []):
         extras = node.get("extras", {})
+        if mesh := extras.pop("lull_mesh", None):
+            node["mesh"] = meshes[mesh]
         node["name"] = extras.pop("lull_source", node.get("name", ""))
         group = extras.pop("lull_group", None)
         if group in groups and _shines(root, node) and (group in found or len(found) < _MOST_GROUPS):
