@@ -6,10 +6,9 @@ PAPER, INK = (250, 249, 246), (40, 42, 46)
 GAP, LINE, SCALE = 10, 17, 2  # in pixels; each pixel of a crop is drawn SCALE pixels wide
 
 
-def crop(path, box=None):
-    """Returns the pixels of an image file within box = (left, top, right, bottom), enlarged."""
+def crop(path):
+    """Returns the pixels of an image file, enlarged."""
     image = Image.open(path).convert("RGB")
-    image = image.crop(box) if box else image
     return image.resize((image.width * SCALE, image.height * SCALE), Image.NEAREST)
 
 

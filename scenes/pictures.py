@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Renders scenes until every block has stopped, and makes the pictures of the documents in scenes/pictures.
+"""Renders scenes until their blocks have stopped, and makes the pictures of the documents in scenes/pictures.
 
-pictures.py LULL [cornell|room|report]: of cornell decision.svg, the estimates for the block that stopped last. Of the room,
-denoised: room-day.jpg and room-night.jpg. report.jpg is a screenshot of a report. All by default. Needs oiiotool (Debian:
-openimageio-tools) and, for the screenshot, chromium.
+pictures.py LULL [cornell|room|report]: of cornell decision.svg, the estimates for the block that stopped last, and report.jpg,
+a screenshot of its report. Of the room, denoised: room-day.jpg and room-night.jpg, which ends after ten minutes. All by
+default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
 """
 import json
 import math
@@ -13,8 +13,7 @@ import sys
 import tempfile
 
 SCENES = pathlib.Path(__file__).resolve().parent
-SIDE = 400        # of cornell, in pixels
-ROOM_CAP = "200"  # samples per pixel
+SIDE = 400  # of cornell, in pixels
 
 
 def curve(decisions, width, height):
@@ -74,15 +73,15 @@ def screenshot(page, target, size):
 
 
 def room(lull, out, pictures):
-    for name, scene in (("day", "room"), ("night", "room-night")):
-        subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", "--block", "120", "--cap", ROOM_CAP,
-                        "-o", out / f"{name}.exr"], check=True)
+    for name, scene, settings in (("day", "room", ["--resolution", "600x400"]), ("night", "room-night", ["--time", "10m"])):
+        subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", *settings, "-o", out / f"{name}.exr"],
+                       check=True)
         jpeg(out / f"{name}.png", pictures / f"room-{name}.jpg")
 
 
 def report(lull, out, pictures):
-    subprocess.run([lull, "render", SCENES / "textured/scene.pbrt", "--resolution", "300x300", "--block", "100",
-                    "--cap", "600", "--sampler", "random", "-o", out / "r.exr", "--report", out / "r.html"], check=True)
+    subprocess.run([lull, "render", SCENES / "cornell/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "-o", out / "r.exr",
+                    "--report", out / "r.html"], check=True)
     screenshot(out / "r.html", pictures / "report.jpg", "1400,1620")
 
 
