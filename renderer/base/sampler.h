@@ -2,6 +2,7 @@
 // dimension), so that any thread can take any sample at any time.
 #pragma once
 
+#include "renderer/base/enum_names.h"
 #include "renderer/base/math.h"
 
 namespace lull {
@@ -10,6 +11,13 @@ namespace lull {
 // more than the noise of each. SobolHalves has a sequence for either, independent of the other,
 // from whose difference noise can be estimated.
 enum class SamplerKind { Random, Sobol, SobolHalves };
+template <>
+struct EnumNames<SamplerKind> {
+    static constexpr std::pair<SamplerKind, const char*> all[] = {
+        {SamplerKind::Random, "random"},
+        {SamplerKind::Sobol, "sobol"},
+        {SamplerKind::SobolHalves, "sobol-halves"}};
+};
 
 class Sampler {
   public:

@@ -1,8 +1,6 @@
 // Shows the denoiser and the rules a render as graded pictures do.
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,9 +15,6 @@ std::vector<Grading> GradingsOf(const std::vector<Grade>&);
 
 // Returns them in words, with semicolons between them.
 std::string NamesOf(const std::vector<Grade>&);
-
-// Makes a block's own criterion.
-using CriterionMaker = std::function<std::unique_ptr<Criterion>(const BlockInfo&)>;
 
 // Returns the maker of criteria that see blocks as the grades show them, unless the rule sees to
 // that itself, or only counts.

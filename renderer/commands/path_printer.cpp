@@ -92,9 +92,10 @@ void PrintPath(const PathOfSample& wanted, const RenderSettings& settings, Sampl
     if (pixel.x() >= size.x() || pixel.y() >= size.y())
         throw UsageError(fmt::format("--pixel {},{}: the image is {}x{}", pixel.x(), pixel.y(),
                                      size.x(), size.y()));
-    if (IsBidirectional(scene.integrator))
+    if (!std::holds_alternative<PathIntegrator>(scene.integrator))
         throw UsageError(
-            "--pixel: a sample of \"bdpt\" is more than one path; add --integrator path");
+            fmt::format("--pixel: a sample of \"{}\" is more than one path; add --integrator path",
+                        NameOf(scene.integrator, scene.isVolumetric)));
     Sampler sampler(kind, settings.seed);
     const PathLog log =
         LogSample(scene, settings.estimator, sampler, pixel, uint32_t(wanted.sample));

@@ -20,7 +20,6 @@
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoiser_channels.h"
-#include "renderer/schedule/half_buffer.h"
 #include "stopping/base/input_file.h"
 #include "stopping/rules/denoised.h"
 
@@ -33,12 +32,15 @@ struct PreparedRender {
     PreparedRender(const RenderRequest& request, MpiJob* ranks)
         : request(request),
           clock(StartClock(request.clock)),
+          grades(request.Grades()),
           render(request.render, ranks, false) {}
 
     const RenderRequest request;
     const std::function<double()> clock;
+    const std::vector<Grade> grades;
     RenderJob render;
     Rule rule;
+    std::vector<Block> blocks;  // without samples
     FilmOptions film;
     RenderFiles files;
     std::unique_ptr<Display> display;  // null: none
@@ -47,21 +49,19 @@ struct PreparedRender {
 
 // Returns the length of passes: shorter where the rule counts samples and stops blocks within the
 // first, as one that repeats a render that was short of time.
-int PassLengthFor(const Rule& rule, const PixelRect& region, const ScheduleOptions& schedule) {
+int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule) {
     int length = schedule.passLength;
     if (!rule.stopAt) return length;
-    const int blocks = int(MakeBlocks(region, schedule).size());
     for (int i = 0; i < blocks; ++i)
         if (const int stop = rule.stopAt({.index = i}); stop < std::min(length, schedule.cap))
             length = std::gcd(length, stop);
     return std::max(1, length);
 }
 
-// Reads the rule and lets the schedule suit it.
+// Reads the rule, lets the schedule suit it, and cuts the blocks.
 void ReadRule(PreparedRender* p) {
     RenderSettings& settings = p->render.settings;
     ScheduleOptions& schedule = settings.schedule;
-    const PixelRect& region = p->render.input.region;
     const std::string rule = p->request.Rule();
     // A fixed number of samples is its own cap; with --cap the smaller of both holds.
     if (settings.cap) schedule.cap = *settings.cap;
@@ -69,33 +69,43 @@ void ReadRule(PreparedRender* p) {
         schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;
     if (p->request.denoise) {
         p->render.DenoiseBlocks();
-        p->render.denoiser->Grade(GradingsOf(p->request.Grades()));
+        p->render.denoiser->Grade(GradingsOf(p->grades));
     }
     p->rule = p->render.ReadRule("--stop", rule);
     schedule.smallestSide = p->rule.smallestSide;
-    schedule.passLength = PassLengthFor(p->rule, region, schedule);
+    p->blocks = MakeBlocks(p->render.input.region, schedule);
+    schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
 }
 
 // Warns of blocks that no criterion will ever stop.
-void CheckBlocks(const PixelRect& region, const ScheduleOptions& schedule, Warnings& warnings) {
-    for (const Block& block : MakeBlocks(region, schedule))
+void CheckBlocks(std::span<const Block> blocks, int smallestSide, Warnings& warnings) {
+    for (const Block& block : blocks)
         if (!block.votes && block.leader < 0)
             warnings.Add({},
                          fmt::format("block of less than {} pixels a side continues to the cap, "
                                      "as it is too small to be judged",
-                                     schedule.smallestSide));
+                                     smallestSide));
 }
 
-// Returns how the film is kept: whoever goes on from a checkpoint may look at the half. Throws
-// Error where the memory cannot hold it.
-FilmOptions CheckedFilm(const PreparedRender& p) {
+// Returns whether a rule looks at the half after any of the passes of a block.
+bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
+    const std::unique_ptr<Criterion> criterion = MakeCriterion(rule);
+    for (int spp = 0; spp < schedule.cap;) {
+        spp = int(std::min<int64_t>(int64_t(spp) + schedule.passLength, schedule.cap));
+        if (criterion->Need(spp) >= ViewNeed::MeanAndHalf) return true;
+    }
+    return false;
+}
+
+// Returns how the film is kept, with no light groups yet: whoever goes on from a checkpoint may
+// look at the half.
+FilmOptions FilmOf(const PreparedRender& p) {
     const RenderSettings& settings = p.render.settings;
-    const FilmOptions film{
-        .grid = GridOf(settings.schedule),
-        .withHalf = p.clock || p.request.HasPage() || p.request.WantedLayers().features ||
-                    !settings.checkpoint.file.empty() || LooksAtHalf(p.rule, settings.schedule)};
-    CheckFilmFits(p.render.input.region, film);
-    return film;
+    const LayerOptions layers = p.request.WantedLayers();
+    return {.grid = GridOf(settings.schedule),
+            .withHalf = p.clock || p.request.HasPage() || layers.features ||
+                        !settings.checkpoint.file.empty() || LooksAtHalf(p.rule, settings.schedule),
+            .layers = layers};
 }
 
 // Returns the sampler of an image: a denoised one has the points of least noise that leave halves
@@ -121,7 +131,7 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();
-    provenance->grades = NamesOf(p.request.Grades());
+    provenance->grades = NamesOf(p.grades);
     provenance->logRatios = p.rule.logRatios;
     provenance->trend = p.rule.trend;
     provenance->guide = p.request.guide.mode;
@@ -199,23 +209,23 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     RenderJob& render = p->render;
     const PixelRect& region = render.input.region;
     ReadRule(p.get());
-    CheckBlocks(region, render.settings.schedule, render.input.warnings);
-    p->film = CheckedFilm(*p);
+    CheckBlocks(p->blocks, render.settings.schedule.smallestSide, render.input.warnings);
+    p->film = FilmOf(*p);
+    CheckFilmFits(region, p->film, BytesBeside(request));
     p->files = NameFilesOf(request, render.input.film);
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
     render.LockResults(p->files.exr);
-    p->film.layers = request.WantedLayers();
-    CheckLayersFit(p->film, region, BytesBeside(request));
     p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
                              region, ranks->Count(), TalkOf(render.settings));
     render.Compile();
-    p->film.layers.groups = ChooseLightGroups(request.lightGroups, render.input.description,
-                                              *render.scene, p->film.layers, region);
+    p->film.layers.groups =
+        ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);
+    CheckFilmFits(region, FilmFor(*render.scene, p->film), BytesBeside(request));
     CheckGuide(request.guide, *render.scene, render.settings.estimator);
     SetProvenance(*p, &render.provenance);
-    p->histories.resize(MakeBlocks(region, render.settings.schedule).size());
+    p->histories.resize(p->blocks.size());
     return p;
 }
 
@@ -250,7 +260,7 @@ SessionOptions MakeOptions(PreparedRender* p) {
     const RenderJob& render = p->render;
     SessionOptions how = render.MakeSessionOptions(FixedSpp(p->request.Rule()) == 0);
     how.render.makeCriterion =
-        MakeCriteria(p->rule, p->request.Grades(), p->request.HasPage(), &p->histories);
+        MakeCriteria(p->rule, p->grades, p->request.HasPage(), &p->histories);
     how.render.trend = p->rule.trend;
     how.render.display = p->display.get();
     AddListeners(*p, &how.render.events);
@@ -326,10 +336,9 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     if (!p.request.denoise) return made;
     const Talk talk = TalkOf(settings);
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<Block> blocks = MakeBlocks(region, settings.schedule);
-    const DenoiserOptions how{.gradings = GradingsOf(p.request.Grades())};
-    made.image = hasGroups ? DenoiseImage(std::move(lights), region, blocks, how)
-                           : DenoiseImage(std::move(picture), region, blocks, how);
+    const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
+    made.image = hasGroups ? DenoiseImage(std::move(lights), region, p.blocks, how)
+                           : DenoiseImage(std::move(picture), region, p.blocks, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
         talk.Warn(fmt::format(

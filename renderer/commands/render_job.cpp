@@ -87,8 +87,7 @@ Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) con
 
 void RenderJob::Compile() {
     scene = CompileScene(settings, &input);
-    if (settings.scene.integrator == IntegratorKind::Bdpt &&
-        settings.estimator == Estimator::PbrtV3)
+    if (settings.scene.integrator == "bdpt" && settings.estimator == Estimator::PbrtV3)
         throw UsageError(
             "--integrator bdpt has no estimator of pbrt-v3's, by which lull record renders unless "
             "told "

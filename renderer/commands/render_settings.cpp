@@ -124,9 +124,9 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
             .trend = {},
             .schedule = settings.schedule,
             .maxDepth = MaxDepth(scene.integrator),
-            .integrator = IsBidirectional(scene.integrator)
-                              ? NameOf(scene.integrator, scene.isVolumetric)
-                              : "",
+            .integrator = std::holds_alternative<PathIntegrator>(scene.integrator)
+                              ? ""
+                              : NameOf(scene.integrator, scene.isVolumetric),
             .threads = settings.scene.compile.threads,
             .substitute = settings.scene.substitute,
             .filtering = settings.scene.compile.filtering,

@@ -37,15 +37,16 @@ std::string SavingsOf(const Savings& savings, int cap) {
     return text;
 }
 
-void PrintSummary(const RenderResult& result, int cap, RuleTrend::Kind kind) {
+std::string SummaryOf(const RenderResult& result, int cap, RuleTrend::Kind kind) {
     const Savings savings = ComputeSavings(result, cap);
-    Say("{}{}, median {} spp; {} samples in {}",
-        result.cancelled ? "interrupted: "
-        : result.timeUp  ? "the time is up: "
-                         : "",
-        EndsOf(result, kind), result.progress.medianSpp, FormatCount(double(savings.samples)),
-        FormatDuration(result.progress.seconds));
-    Say("{}\n", result.cancelled || result.timeUp ? "" : SavingsOf(savings, cap));
+    return fmt::format("{}{}, median {} spp; {} samples in {}{}\n",
+                       result.cancelled ? "interrupted: "
+                       : result.timeUp  ? "the time is up: "
+                                        : "",
+                       EndsOf(result, kind), result.progress.medianSpp,
+                       FormatCount(double(savings.samples)),
+                       FormatDuration(result.progress.seconds),
+                       result.cancelled || result.timeUp ? "" : SavingsOf(savings, cap));
 }
 
 void WarnOfRejected(int64_t rejected, const Talk& talk) {
@@ -54,60 +55,67 @@ void WarnOfRejected(int64_t rejected, const Talk& talk) {
             fmt::format("{} samples were not finite or negative; they count as black", rejected));
 }
 
-// Prints how much ranks of different speed had to do in the end.
-void PrintShares(const std::vector<double>& shares) {
+// Returns how much ranks of different speed had to do in the end.
+std::string SharesOf(const std::vector<double>& shares) {
+    if (shares.empty()) return "";
     const auto [least, most] = std::ranges::minmax(shares);
-    if (most - least < 0.01) return;
-    Say("shares of the ranks at the end, in percent:");
-    for (const double share : shares) Say(" {:.0f}", 100 * share);
-    Say("\n");
+    if (most - least < 0.01) return "";
+    std::string text = "shares of the ranks at the end, in percent:";
+    for (const double share : shares) text += fmt::format(" {:.0f}", 100 * share);
+    return text + "\n";
 }
 
-// Prints the blocks at the cap, their rule's value there, and a sufficient cap.
-void PrintCapped(const Provenance& provenance, const RenderResult& result) {
+// Returns the blocks at the cap, their rule's value there, and a sufficient cap.
+std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
-    if (capped.empty()) return;
+    if (capped.empty()) return "";
     const bool isOdds = provenance.trend.kind == RuleTrend::Probability;
-    Say("blocks at the cap, with their {}:\n",
-        isOdds ? "probability of visible noise" : "value of the rule");
+    std::string text = fmt::format("blocks at the cap, with their {}:\n",
+                                   isOdds ? "probability of visible noise" : "value of the rule");
     for (size_t i = 0; i < std::min(shown, capped.size()); ++i) {
         const CappedBlock& c = capped[i];
         const PixelRect& pixels = result.blocks[size_t(c.block)].block.pixels;
-        Say("  block {} at {},{}: {:.3g}, threshold {:.3g}{}\n", c.block, pixels.min.x(),
-            pixels.min.y(), c.value, c.threshold,
-            c.neededSpp > 0 ? fmt::format("; estimated stop {} spp", c.neededSpp) : "");
+        text +=
+            fmt::format("  block {} at {},{}: {:.3g}, threshold {:.3g}{}\n", c.block,
+                        pixels.min.x(), pixels.min.y(), c.value, c.threshold,
+                        c.neededSpp > 0 ? fmt::format("; estimated stop {} spp", c.neededSpp) : "");
     }
-    if (capped.size() > shown) Say("  and {} more\n", capped.size() - shown);
+    if (capped.size() > shown) text += fmt::format("  and {} more\n", capped.size() - shown);
     const int cap = CapFor(capped, provenance.schedule.cap);
-    if (cap > 0)
-        Say("estimated sufficient --cap: {}\n", cap);
-    else
-        Say("cannot estimate a sufficient --cap yet; try --cap {}\n", 2 * provenance.schedule.cap);
+    return text + (cap > 0 ? fmt::format("estimated sufficient --cap: {}\n", cap)
+                           : fmt::format("cannot estimate a sufficient --cap yet; try --cap {}\n",
+                                         2 * provenance.schedule.cap));
 }
 
-// Prints the shortfall at the deadline. The noise of blocks is not known within their first pass,
+// Returns the shortfall at the deadline. The noise of blocks is not known within their first pass,
 // nor before the next one after a render was resumed.
-void PrintShortfall(const Provenance& provenance, const RenderResult& result) {
+std::string ShortfallOf(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t shown = 8;
     std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
     const auto unknown =
         std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
+    std::string text;
     if (unknown > 0)
-        Say("{} block{} without a noise estimate: no pass of {} spp ended in this run\n", unknown,
+        text = fmt::format(
+            "{} block{} without a noise estimate: no pass of {} spp ended in this run\n", unknown,
             unknown == 1 ? "" : "s", provenance.schedule.passLength);
-    if (noisy.empty()) return;
-    Say("blocks not stopped, with their masked noise in L*:\n");
+    if (noisy.empty()) return text;
+    text += "blocks not stopped, with their masked noise in L*:\n";
     for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
         const Block& block = result.blocks[size_t(noisy[i].block)].block;
-        Say("  block {} at {},{}: {:.2f} at {} spp; estimated stop {} spp, after {}\n",
+        text += fmt::format(
+            "  block {} at {},{}: {:.2f} at {} spp; estimated stop {} spp, after {}\n",
             noisy[i].block, block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise, block.spp,
             noisy[i].neededSpp, FormatDuration(NeededSeconds({noisy[i]}, result)));
     }
     if (noisy.size() > shown)
-        Say("  and {} more, at most {:.2f}\n", noisy.size() - shown, noisy[shown].noise);
+        text += fmt::format("  and {} more, at most {:.2f}\n", noisy.size() - shown,
+                            noisy[shown].noise);
     if (unknown == 0)
-        Say("estimated missing time: {}\n", FormatDuration(NeededSeconds(noisy, result)));
+        text += fmt::format("estimated missing time: {}\n",
+                            FormatDuration(NeededSeconds(noisy, result)));
+    return text;
 }
 
 }  // namespace
@@ -117,10 +125,9 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
     if (settings.quiet) return;
     WarnOfRejected(rejected, TalkOf(settings));
     if (settings.jsonProgress) return;
-    PrintSummary(result, settings.schedule.cap, provenance.trend.kind);
-    if (!result.shares.empty()) PrintShares(result.shares);
-    if (result.timeUp) PrintShortfall(provenance, result);
-    PrintCapped(provenance, result);
+    Say("{}{}{}{}", SummaryOf(result, settings.schedule.cap, provenance.trend.kind),
+        SharesOf(result.shares), result.timeUp ? ShortfallOf(provenance, result) : "",
+        CappedOf(provenance, result));
 }
 
 ProgressListener AdviseDenoising(int64_t pixels, const Talk& talk, ProgressListener listener) {

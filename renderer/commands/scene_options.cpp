@@ -1,17 +1,18 @@
 #include "renderer/commands/scene_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
 
-#include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/option_values.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
 #include "renderer/render/provenance.h"
+#include "renderer/render/session.h"
 
 namespace lull {
 
@@ -176,9 +177,12 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
     app.add_option("SCENE", options->file, "Scene to read: pbrt-v3, or glTF 2.0 (.gltf, .glb)")
         ->required();
     AddFilmOptions(app, &options->compile.film);
-    AddChoiceOption(app, "--integrator", &options->integrator,
-                    "Find light by paths from the camera, or from lights too [the scene's]")
-        ->group("Sampling");
+    const std::vector<std::string> integrators = IntegratorNames();
+    app.add_option("--integrator", options->integrator,
+                   "Find light by paths from the camera, or from lights too [the scene's]")
+        ->group("Sampling")
+        ->check(OneOf(integrators))
+        ->type_name(fmt::format("{}", fmt::join(integrators, "|")));
     AddCompileOptions(app, &options->compile);
     app.add_flag("--substitute", options->substitute,
                  "Replace missing and unsupported parts of the scene, with warnings")
@@ -203,19 +207,12 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
             "glTF, set them in the pbrt-v3 scene");
     Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
                                      : ParsePbrt(options.file, warnings);
-    if (options.integrator)
-        SetIntegrator(*options.integrator == IntegratorKind::Bdpt ? "bdpt" : "path", &description);
+    if (!options.integrator.empty()) SetIntegrator(options.integrator, &description);
     if (options.exposure != 0) SetExposure(options.exposure, &description);
     if (!options.environment.empty())
         SetEnvironment(options.environment, options.environmentRotation, &description);
     if (isGltf) LightIfDark(&description, warnings);
     return description;
-}
-
-void CheckFilmFits(const PixelRect& region, const FilmOptions& options) {
-    CheckMemory(Film::Bytes(region, options),
-                fmt::format("an image of {}x{} pixels", region.Width(), region.Height()),
-                "render it in parts with --crop, or smaller with --resolution");
 }
 
 SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptions,

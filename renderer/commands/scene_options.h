@@ -4,7 +4,6 @@
 #include <CLI/App.hpp>
 #include <memory>
 
-#include "renderer/base/enum_names.h"
 #include "renderer/commands/talk.h"
 #include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
@@ -12,21 +11,12 @@
 
 namespace lull {
 
-// Ways of finding light that can be chosen in place of the scene's.
-enum class IntegratorKind { Path, Bdpt };
-
-template <>
-struct EnumNames<IntegratorKind> {
-    static constexpr std::pair<IntegratorKind, const char*> all[] = {
-        {IntegratorKind::Path, "path"}, {IntegratorKind::Bdpt, "bdpt"}};
-};
-
 struct SceneOptions {
     std::string file;
     bool substitute = false;  // continue without missing and unsupported parts
     bool isVerbose = false;   // print warnings that do not concern the image
     CompileOptions compile;
-    std::optional<IntegratorKind> integrator;  // nothing: the scene's
+    std::string integrator;  // empty: the scene's
     GltfOptions view;
     std::string environment;  // empty: the scene's own
     double environmentRotation = 0, exposure = 0;
@@ -42,9 +32,6 @@ Warnings MakePrintedWarnings(const SceneOptions&, const Talk& = {});
 
 // Reads the scene's file. Throws Error, and leaves others in the warnings, as ParsePbrt() does.
 Description LoadDescription(const SceneOptions&, Warnings&);
-
-// Throws Error if the memory cannot hold such a film.
-void CheckFilmFits(const PixelRect& region, const FilmOptions&);
 
 // A scene that has been read, and its film as the options change it, before it is compiled,
 // which will give the film's warnings.

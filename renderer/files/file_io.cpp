@@ -223,8 +223,6 @@ void AtomicFile::Commit() {
     SyncDirectory(state->target.path.parent_path());
 }
 
-std::string AtomicFile::Temporary() const { return state->file.temporary.string(); }
-
 void WriteFileAtomically(const std::string& path, std::span<const std::byte> bytes) {
     AtomicFile file(path);
     file.WriteAt(0, bytes);

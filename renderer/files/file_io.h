@@ -29,9 +29,6 @@ class AtomicFile {
     // Throw Error as WriteFileAtomically() does.
     void WriteAt(int64_t offset, std::span<const std::byte> bytes);
     void Commit();
-    // Returns the name of the new file, for libraries that write files themselves; empty if it is
-    // not a regular file.
-    std::string Temporary() const;
 
   private:
     struct State;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "renderer/base/error.h"
 
@@ -15,15 +14,15 @@ struct NamedLayer {
     const char* name;
     bool AovSet::*wanted;
 };
-constexpr std::array<NamedLayer, 9> kLayers = {{{"albedo", &AovSet::albedo},
-                                                {"normal", &AovSet::normal},
-                                                {"depth", &AovSet::depth},
-                                                {"position", &AovSet::position},
-                                                {"object", &AovSet::object},
-                                                {"material", &AovSet::material},
-                                                {"noise", &AovSet::noise},
-                                                {"alpha", &AovSet::alpha},
-                                                {"cryptomatte", &AovSet::cryptomatte}}};
+constexpr NamedLayer kLayers[] = {{"albedo", &AovSet::albedo},
+                                  {"normal", &AovSet::normal},
+                                  {"depth", &AovSet::depth},
+                                  {"position", &AovSet::position},
+                                  {"object", &AovSet::object},
+                                  {"material", &AovSet::material},
+                                  {"noise", &AovSet::noise},
+                                  {"alpha", &AovSet::alpha},
+                                  {"cryptomatte", &AovSet::cryptomatte}};
 
 }  // namespace
 
@@ -41,16 +40,20 @@ std::string TextOf(const AovSet& set) {
     return NameOf(set) + (set.throughSpecular ? " through specular" : "");
 }
 
+std::string AllAovs(const char* separator) {
+    std::string names;
+    for (const NamedLayer& layer : kLayers)
+        names.append(names.empty() ? "" : separator).append(layer.name);
+    return names;
+}
+
 AovSet ParseAovs(const std::vector<std::string>& names) {
     AovSet set;
     for (const std::string& name : names) {
         const auto layer = std::ranges::find(kLayers, name, &NamedLayer::name);
-        if (layer == kLayers.end())
-            throw Error(
-                fmt::format("there is no layer \"{}\", but albedo, normal, depth, position, "
-                            "object, material, noise, alpha and cryptomatte, with commas between "
-                            "them",
-                            name));
+        if (layer == std::end(kLayers))
+            throw Error(fmt::format("there is no layer \"{}\", but {}, with commas between them",
+                                    name, AllAovs(", ")));
         set.*layer->wanted = true;
     }
     return set;

@@ -25,6 +25,9 @@ std::string NameOf(const AovSet&);
 // Returns the same in words, with throughSpecular, for headers.
 std::string TextOf(const AovSet&);
 
+// Returns the names of all, with a separator between them.
+std::string AllAovs(const char* separator);
+
 // Reads such names, in any order. Throws Error naming the first unknown one.
 AovSet ParseAovs(const std::vector<std::string>& names);
 

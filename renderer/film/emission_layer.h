@@ -19,6 +19,7 @@ class EmissionLayer {
     // Groups of lights are denoised one by one, each with its lamps.
     static bool IsWanted(const LayerOptions& o) { return o.features && o.groups.Count() == 0; }
     static int64_t Bytes(const LayerOptions&) { return int64_t(sizeof(EmissionSums)); }
+    static int Channels(const LayerOptions&) { return 0; }
     EmissionLayer(const PixelRect& region, const LayerOptions&) : plane(region) {}
 
     static bool NeedsFirstHits(const LayerOptions&) { return true; }

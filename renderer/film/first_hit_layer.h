@@ -73,6 +73,7 @@ class FirstHitLayer {
             (o.features ? sizeof(FeatureSums) : 0) + (WantsSurface(o) ? sizeof(SurfaceSums) : 0) +
             (WantsPlace(o) ? sizeof(PlaceSums) : 0) + (WantsNearest(o) ? sizeof(NearestHit) : 0));
     }
+    static int Channels(const LayerOptions& o) { return o.aovs.Hits() ? 2 * 12 : 0; }
     FirstHitLayer(const PixelRect& region, const LayerOptions& o) {
         if (o.features) features.emplace(region);
         if (WantsSurface(o)) surface.emplace(region);

@@ -3,6 +3,8 @@
 //   static bool IsWanted(const LayerOptions&)
 //   static int64_t Bytes(const LayerOptions&)
 //       the memory that a pixel takes, where it is wanted
+//   static int Channels(const LayerOptions&)
+//       the floats a pixel that its channels take until they are written, where it is wanted
 //   Kind(const PixelRect& region, const LayerOptions&)
 //   static bool NeedsFirstHits(const LayerOptions&)
 //       whether Add() reads LayerSample::hit
@@ -38,14 +40,14 @@ class Layers {
             if (Kind::IsWanted(options)) kind.emplace(region, options);
         });
     }
-    // Returns the memory that a pixel takes.
+    // Return the memory that a pixel takes, and what its channels take in the end.
     static int64_t Bytes(const LayerOptions& wanted) {
-        int64_t bytes = 0;
-        Kinds kinds;
-        ForEachOptional(kinds, [&]<typename Kind>(const std::optional<Kind>&) {
-            if (Kind::IsWanted(wanted)) bytes += Kind::Bytes(wanted);
+        return Sum(wanted, []<typename Kind>(const LayerOptions& o) { return Kind::Bytes(o); });
+    }
+    static int64_t ChannelBytes(const LayerOptions& wanted) {
+        return Sum(wanted, []<typename Kind>(const LayerOptions& o) {
+            return Kind::Channels(o) * int64_t(sizeof(float));
         });
-        return bytes;
     }
 
     const LayerOptions& Options() const { return options; }
@@ -91,6 +93,16 @@ class Layers {
   private:
     using Kinds =
         OptionalKinds<FirstHitLayer, SquareLayer, EmissionLayer, MatteLayer, LightGroupLayer>;
+
+    template <typename Count>
+    static int64_t Sum(const LayerOptions& wanted, const Count& count) {
+        int64_t sum = 0;
+        Kinds kinds;
+        ForEachOptional(kinds, [&]<typename Kind>(const std::optional<Kind>&) {
+            if (Kind::IsWanted(wanted)) sum += count.template operator()<Kind>(wanted);
+        });
+        return sum;
+    }
 
     LayerOptions options;
     Kinds kinds;

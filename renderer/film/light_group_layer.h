@@ -19,6 +19,7 @@ class LightGroupLayer {
         return o.groups.Count() * int64_t(sizeof(Sum) * (o.groupBackground ? 2 : 1) +
                                           (o.groupNoise ? sizeof(Noise) : 0));
     }
+    static int Channels(const LayerOptions& o) { return 2 * 3 * o.groups.Count(); }
     LightGroupLayer(const PixelRect& region, const LayerOptions& o) {
         for (int i = 0; i < o.groups.Count(); ++i) planes.emplace_back(region, i, o);
     }

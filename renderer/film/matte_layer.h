@@ -65,6 +65,7 @@ class MatteLayer {
     static int64_t Bytes(const LayerOptions& o) {
         return int64_t(sizeof(AlphaPixel) + (o.aovs.cryptomatte ? sizeof(CryptoPixel) : 0));
     }
+    static int Channels(const LayerOptions&) { return 25; }
     MatteLayer(const PixelRect& region, const LayerOptions& o) : alpha(region) {
         if (o.aovs.cryptomatte) crypto.emplace(region);
     }

@@ -14,6 +14,7 @@ class SquareLayer {
     static int64_t Bytes(const LayerOptions& o) {
         return int64_t(o.features ? sizeof(float) : sizeof(double));
     }
+    static int Channels(const LayerOptions& o) { return o.aovs.noise ? 2 : 0; }
     // The denoiser, which has little use for the rest of a double, halves the memory.
     SquareLayer(const PixelRect& region, const LayerOptions& o)
         : plane(o.features ? Plane(PixelPlane<float>(region)) : Plane(PixelPlane<double>(region))) {

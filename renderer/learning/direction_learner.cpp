@@ -57,7 +57,7 @@ void CheckQuadtree(const Guide& guide, const GuideLeaf& leaf) {
 }
 
 // Finds indices that would take a walk through the trees out of bounds.
-void CheckGuide(const Guide& guide) {
+void CheckSaved(const Guide& guide) {
     if (guide.space.nodes.empty())
         return Require(guide.leaves.empty() && guide.quads.empty(), kGuideDamaged);
     Require(guide.space.IsValid(guide.leaves.size()), kGuideDamaged);
@@ -73,7 +73,7 @@ Guide GetGuide(StateReader* reader) {
     guide.space = GetSpaceTree(reader, kGuideDamaged);
     guide.leaves = reader->GetVector<GuideLeaf>(kGuideDamaged);
     guide.quads = reader->GetVector<QuadNode>(kGuideDamaged);
-    CheckGuide(guide);
+    CheckSaved(guide);
     if (!guide.space.nodes.empty()) guide.space.Index();
     return guide;
 }

@@ -7,7 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "renderer/base/enum_names.h"
 #include "renderer/learning/learning.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
@@ -67,23 +66,5 @@ RenderIdentity IdentityOf(const Provenance&, const std::string& sceneHash);
 
 // Returns the same as a text, a line each.
 std::string TextOf(const RenderIdentity&);
-
-template <>
-struct EnumNames<SamplerKind> {
-    static constexpr std::pair<SamplerKind, const char*> all[] = {
-        {SamplerKind::Random, "random"},
-        {SamplerKind::Sobol, "sobol"},
-        {SamplerKind::SobolHalves, "sobol-halves"}};
-};
-template <>
-struct EnumNames<Estimator> {
-    static constexpr std::pair<Estimator, const char*> all[] = {{Estimator::Combined, "combined"},
-                                                                {Estimator::PbrtV3, "pbrt-v3"}};
-};
-template <>
-struct EnumNames<TextureFiltering> {
-    static constexpr std::pair<TextureFiltering, const char*> all[] = {
-        {TextureFiltering::Bilinear, "bilinear"}, {TextureFiltering::PbrtV3, "pbrt-v3"}};
-};
 
 }  // namespace lull

@@ -48,7 +48,7 @@ struct RenderOptions {
     int threads = 0;  // 0: all
 
     // Makes each block's own stopping criterion; empty: all continue to the cap.
-    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> makeCriterion;
+    CriterionMaker makeCriterion;
     // How the numbers in their decisions go, from which progress predicts the end; nothing: it does
     // not.
     std::optional<RuleTrend> trend;

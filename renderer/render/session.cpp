@@ -4,7 +4,9 @@
 #include <tbb/info.h>
 
 #include "renderer/base/error.h"
+#include "renderer/base/memory.h"
 #include "renderer/denoise/denoiser.h"
+#include "renderer/film/splat_plane.h"
 #include "renderer/learning/learners.h"
 #include "renderer/progress/time_limit.h"
 #include "renderer/render/first_look.h"
@@ -26,11 +28,6 @@ void Tell(const std::function<void(const std::string&)>& listener,
     if (listener) listener(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
-    options.withSpreads = IsBidirectional(scene.integrator);
-    return options;
-}
-
 // Returns what the denoiser takes in addition to the sums: its inputs take the place of the half
 // and of what it alone reads, which is freed row by row.
 int64_t BytesOfDenoising(const LayerOptions& layers) {
@@ -42,14 +39,28 @@ int64_t BytesOfDenoising(const LayerOptions& layers) {
     return kDenoiserRows + std::max<int64_t>(0, taken - freed);
 }
 
+// Returns the bytes a pixel of what is made of layers in the end.
+int64_t BytesMadeOf(const LayerOptions& layers) {
+    return Layers::ChannelBytes(layers) + (layers.features ? BytesOfDenoising(layers) : 0);
+}
+
 }  // namespace
 
-int64_t BytesOfLayers(const LayerOptions& layers) {
-    const AovSet& aovs = layers.aovs;
-    const size_t channels = (aovs.Hits() || aovs.noise ? 2 * 13 : 0) + (aovs.Mattes() ? 25 : 0) +
-                            size_t(layers.groups.Count()) * 2 * 3;
-    return Layers::Bytes(layers) + int64_t(channels * sizeof(float)) +
-           (layers.features ? BytesOfDenoising(layers) : 0);
+FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
+    options.withSpreads = IsBidirectional(scene.integrator);
+    return options;
+}
+
+void CheckFilmFits(const PixelRect& region, const FilmOptions& film, int64_t more) {
+    const int groups = film.layers.groups.Count();
+    const int64_t splats = film.withSpreads ? (1 + groups) * int64_t(sizeof(SplatPixel)) : 0;
+    const bool hasLayers = Layers::Bytes(film.layers) > 0;
+    CheckMemory(
+        Film::Bytes(region, film) + region.Area() * (BytesMadeOf(film.layers) + splats + more),
+        fmt::format("an image of {}x{} pixels{}", region.Width(), region.Height(),
+                    hasLayers ? " with its layers" : ""),
+        fmt::format("render it in parts with --crop, {}or smaller with --resolution",
+                    groups > 0 ? "with fewer light groups, " : ""));
 }
 
 Session::Session(const Scene& scene, const PixelRect& region, SessionOptions given)

@@ -26,6 +26,11 @@ Kind ReadDepth(const Entity& entity, int maxDepth) {
     return kind;
 }
 
+template <typename... Kinds>
+std::vector<std::string> NamesOfKinds(const std::variant<Kinds...>&) {
+    return {Kinds::Name(false)...};
+}
+
 bool AsksForBdpt(const std::string& name) {
     return name == "bdpt" || name == "mlt" || name == "sppm";
 }
@@ -34,6 +39,8 @@ bool AsksForBdpt(const std::string& name) {
 
 std::string PathIntegrator::Text() const { return TextOfDepth(maxDepth, rrThreshold); }
 std::string BdptIntegrator::Text() const { return TextOfDepth(maxDepth, rrThreshold); }
+
+std::vector<std::string> IntegratorNames() { return NamesOfKinds(Integrator()); }
 
 std::string NameOf(const Integrator& integrator, bool isVolumetric) {
     return std::visit([&](const auto& kind) { return kind.Name(isVolumetric); }, integrator);

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "renderer/input/description.h"
 
@@ -42,6 +43,8 @@ inline bool IsBidirectional(const Integrator& integrator) {
     return std::holds_alternative<BdptIntegrator>(integrator);
 }
 
+// Returns the names of all kinds, where nothing is volumetric.
+std::vector<std::string> IntegratorNames();
 std::string NameOf(const Integrator&, bool isVolumetric);
 std::string TextOf(const Integrator&);  // its parameters in words
 int MaxDepth(const Integrator&);

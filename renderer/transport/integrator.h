@@ -19,6 +19,11 @@ class LightChoiceRecord;
 // ray that continues the path is the BSDF sample of the direct light as well, weighed against
 // the choice of *any* light.
 enum class Estimator { Combined, PbrtV3 };
+template <>
+struct EnumNames<Estimator> {
+    static constexpr std::pair<Estimator, const char*> all[] = {{Estimator::Combined, "combined"},
+                                                                {Estimator::PbrtV3, "pbrt-v3"}};
+};
 
 // How many samples the strategies of bidirectional path tracing take for one of a pixel.
 struct BdptShares {

@@ -329,11 +329,4 @@ std::vector<float> VisibleMap(const VisibleDifference& difference) {
     return std::move(sum.values);
 }
 
-double Quality(double pooled) {
-    // Below 0.1 the curve is continued as a line.
-    constexpr double slope = 0.0439569391310215, power = 0.9302042722702026, knee = 0.1;
-    return 10 -
-           slope * (pooled <= knee ? std::pow(knee, power - 1) * pooled : std::pow(pooled, power));
-}
-
 }  // namespace lull

@@ -66,8 +66,4 @@ double PooledDifference(const VisibleDifference&);
 // Returns the visible difference at each pixel, in units of PooledDifference().
 std::vector<float> VisibleMap(const VisibleDifference&);
 
-// Returns the quality of the paper's scale for a pooled difference: 10 where none is seen, and one
-// less where three in four people prefer the reference (just-objectionable differences, JOD).
-double Quality(double pooled);
-
 }  // namespace lull

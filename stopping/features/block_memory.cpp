@@ -18,23 +18,12 @@ void BlockMemory::Add(BlockMeasures measures) {
 }
 
 bool BlockMemory::Complete(BlockMeasures* measures) {
-    if (std::ranges::none_of(settings.features, IsDrop)) return true;
-    const std::vector<double>& h = measures->Of(Feature::H);
-    AddEntropies(measures->spp, h, &entropies);
-    bool complete = true;
-    const auto put = [&](Feature feature, const auto& measure) {
-        if (!Needs(settings, feature)) return;
-        std::optional<std::vector<double>> drop = measure();
-        complete = complete && drop;
-        if (drop) measures->Of(feature) = std::move(*drop);
-    };
-    put(Feature::EntropyDrop,
-        [&] { return LatestDrop(entropies, std::vector<double>(h.size(), 1)); });
-    put(Feature::VisibleDrop, [&] {
-        return LatestVisibleDrop(entropies, measures->lightness,
-                                 VisibilityWith(measures->variance, settings.visibility));
-    });
-    return complete;
+    if (!Needs(settings, Feature::VisibleDrop)) return true;
+    AddEntropies(measures->spp, measures->Of(Feature::H), &entropies);
+    std::optional<std::vector<double>> drop = LatestVisibleDrop(
+        entropies, measures->lightness, VisibilityWith(measures->variance, settings.visibility));
+    if (drop) measures->Of(Feature::VisibleDrop) = std::move(*drop);
+    return drop.has_value();
 }
 
 void BlockMemory::Save(StateWriter* writer) const {

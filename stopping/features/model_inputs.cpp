@@ -18,22 +18,13 @@ namespace {
 // Whether an entropy is asked for, or its fall.
 bool NeedsEntropy(const ModelSettings& settings, Feature entropy) {
     return std::ranges::any_of(settings.features, [&](Feature f) {
-        return f == entropy || (IsDrop(f) && entropy == Feature::H);
+        return f == entropy || (f == Feature::VisibleDrop && entropy == Feature::H);
     });
 }
 
 bool NeedsEntropies(const ModelSettings& settings) {
-    return std::ranges::any_of(settings.features,
-                               [](Feature f) { return IsEntropy(f) || IsDrop(f); });
-}
-
-bool NeedsDisplayed(const ModelSettings& settings) {
-    return NeedsEntropies(settings) || Needs(settings, Feature::Attributes26);
-}
-
-bool NeedsStatistics(const ModelSettings& settings) {
-    return std::any_of(settings.features.begin(), settings.features.end(),
-                       [](Feature f) { return HasSubBlocks(f) && !IsEntropy(f) && !IsDrop(f); });
+    return Needs(settings, Feature::VisibleDrop) ||
+           std::ranges::any_of(settings.features, IsEntropy);
 }
 
 // Measures the features of the display image.
@@ -54,21 +45,13 @@ void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
 void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
     const LightnessNoiseStatistics s = SubBlockStatistics(ComputeLightnessNoise(view), view.width,
                                                           view.height, kMeasuredSubBlocks);
-    auto put = [&](Feature feature, const std::vector<float>& values) {
-        measures->Of(feature).assign(values.begin(), values.end());
-    };
-    put(Feature::Lightness, s.lightness);
-    put(Feature::Noise, s.noise);
-    put(Feature::MaskedNoise, s.maskedNoise);
     measures->Of(Feature::DetailMaskedNoise) =
         DetailMaskedNoise(s.halfNoise, s.deviation, s.texture);
 }
 
 int ValueCount(const ModelSettings& settings, Feature feature) {
     if (feature == Feature::Attributes26) return kAttributes;
-    const bool isEntropy =
-        IsEntropy(feature) || (IsDrop(feature) && feature != Feature::VisibleDrop);
-    return isEntropy ? settings.m : kMeasuredSubBlocks;
+    return IsEntropy(feature) ? settings.m : kMeasuredSubBlocks;
 }
 
 double Pooled(const Pool& pool, const std::vector<double>& values) {
@@ -83,23 +66,20 @@ double LeastNoise(Feature feature) { return feature == Feature::VisibleDrop ? 0.
 // Brings values near the unit interval, or to where differences mean the same everywhere.
 double Scaled(Feature feature, double value) {
     if (IsNormalized(feature)) return value;
-    if (feature == Feature::Lightness) return value / 100;
     return std::log(std::max(value, 0.0) + LeastNoise(feature));
 }
 
 }  // namespace
 
 ViewNeed NeedOf(const ModelSettings& settings) {
-    return NeedsStatistics(settings)  ? ViewNeed::MeanAndHalf
-           : NeedsDisplayed(settings) ? ViewNeed::Mean
-                                      : ViewNeed::Nothing;
+    return Needs(settings, Feature::DetailMaskedNoise) ? ViewNeed::MeanAndHalf : ViewNeed::Mean;
 }
 
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
     CheckView(view, NeedOf(settings));
     BlockMeasures measures{.spp = view.spp, .variance = view.variance};
-    if (NeedsDisplayed(settings)) MeasureDisplayed(view, settings, &measures);
-    if (NeedsStatistics(settings)) MeasureStatistics(view, &measures);
+    MeasureDisplayed(view, settings, &measures);
+    if (Needs(settings, Feature::DetailMaskedNoise)) MeasureStatistics(view, &measures);
     if (Needs(settings, Feature::VisibleDrop))
         measures.lightness = MeasureLightness(view, kMeasuredSubBlocks);
     return measures;
@@ -109,15 +89,10 @@ std::vector<InputRange> InputRanges(const ModelSettings& settings) {
     std::vector<InputRange> ranges;
     int begin = 0;
     for (Feature feature : settings.features) {
-        InputRange range{feature, begin, 1, 1};
-        if (feature != Feature::LogSpp) {
-            const bool pooled = !settings.pools.empty() && HasSubBlocks(feature);
-            range.count = pooled ? int(settings.pools.size()) : ValueCount(settings, feature);
-            if (!pooled && HasSubBlocks(feature))
-                range.side = int(std::lround(std::sqrt(range.count)));
-        }
-        ranges.push_back(range);
-        begin += range.count;
+        const bool pooled = !settings.pools.empty() && HasSubBlocks(feature);
+        const int count = pooled ? int(settings.pools.size()) : ValueCount(settings, feature);
+        ranges.push_back({feature, begin, count});
+        begin += count;
     }
     return ranges;
 }
@@ -131,10 +106,6 @@ int InputCount(const ModelSettings& settings) {
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings) {
     std::vector<double> inputs;
     for (Feature feature : settings.features) {
-        if (feature == Feature::LogSpp) {
-            inputs.push_back(std::log(measures.spp / 20.0) / std::log(500.0));
-            continue;
-        }
         const std::vector<double>& values = measures.Of(feature);
         if (values.size() != size_t(ValueCount(settings, feature)))
             throw std::invalid_argument("the measures of " + FeatureNames({&feature, 1}) +

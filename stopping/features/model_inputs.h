@@ -15,11 +15,11 @@ inline constexpr int kMeasuredSubBlocks = 100;
 
 // The measures of a block at one spp: for each feature the values of its sub-blocks,
 // row-major (m entropies, kMeasuredSubBlocks of other statistics), or the attributes of the block;
-// empty if it is not asked for, and always for LogSpp.
+// empty if it is not asked for.
 struct BlockMeasures {
     int spp = 0;
     double variance = 1;  // as in BlockView
-    std::array<std::vector<double>, size_t(Feature::LogSpp) + 1> values = {};
+    std::array<std::vector<double>, size_t(Feature::Attributes26) + 1> values = {};
     SubBlockLightness lightness = {};  // for visible_drop
 
     std::vector<double>& Of(Feature feature) { return values[size_t(feature)]; }
@@ -37,7 +37,6 @@ BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings)
 struct InputRange {
     Feature feature;
     int begin = 0, count = 0;
-    int side = 1;  // side * side = count where there is one value a sub-block, else 1
 };
 
 // Returns the ranges in the order of the settings' features; they cover all inputs.
@@ -45,10 +44,9 @@ std::vector<InputRange> InputRanges(const ModelSettings& settings);
 int InputCount(const ModelSettings& settings);
 
 // Returns the input of one step, InputCount() values, before it is normalised over a window:
-// entropies as they are; noise, times the caution, and drops as log(v + 0.001); lightness / 100;
-// the spp as log(spp / 20) / log(500), which is 1 at 10,000. Values are pooled before their
-// logarithm is taken. Throws std::invalid_argument if the measures of a feature have a wrong
-// length.
+// entropies and attributes as they are; noise, times the caution, as log(v + 0.001), visible as
+// log(v + 0.1). Values are pooled before their logarithm is taken. Throws std::invalid_argument if
+// the measures of a feature have a wrong length.
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
 
 // Returns whether noise, pooled to one number, is the only input of a network.

@@ -12,18 +12,13 @@ namespace lull {
 
 namespace {
 
-constexpr std::array<std::pair<Feature, const char*>, 11> kFeatureNames = {
+constexpr std::array<std::pair<Feature, const char*>, 6> kFeatureNames = {
     {{Feature::H, "H"},
      {Feature::H1, "H1"},
      {Feature::H2, "H2"},
-     {Feature::Lightness, "lightness"},
-     {Feature::Noise, "noise"},
-     {Feature::MaskedNoise, "masked_noise"},
      {Feature::DetailMaskedNoise, "detail_masked_noise"},
-     {Feature::EntropyDrop, "entropy_drop"},
      {Feature::VisibleDrop, "visible_drop"},
-     {Feature::Attributes26, "attributes26"},
-     {Feature::LogSpp, "logspp"}}};
+     {Feature::Attributes26, "attributes26"}}};
 
 Feature ParseFeature(const std::string& name) {
     std::string known;

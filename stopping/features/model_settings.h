@@ -10,46 +10,27 @@
 namespace lull {
 
 // Measurements of a block: the entropies of each of m sub-blocks (the paper's features, see
-// svd_entropy.h), statistics of each of 10 x 10 sub-blocks (see lightness_noise.h), the fall of the
-// entropies H since half as many samples and the noise that it makes visible (see entropy_drop.h;
-// for m = 100), the differences to filtered versions of the whole block (see attributes26.h), and
-// the logarithm of the spp, one number.
-enum class Feature {
-    H,
-    H1,
-    H2,
-    Lightness,
-    Noise,
-    MaskedNoise,
-    DetailMaskedNoise,
-    EntropyDrop,
-    VisibleDrop,
-    Attributes26,
-    LogSpp
-};
+// svd_entropy.h), the noise of each of 10 x 10 sub-blocks, masked by detail (lightness_noise.h) or
+// made visible by the fall of the entropies H since half as many samples (entropy_drop.h; for
+// m = 100), and the differences to filtered versions of the whole block (attributes26.h).
+enum class Feature { H, H1, H2, DetailMaskedNoise, VisibleDrop, Attributes26 };
 
-// Convert to and from names: "H", "H1", "H2", "lightness", "noise", "masked_noise",
-// "detail_masked_noise", "entropy_drop", "visible_drop", "attributes26" and "logspp"; a list is
-// separated by commas. ParseFeatures() throws std::invalid_argument for others, and for duplicates.
+// Convert to and from names: "H", "H1", "H2", "detail_masked_noise", "visible_drop" and
+// "attributes26"; a list is separated by commas. ParseFeatures() throws std::invalid_argument for
+// others, and for duplicates.
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);
 inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
-inline bool IsDrop(Feature feature) {
-    return feature >= Feature::EntropyDrop && feature <= Feature::VisibleDrop;
-}
 // Returns whether a feature is the standard deviation of noise in lightness, which `caution`
 // scales.
 inline bool IsNoise(Feature feature) {
-    return (feature >= Feature::Noise && feature <= Feature::DetailMaskedNoise) ||
-           feature == Feature::VisibleDrop;
+    return feature == Feature::DetailMaskedNoise || feature == Feature::VisibleDrop;
 }
 // Returns whether this feature is normalised over a window, as the paper does with both of its
 // features.
-inline bool IsNormalized(Feature feature) {
-    return IsEntropy(feature) || feature == Feature::Attributes26;
-}
+inline bool IsNormalized(Feature feature) { return !IsNoise(feature); }
 // Returns whether there is a value for each sub-block.
-inline bool HasSubBlocks(Feature feature) { return feature < Feature::Attributes26; }
+inline bool HasSubBlocks(Feature feature) { return feature != Feature::Attributes26; }
 
 // Summarises the values of all sub-blocks in one number, a power mean. Visibility adds up over a
 // picture with exponents of 3 to 4 (probability summation; Quick 1974, Watson 1979).

@@ -36,10 +36,9 @@ BlockMeasures RecordedMeasures(int spp, const RecordedValues& values,
         measures.Of(feature).assign(numbers.begin(), numbers.end());
     };
     for (const Feature feature : settings.features) {
-        if (feature == Feature::LogSpp) continue;
-        if (IsDrop(feature)) {
+        if (feature == Feature::VisibleDrop) {
             put(Feature::H, EntropyChannel(Feature::H, settings.m));
-            if (feature == Feature::VisibleDrop) measures.lightness = RecordedLightness(values);
+            measures.lightness = RecordedLightness(values);
         } else if (feature == Feature::DetailMaskedNoise) {
             measures.Of(feature) =
                 DetailMaskedNoise(values("half_noise"), values("deviation"), values("texture"));

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -52,5 +54,8 @@ struct BlockInfo {
     int index = 0;            // row-major place in the grid of blocks
     double areaFraction = 1;  // pixels of the block / pixels of the image, in (0, 1]
 };
+
+// Makes a block's own criterion, in any thread.
+using CriterionMaker = std::function<std::unique_ptr<Criterion>(const BlockInfo&)>;
 
 }  // namespace lull

@@ -125,7 +125,7 @@ std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block) {
     return MakeCriterion(std::make_shared<const Rule>(std::move(rule)), block);
 }
 
-std::function<std::unique_ptr<Criterion>(const BlockInfo&)> CriteriaOf(Rule rule) {
+CriterionMaker CriteriaOf(Rule rule) {
     return [rule = std::make_shared<const Rule>(std::move(rule))](const BlockInfo& block) {
         return MakeCriterion(rule, block);
     };

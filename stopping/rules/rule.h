@@ -153,8 +153,8 @@ class RuleCriterion final : public Criterion {
 std::unique_ptr<Criterion> MakeCriterion(std::shared_ptr<const Rule> rule,
                                          const BlockInfo& block = {});
 std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block = {});
-// Returns a factory of the criteria of all blocks of an image, for any thread.
-std::function<std::unique_ptr<Criterion>(const BlockInfo&)> CriteriaOf(Rule rule);
+// Returns the maker of the criteria of all blocks of an image.
+CriterionMaker CriteriaOf(Rule rule);
 
 // Context of a rule, in addition to its text.
 struct RuleContext {

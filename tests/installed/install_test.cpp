@@ -53,7 +53,7 @@ std::set<std::string> OptionsIn(const std::string& help) {
     return options;
 }
 
-const char* const kCommands[] = {"render",   "info",    "record", "train", "evaluate",
+const char* const kCommands[] = {"render",   "info",    "record", "train", "evaluate", "denoise",
                                  "selftest", "compare", "bench",  "study", "entropy"};
 
 TEST(Install, RunsWhereItIsMoved) {

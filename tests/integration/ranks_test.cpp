@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* kRender =
     "LULL render scene.pbrt --resolution 100x90 --block 40 --threads 1 --quiet ";
+constexpr const char* kLamp = "LightSource \"point\" \"point from\" [2 1 -2]\n";
 constexpr const char* kShort = "--stop lnoise:0.6 --cap 140 ";  // some blocks stop before
 
 struct RanksTest : testing::Test {
@@ -39,14 +40,34 @@ struct RanksTest : testing::Test {
                 << a << " " << b;
     }
 
-    void ExpectSameLayers(const std::string& a, const std::string& b) {
+    void ExpectSameChannels(const std::string& a, const std::string& b, const char* one) {
         ExpectSame(a, b);
         const ExrImage x = ReadExr(directory.File(a + ".exr")),
                        y = ReadExr(directory.File(b + ".exr"));
-        ASSERT_EQ(x.channels.size(), 17u);
-        ASSERT_EQ(y.channels.size(), 17u);
+        ASSERT_TRUE(x.Find(one)) << one;
+        ASSERT_EQ(x.channels.size(), y.channels.size());
         for (const ExrChannel& channel : x.channels)
             EXPECT_EQ(y.Find(channel.name)->values, channel.values) << channel.name;
+    }
+
+    // Expect the same files, with this channel and all others, of one process and of each number of
+    // ranks; and of three that go on with what two have begun.
+    void ExpectShared(const std::string& options, std::initializer_list<int> counts,
+                      const char* channel = "G") {
+        ExpectSuccess(Run(kRender + options + "-o one.exr"));
+        for (const int ranks : counts) {
+            ExpectSuccess(Run(Ranks(ranks) + kRender + options + "-o some.exr"));
+            ExpectSameChannels("one", "some", channel);
+        }
+    }
+    void ExpectContinued(const std::string& options, const char* channel = "G") {
+        ExpectSuccess(Run(kRender + options + "-o one.exr"));
+        const std::string parts = kRender + options + "-o parts.exr --checkpoint c.h5 --resume ";
+        const Outcome interrupted = RunAndSignal(
+            directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
+        EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
+        ExpectSuccess(Run(Ranks(3) + parts));
+        ExpectSameChannels("one", "parts", channel);
     }
 
     // Returns the lines of a bench without what depends on the machine.
@@ -96,94 +117,36 @@ TEST_F(RanksTest, ShowPreviews) {
 }
 
 // Each learns by itself.
-TEST_F(RanksTest, LearnTheSame) {
-    const std::string render = std::string(kRender) + "--spp 32 --guide on ";
-    ExpectSuccess(Run(render + "-o one.exr"));
-    ExpectSuccess(Run(Ranks(2) + render + "-o some.exr"));
-    ExpectSame("one", "some");
-}
+TEST_F(RanksTest, LearnTheSame) { ExpectShared("--spp 32 --guide on ", {2}); }
 
 TEST_F(RanksTest, ShareLayers) {
-    const std::string render =
-        std::string(kRender) + "--aov albedo,normal,depth,position,object,material,noise ";
-    const std::string guided = render + "--guide on --spp 32 ";
-    ExpectSuccess(Run(guided + "-o one.exr"));
-    ExpectSuccess(Run(Ranks(3) + guided + "-o some.exr"));
-    ExpectSameLayers("one", "some");
-
-    const std::string whole = render + "--stop lnoise:0.5 --cap 250 ";
-    ExpectSuccess(Run(whole + "-o one.exr"));
-    const std::string parts = whole + "-o parts.exr --checkpoint c.h5 --resume ";
-    const Outcome interrupted =
-        RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
-    EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
-    ExpectSuccess(Run(Ranks(3) + parts));
-    ExpectSameLayers("one", "parts");
+    const std::string layers = "--aov albedo,normal,depth,position,object,material,noise ";
+    ExpectShared(layers + "--guide on --spp 32 ", {3}, "noise");
+    EXPECT_EQ(ReadExr(directory.File("some.exr")).channels.size(), 17u);
+    ExpectContinued(layers + "--stop lnoise:0.5 --cap 250 ", "noise");
 }
 
 TEST_F(RanksTest, ShareLightGroups) {
-    const std::string render =
-        std::string(kRender) +
-        "--light-groups environment --denoise --stop denoised:0.1 --cap 200 ";
-    directory.Write(
-        "scene.pbrt",
-        SceneText(std::string("LightSource \"point\" \"point from\" [2 1 -2]\n") + kSphere));
-    ExpectSuccess(Run(render + "-o one.exr"));
-    ExpectSuccess(Run(Ranks(3) + render + "-o some.exr"));
-    ExpectSame("one", "some");
-    const ExrImage one = ReadExr(directory.File("one.exr")),
-                   some = ReadExr(directory.File("some.exr"));
-    ASSERT_TRUE(one.Find("light.rest.G"));
-    for (const ExrChannel& channel : one.channels)
-        EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
+    directory.Write("scene.pbrt", SceneText(kLamp + std::string(kSphere)));
+    ExpectShared("--light-groups environment --denoise --stop denoised:0.1 --cap 200 ", {3},
+                 "light.rest.G");
 }
 
-// Each rank traces a part of the light paths, and what they bring is learned from all.
+// Each rank traces a part of the light paths, and what they bring is learned from all; each goes on
+// with what others have begun.
 TEST_F(RanksTest, ShareLightPaths) {
-    directory.Write("scene.pbrt", SceneText(std::string(kSphere) +
-                                            "LightSource \"point\" \"point from\" [2 1 -2]\n"));
-    const std::string render =
-        std::string(kRender) + "--integrator bdpt --aov noise --light-groups environment ";
-    const std::string whole = render + "--stop lnoise:0.5 --cap 100 ";
-    ExpectSuccess(Run(whole + "-o one.exr"));
-    for (const int ranks : {2, 3}) {
-        ExpectSuccess(Run(Ranks(ranks) + whole + "-o some.exr"));
-        ExpectSame("one", "some");
-        const ExrImage one = ReadExr(directory.File("one.exr")),
-                       some = ReadExr(directory.File("some.exr"));
-        ASSERT_TRUE(one.Find("light.rest.G"));
-        for (const ExrChannel& channel : one.channels)
-            EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
-    }
-    // Each goes on with what others have begun.
-    const std::string parts = whole + "-o parts.exr --checkpoint c.h5 --resume ";
-    const Outcome interrupted =
-        RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
-    EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
-    ExpectSuccess(Run(Ranks(3) + parts));
-    ExpectSame("one", "parts");
+    directory.Write("scene.pbrt", SceneText(kSphere + std::string(kLamp)));
+    const std::string options =
+        "--integrator bdpt --aov noise --light-groups environment --stop lnoise:0.5 --cap 100 ";
+    ExpectShared(options, {2, 3}, "light.rest.G");
+    ExpectContinued(options, "light.rest.G");
 }
 
 // Rank 0 denoises blocks from the sums of all.
 TEST_F(RanksTest, DenoiseTheSame) {
-    const std::string render =
-        std::string(kRender) + "--denoise --stop denoised:0.1 --cap 300 --report ";
-    ExpectSuccess(Run(render + "one.html -o one.exr"));
-    ExpectSuccess(Run(Ranks(3) + render + "some.html -o some.exr"));
-    ExpectSame("one", "some");
-    const ExrImage one = ReadExr(directory.File("one.exr")),
-                   some = ReadExr(directory.File("some.exr"));
-    for (const ExrChannel& channel : one.channels)
-        EXPECT_EQ(some.Find(channel.name)->values, channel.values) << channel.name;
-
-    const std::string parts =
-        std::string(kRender) +
-        "--denoise --stop denoised:0.1 --cap 300 -o parts.exr --checkpoint c.h5 --resume ";
-    const Outcome interrupted =
-        RunAndSignal(directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
-    EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
-    ExpectSuccess(Run(Ranks(3) + parts));
-    ExpectSame("one", "parts");
+    const std::string options = "--denoise --stop denoised:0.1 --cap 300 ";
+    ExpectShared(options + "--report r.html ", {3});
+    ExpectContinued(options);
 }
 
 TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {

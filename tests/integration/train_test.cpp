@@ -24,8 +24,7 @@ struct TrainingDirectory : TemporaryDirectory {
 };
 
 const std::string kSmall =
-    "train data.h5 --human human.csv --preset paper --units 8,4 --m 25 --k 4 --epochs 6 --seed 3 "
-    "--augment ";
+    "train data.h5 --human human.csv --preset paper --units 8,4 --m 25 --k 4 --epochs 6 --seed 3 ";
 
 bool SameWeights(const Network& a, const Network& b) {
     return a.lstm[0].kernel == b.lstm[0].kernel && a.lstm[1].recurrent == b.lstm[1].recurrent &&
@@ -71,14 +70,14 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     const TrainingDirectory directory;
     const std::string options =
         "train data.h5 --human human.csv --preset paper --units none --k 1 --pool rms,p4 --quiet "
-        "--channels masked_noise,logspp --learning-rate 0.02 --epochs 60 ";
+        "--channels H,detail_masked_noise --learning-rate 0.02 --epochs 60 ";
     const Outcome outcome =
         ExpectSuccess(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
     EXPECT_TRUE(Contains(outcome.out, "each viewpoint left out")) << outcome.out;
     EXPECT_TRUE(Contains(ReadBytes(directory.File("judged.csv")), "barn-b"));
     const Model model = ReadModel(directory.File("model.h5"));
     EXPECT_TRUE(model.network.lstm.empty());
-    EXPECT_EQ(FeatureNames(model.settings.features), "masked_noise,logspp");
+    EXPECT_EQ(FeatureNames(model.settings.features), "H,detail_masked_noise");
     ExpectSuccess(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5");
     // How far people are from its stops is known then, and renders say so.
     EXPECT_TRUE(Contains(outcome.out, "80 % of the human thresholds are "));

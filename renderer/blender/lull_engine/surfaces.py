@@ -420,28 +420,40 @@ class _Surface:
         self._divide_base()
         new = self.tree.nodes.new('ShaderNodeBsdfPrincipled')
         self._write_normal(new)
-        p = self.parameters
         for name in _EVEN:
             self._set(principled_input(new, name), self._even(name))
         self._write_radiance(new)
+        self._write_metal(new)
+        self._write_base(new)
+        self._show_alone(new)
+        if self.absorbs:
+            self.copy["lull_absorbs"] = self.absorbs
+        return self.copy
+
+    def _write_metal(self, new):
         if self._are_known(('Metallic', 'Roughness')):
             self._link(new, 'Metallic'), self._link(new, 'Roughness')
-        else:
-            metallic, roughness = self._pixels('Metallic'), self._pixels('Roughness')
-            packed = _packed(np.zeros(3, np.float32), roughness, metallic)
-            image = self._image(packed, 'metal', False)
-            channels = self.tree.nodes.new('ShaderNodeSeparateColor')
-            self.tree.links.new(image.outputs['Color'], channels.inputs[0])
-            self.tree.links.new(channels.outputs[1], principled_input(new, 'Roughness'))
-            self.tree.links.new(channels.outputs[2], principled_input(new, 'Metallic'))
-        if self._are_known(('Base Color', 'Alpha')) and not (
-                self._is_output(p['Alpha']) and self._is_output(p['Base Color']) and
-                p['Alpha'].node != p['Base Color'].node):
+            return
+        metallic, roughness = self._pixels('Metallic'), self._pixels('Roughness')
+        packed = _packed(np.zeros(3, np.float32), roughness, metallic)
+        image = self._image(packed, 'metal', False)
+        channels = self.tree.nodes.new('ShaderNodeSeparateColor')
+        self.tree.links.new(image.outputs['Color'], channels.inputs[0])
+        self.tree.links.new(channels.outputs[1], principled_input(new, 'Roughness'))
+        self.tree.links.new(channels.outputs[2], principled_input(new, 'Metallic'))
+
+    def _write_base(self, new):
+        colour, alpha = self.parameters['Base Color'], self.parameters['Alpha']
+        are_apart = self._is_output(alpha) and self._is_output(colour) and alpha.node != colour.node
+        if self._are_known(('Base Color', 'Alpha')) and not are_apart:
             self._link(new, 'Base Color'), self._link(new, 'Alpha')
         else:
             self._write_colour(new)
         is_clear = bool(principled_input(new, 'Alpha').links) or principled_input(new, 'Alpha').default_value < 1
         self.copy.blend_method = 'BLEND' if is_clear else 'OPAQUE'
+
+    def _show_alone(self, new):
+        """Makes the node the surface, and removes all others that an exporter could take for it."""
         output = self.tree.get_output_node('CYCLES')
         for node in [n for n in self.tree.nodes if n.type == 'OUTPUT_MATERIAL' and n != output]:
             self.tree.nodes.remove(node)
@@ -451,9 +463,6 @@ class _Surface:
         self.tree.links.new(new.outputs[0], output.inputs['Surface'])
         for node in [n for n in self.tree.nodes if n.type == 'BSDF_PRINCIPLED' and n != new]:
             self.tree.nodes.remove(node)
-        if self.absorbs:
-            self.copy["lull_absorbs"] = self.absorbs
-        return self.copy
 
     def _are_known(self, names):
         values = [(n, self.parameters[n]) for n in names]

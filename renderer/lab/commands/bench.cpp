@@ -10,7 +10,6 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
-#include "renderer/commands/layer_options.h"
 #include "renderer/commands/option_values.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/files/result_files.h"
@@ -169,7 +168,7 @@ std::unique_ptr<Bench> Prepare(const Options& options, MpiJob* ranks) {
     RenderJob& render = bench->render;
     const PixelRect& region = render.input.region;
     if (options.denoise) {
-        CheckLayersFit({.layers = {.features = true}}, region);
+        CheckFilmFits(region, {.layers = {.features = true}});
         render.DenoiseBlocks();
     }
     bench->rules = MakeRules(options, render);

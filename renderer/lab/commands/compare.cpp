@@ -6,7 +6,6 @@
 
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/interrupt.h"
-#include "renderer/commands/layer_options.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/lab/commands/compare_options.h"
 #include "renderer/lab/commands/comparison_table.h"
@@ -108,7 +107,7 @@ void AddOtherRules(Compared* compared) {
         compared->humanChecksum = human.checksum;
     }
     if (!options.denoise) return;
-    CheckLayersFit({.layers = {.features = true}}, region);
+    CheckFilmFits(region, {.layers = {.features = true}});
     compared->render.DenoiseBlocks();
     compared->rules.push_back(
         MakeRule("denoised", compared->render.ReadRule("--denoise", kDenoisedRuleName)));

@@ -26,13 +26,11 @@ ignored.
 
 Features for --features (also --channels), a list with commas:
   H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
-  noise, masked_noise, detail_masked_noise, lightness
-                     statistics of 10x10 sub-blocks, never normalised over the window
-  entropy_drop       drop in H from half as many samples
+  detail_masked_noise
+                     noise of 10x10 sub-blocks from half buffers, masked by detail
   visible_drop       visible noise (1.5 to 2 times its L*), from the drop in H, of 10x10 sub-blocks
   attributes26       means and deviations of the block minus its filtered copies, for 13 filters;
                      blocks recorded without them are ignored
-  logspp             logarithm of the samples per pixel
 --pool rms,p4 replaces the values of all sub-blocks by statistics: mean, rms, or pN for the power mean
 with exponent N (3 to 9); none keeps the value of each sub-block.
 
@@ -48,7 +46,7 @@ which renders derive confidence ranges. For the columns of the tables see lull e
 Examples:
   lull train data.h5 --human human.csv -o model.h5
   lull train data.h5 --human human.csv -o model.h5 --leave-out kitchen-view0
-  lull train data.h5 --human human.csv --cross-validate --features masked_noise,logspp
+  lull train data.h5 --human human.csv --cross-validate --features H,detail_masked_noise
       --pool rms,p4 --units 16,8
   lull train data.h5 --human human.csv --cross-validate --preset paper
   lull train --preset paper
@@ -77,15 +75,15 @@ std::string UnitsText(const std::vector<int>& units) {
     return text.empty() ? "none" : text;
 }
 
-void AddUnits(CLI::App& app, const std::string& name, std::vector<int>* units,
-              const std::string& help) {
+void AddUnits(CLI::App& app, std::vector<int>* units) {
     app.add_option_function<std::string>(
-           name,
+           "--units",
            [=](const std::string& text) {
                if (!ParseUnits(text, units))
-                   throw CLI::ValidationError(name, text + " is not a list as 512,128,32, or none");
+                   throw CLI::ValidationError("--units",
+                                              text + " is not a list as 512,128,32, or none");
            },
-           help)
+           "Set the units of the LSTM layers, or none")
         ->type_name("N,N,...")
         ->default_str(UnitsText(*units));
 }
@@ -170,8 +168,7 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
 }
 
 void AddTraining(CLI::App& app, TrainingOptions* t) {
-    AddUnits(app, "--units", &t->units, "Set the units of the LSTM layers, or none");
-    AddUnits(app, "--dense", &t->dense, "Set the units of dense layers before the last one");
+    AddUnits(app, &t->units);
     app.add_option("--dropout", t->dropout, "Drop this fraction of each LSTM layer's inputs")
         ->check(Between(0.0, 0.99))
         ->type_name("X")
@@ -186,7 +183,6 @@ void AddTraining(CLI::App& app, TrainingOptions* t) {
         ->check(WholeNumber())
         ->type_name("N")
         ->capture_default_str();
-    app.add_flag("--augment", t->augment, "Flip and rotate the grid of sub-blocks at random");
     app.add_flag("--balance-viewpoints,!--no-balance-viewpoints", t->balanceViewpoints,
                  "Let each viewpoint count the same, however many blocks of\nit there are" +
                      DefaultNote(t->balanceViewpoints));
@@ -305,10 +301,9 @@ std::string ValuesText(const TrainingPlan& plan) {
     text += fmt::format("--peak-limit {:g}\n", s.peakLimit);
     text += fmt::format("--votes {}\n--vote-spacing {}\n", s.votes,
                         s.voteSpacing > 0 ? s.voteSpacing : s.n);
-    text += fmt::format(
-        "--units {}\n--dense {}\n--dropout {:g}\n--learning-rate {:g}\n--batch {}\n--epochs {}\n",
-        UnitsText(t.units), UnitsText(t.dense), t.dropout, t.learningRate, t.batch, t.epochs);
-    text += t.augment ? "--augment\n" : "";
+    text +=
+        fmt::format("--units {}\n--dropout {:g}\n--learning-rate {:g}\n--batch {}\n--epochs {}\n",
+                    UnitsText(t.units), t.dropout, t.learningRate, t.batch, t.epochs);
     text +=
         flag("balance-viewpoints", t.balanceViewpoints) + flag("class-weights", t.balanceClasses);
     return text + fmt::format("--noisy-weight {:g}\n", t.noisyWeight);

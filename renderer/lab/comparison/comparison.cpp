@@ -180,10 +180,9 @@ TotalCost SumCosts(const Comparison& comparison, const ComparedImage& image) {
     return total;
 }
 
-std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
-    const std::vector<ObservedRule>& rules, const PixelRect& region,
-    const ScheduleOptions& schedule, const ObserverOptions& options,
-    std::vector<BlockHistory>* histories) {
+CriterionMaker MakeObservers(const std::vector<ObservedRule>& rules, const PixelRect& region,
+                             const ScheduleOptions& schedule, const ObserverOptions& options,
+                             std::vector<BlockHistory>* histories) {
     std::vector<std::vector<Block>> blocks;  // by rule
     for (const ObservedRule& rule : rules)
         blocks.push_back(MakeBlocks(region, ScheduleFor(rule, schedule)));

@@ -73,15 +73,15 @@ TotalCost SumCosts(const Comparison&, const ComparedImage&);
 struct ObservedRule {
     std::string name, text;
     int smallestSide = 0;  // pixels; smaller blocks follow a neighbour
-    std::function<std::unique_ptr<Criterion>(const BlockInfo&)> make;
+    CriterionMaker make;
     bool isDenoised = false;  // its image is to be denoised
 };
 
 // Makes the observers of a render, for RenderOptions::makeCriterion; its schedule's smallestSide
 // must be 0. `rules` and `histories`, one per block, must outlive the render.
-std::function<std::unique_ptr<Criterion>(const BlockInfo&)> MakeObservers(
-    const std::vector<ObservedRule>& rules, const PixelRect& region, const ScheduleOptions&,
-    const ObserverOptions&, std::vector<BlockHistory>* histories);
+CriterionMaker MakeObservers(const std::vector<ObservedRule>& rules, const PixelRect& region,
+                             const ScheduleOptions&, const ObserverOptions&,
+                             std::vector<BlockHistory>* histories);
 
 // An observed render that is complete.
 struct ObservedRender {

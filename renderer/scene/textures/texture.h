@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "renderer/base/enum_names.h"
 #include "renderer/base/math.h"
 #include "renderer/input/description.h"
 #include "renderer/scene/interaction.h"
@@ -13,6 +14,11 @@ namespace lull {
 // How images are filtered: bilinearly on the finest level, which is all that thousands of
 // samples need, or as in pbrt-v3, from smaller copies where camera rays hit.
 enum class TextureFiltering { Bilinear, PbrtV3 };
+template <>
+struct EnumNames<TextureFiltering> {
+    static constexpr std::pair<TextureFiltering, const char*> all[] = {
+        {TextureFiltering::Bilinear, "bilinear"}, {TextureFiltering::PbrtV3, "pbrt-v3"}};
+};
 
 // Inputs of a texture. As in pbrt-v3, noise leaves out octaves finer than the
 // distance between samples, which is 0, for full detail, if it is not known.

@@ -67,8 +67,7 @@ std::vector<Feature> MissingFeatures(const BlockRecording& recording,
                                      const ModelSettings& settings) {
     std::vector<Feature> missing;
     for (const Feature feature : settings.features) {
-        const bool fromHalves = IsNoise(feature) && !IsDrop(feature);
-        if ((fromHalves && !HasHalves(recording)) ||
+        if ((feature == Feature::DetailMaskedNoise && !HasHalves(recording)) ||
             (feature == Feature::Attributes26 && recording.absent[ChannelIndex("attributes26")]))
             missing.push_back(feature);
     }

@@ -57,16 +57,9 @@ NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed) {
         weights.lstm.push_back(std::move(l));
         inputs = units;
     }
-    std::vector<int> dense = shape.dense;
-    dense.push_back(1);
-    for (uint64_t layer = 1000; int units : dense) {
-        CheckSize(units, "units");
-        CheckSize(units * inputs, "weights of a layer", kMostWeights);
-        CounterRandom random(seed, {kInitialTag, layer++});
-        weights.dense.push_back(
-            {GlorotUniform(units, inputs, &random), Eigen::VectorXf::Zero(units)});
-        inputs = units;
-    }
+    CheckSize(inputs, "weights of a layer", kMostWeights);
+    CounterRandom random(seed, {kInitialTag, uint64_t(1000)});
+    weights.dense.push_back({GlorotUniform(1, inputs, &random), Eigen::VectorXf::Zero(1)});
     return weights;
 }
 

@@ -56,7 +56,6 @@ struct NetworkWeights {
 struct NetworkShape {
     int inputs = 0, steps = 0;               // of its sequences
     std::vector<int> lstm = {512, 128, 32};  // units; the paper's
-    std::vector<int> dense = {};             // units of dense layers but the last, which has one
 };
 
 // Returns Keras' initial weights: kernels uniform within sqrt(6 / (inputs + outputs)) (Glorot,

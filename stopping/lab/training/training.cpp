@@ -20,28 +20,7 @@ namespace {
 constexpr int kChunkSize = 32;                // samples: enough for fast products of matrices
 constexpr uint32_t kTrainerTag = 0x314e5254;  // "TRN1"
 // Tell random numbers of different purposes apart.
-constexpr uint64_t kOrderTag = 2, kDropoutTag = 3, kSymmetryTag = 4;
-
-// Returns for each of the eight symmetries of a square the input that comes to each place.
-std::vector<std::vector<int>> MakeSymmetries(const ModelSettings& settings) {
-    std::vector<std::vector<int>> symmetries(8, std::vector<int>(size_t(InputCount(settings))));
-    for (int symmetry = 0; symmetry < 8; ++symmetry) {
-        std::vector<int>& sources = symmetries[size_t(symmetry)];
-        std::iota(sources.begin(), sources.end(), 0);
-        for (const InputRange& range : InputRanges(settings)) {
-            const int side = range.side, last = side - 1;
-            if (side == 1) continue;
-            for (int place = 0; place < side * side; ++place) {
-                int x = place % side, y = place / side;
-                if (symmetry & 1) x = last - x;
-                if (symmetry & 2) y = last - y;
-                if (symmetry & 4) std::swap(x, y);
-                sources[size_t(range.begin + place)] = range.begin + y * side + x;
-            }
-        }
-    }
-    return symmetries;
-}
+constexpr uint64_t kOrderTag = 2, kDropoutTag = 3;
 
 std::vector<float> ClassWeights(const TrainingSamples& samples, double noisyShare) {
     std::vector<float> weights;
@@ -74,10 +53,8 @@ void Check(bool isRight, const char* message) {
 }
 
 NetworkShape ShapeOf(const TrainingSamples& samples, const TrainingOptions& options) {
-    return {.inputs = InputCount(samples.settings),
-            .steps = samples.settings.k,
-            .lstm = options.units,
-            .dense = options.dense};
+    return {
+        .inputs = InputCount(samples.settings), .steps = samples.settings.k, .lstm = options.units};
 }
 
 }  // namespace
@@ -85,7 +62,6 @@ NetworkShape ShapeOf(const TrainingSamples& samples, const TrainingOptions& opti
 Trainer::Trainer(const TrainingSamples& samples, const TrainingOptions& options)
     : samples(samples),
       options(options),
-      symmetries(MakeSymmetries(samples.settings)),
       weights(InitialWeights(ShapeOf(samples, options), options.seed)),
       optimizer{.rate = float(options.learningRate), .meanSquares = ZerosLike(weights)} {
     Check(options.batch > 0 && options.epochs > 0, "batch and epochs must be above 0");
@@ -125,14 +101,12 @@ void Trainer::FillChunk(int chunk, int begin, int end, int batchSize) {
     batch.inputs.resize(inputs, count * steps);
     batch.targets.resize(count);
     batch.weights.resize(count);
-    CounterRandom random(options.seed, {kSymmetryTag, uint64_t(step), uint64_t(chunk)});
     for (int s = 0; s < count; ++s) {
         const size_t sample = order[size_t(begin + s)];
-        const std::vector<int>& sources = symmetries[options.augment ? random.Below(8) : 0];
         const float* window = &samples.windows[sample * size_t(samples.windowSize)];
         for (int t = 0; t < steps; ++t)
             for (int i = 0; i < inputs; ++i)
-                batch.inputs(i, t * count + s) = window[t * inputs + sources[size_t(i)]];
+                batch.inputs(i, t * count + s) = window[t * inputs + i];
         batch.targets[s] = samples.noisy[sample];
         batch.weights[s] = sampleWeights[sample] / float(batchSize);
     }
@@ -201,13 +175,11 @@ uint32_t Trainer::Fingerprint() const {
         writer.PutAll(std::span(values));
     };
     put(options.units);
-    put(options.dense);
     writer.Put(options.dropout);
     writer.Put(options.learningRate);
     writer.Put(options.batch);
     writer.Put(options.epochs);
     writer.Put(options.seed);
-    writer.Put(options.augment);
     writer.Put(options.balanceViewpoints);
     writer.Put(options.balanceClasses);
     writer.Put(options.noisyWeight);

@@ -14,15 +14,11 @@ namespace lull {
 
 struct TrainingOptions {
     std::vector<int> units = {512, 128, 32};  // of LSTM layers; empty: dense layers only
-    std::vector<int> dense = {};              // units of dense layers before the last one
     double dropout = 0.4;                     // share of each LSTM layer's inputs, in [0, 1)
     double learningRate = 1e-3;               // > 0
     int batch = 64;                           // samples, > 0
     int epochs = 30;                          // > 0
     uint64_t seed = 0;
-    // Shows every sample flipped and rotated at random, since it should not matter which sub-block
-    // is where. Changes nothing where features are pooled.
-    bool augment = false;
     // Lets each viewpoint count the same, however many blocks of it there are.
     bool balanceViewpoints = false;
     // Weights noisy and noiseless samples as the paper does. Without, all count the same, as all
@@ -80,7 +76,6 @@ class Trainer {
     TrainingOptions options;
     int64_t stepsPerEpoch;
     std::vector<float> sampleWeights;
-    std::vector<std::vector<int>> symmetries;  // for each where the value of each input comes from
     NetworkWeights<float> weights;
     RmsProp optimizer;
     std::vector<NetworkWeights<float>> gradients;  // of the chunks of a batch

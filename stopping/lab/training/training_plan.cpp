@@ -73,14 +73,12 @@ std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const Bl
             {"training_blocks", BlocksText(split.training)},
             {"test_blocks", BlocksText(split.test)},
             {"units", ListText(t.units)},
-            {"dense", ListText(t.dense)},
             {"dropout", fmt::format("{}", t.dropout)},
             {"learning_rate", fmt::format("{}", t.learningRate)},
             {"batch", fmt::format("{}", t.batch)},
             {"epochs", fmt::format("{}", t.epochs)},
             {"noisy_weight", fmt::format("{}", t.noisyWeight)},
             {"seed", fmt::format("{}", t.seed)},
-            {"augment", t.augment ? "1" : "0"},
             {"balance_viewpoints", t.balanceViewpoints ? "1" : "0"},
             {"balance_classes", t.balanceClasses ? "1" : "0"}};
 }

@@ -167,44 +167,42 @@ TEST(GroupRadiance, IsThatOfTheSceneWithItsLightsAlone) {
         }
 }
 
-TEST(GroupRadiance, IsLimitedAsTheSample) {
+// Visits samples of balls on a film with one more parameter.
+template <typename Visit>
+void VisitSamples(const std::string& parameter, const Visit& visit) {
     std::string text = RoomText(kBalls, {}, "path");
-    text.replace(text.find("Film \"image\""), 12, "Film \"image\" \"float maxsampleluminance\" .3");
+    text.replace(text.find("Film \"image\""), 12, "Film \"image\" " + parameter);
     const GroupedScene grouped(text);
     GroupRadiance groups(grouped.groups);
     Sampler sampler(SamplerKind::Sobol, 3);
+    for (int i = 0; i < 640; ++i)
+        visit(RenderSample(*grouped.scene, Estimator::Combined, sampler, Vec2i(i % 8, i / 8 % 8),
+                           uint32_t(i / 64), {.groups = &groups}),
+              groups.All());
+}
+
+TEST(GroupRadiance, IsLimitedAsTheSample) {
     float most = 0;
-    for (int i = 0; i < 640; ++i) {
-        const Rgb whole =
-            RenderSample(*grouped.scene, Estimator::Combined, sampler, Vec2i(i % 8, i / 8 % 8),
-                         uint32_t(i / 64), {.groups = &groups})
-                .radiance;
+    VisitSamples("\"float maxsampleluminance\" .3", [&](const PathSample& sample, auto groups) {
+        const Rgb& whole = sample.radiance;
         Rgb sum = Rgb::Zero();
-        for (const Rgb& radiance : groups.All()) sum += radiance;
+        for (const Rgb& radiance : groups) sum += radiance;
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(sum[c], whole[c], 1e-5f * std::abs(whole[c]));
         most = std::max(most, Luminance(whole));
-    }
+    });
     EXPECT_LT(most, 0.6f);  // the filter's weight is above 1 in places
 }
 
 // The film's scale makes every sample infinite.
 TEST(GroupRadiance, OfRejectedSamplesIsBlack) {
-    std::string text = RoomText(kBalls, {}, "path");
-    text.replace(text.find("Film \"image\""), 12, "Film \"image\" \"float scale\" 3e38");
-    const GroupedScene grouped(text);
-    GroupRadiance groups(grouped.groups);
-    Sampler sampler(SamplerKind::Sobol, 3);
     int rejected = 0;
-    for (int i = 0; i < 640; ++i) {
-        const PathSample sample =
-            RenderSample(*grouped.scene, Estimator::Combined, sampler, Vec2i(i % 8, i / 8 % 8),
-                         uint32_t(i / 64), {.groups = &groups});
+    VisitSamples("\"float scale\" 3e38", [&](const PathSample& sample, auto groups) {
         rejected += sample.rejected;
-        for (const Rgb& radiance : groups.All()) {
+        for (const Rgb& radiance : groups) {
             ASSERT_TRUE(IsFinite(radiance));
             ASSERT_TRUE(!sample.rejected || IsBlack(radiance));
         }
-    }
+    });
     EXPECT_GT(rejected, 100);
 }
 

@@ -231,12 +231,5 @@ TEST(VisibleDifference, IsTheSameBitsOnAnyThread) {
     }
 }
 
-TEST(Quality, IsTheScaleOfThePaper) {
-    EXPECT_EQ(Quality(0), 10);
-    EXPECT_NEAR(Quality(1), 10 - 0.0439569391, 1e-9);
-    EXPECT_NEAR(Quality(0.1 - 1e-9), Quality(0.1 + 1e-9), 1e-6);
-    EXPECT_GT(Quality(2), Quality(3));
-}
-
 }  // namespace
 }  // namespace lull::visible_test

@@ -15,9 +15,7 @@ namespace lull {
 namespace {
 
 TEST(ModelSettings, NameFeaturesAndPools) {
-    const std::string features =
-        "H,H1,H2,lightness,noise,masked_noise,detail_masked_noise,entropy_drop,visible_drop,"
-        "attributes26,logspp";
+    const std::string features = "H,H1,H2,detail_masked_noise,visible_drop,attributes26";
     EXPECT_EQ(FeatureNames(ParseFeatures(features)), features);
     EXPECT_EQ(PoolNames(ParsePools("mean,rms,p3,p9")), "mean,rms,p3,p9");
     EXPECT_TRUE(ParsePools("").empty());
@@ -30,25 +28,25 @@ TEST(ModelSettings, NameFeaturesAndPools) {
 TEST(InputVector, PoolsBeforeItScales) {
     BlockMeasures measures{.spp = 10000};
     for (int i = 0; i < 100; ++i) {
-        measures.Of(Feature::Noise).push_back(i / 100.0);
-        measures.Of(Feature::Lightness).push_back(50);
+        measures.Of(Feature::DetailMaskedNoise).push_back(i / 100.0);
+        measures.Of(Feature::VisibleDrop).push_back(50);
     }
     const std::vector<double> x =
-        InputVector(measures, {.features = {Feature::Noise, Feature::LogSpp, Feature::Lightness},
+        InputVector(measures, {.features = {Feature::DetailMaskedNoise, Feature::VisibleDrop},
                                .pools = ParsePools("mean,rms")});
-    ASSERT_EQ(x.size(), 5u);
+    ASSERT_EQ(x.size(), 4u);
     EXPECT_NEAR(x[0], std::log(0.496), 1e-12);
     EXPECT_NEAR(x[1], std::log(std::sqrt(0.32835) + 0.001), 1e-12);
-    EXPECT_NEAR(x[2], 1, 1e-12);
-    EXPECT_NEAR(x[3], 0.5, 1e-12);
+    EXPECT_NEAR(x[2], std::log(50.1), 1e-12);
+    EXPECT_NEAR(x[3], std::log(50.1), 1e-12);
 }
 
 TEST(InputVector, PoolsByPowerMeans) {
     BlockMeasures measures{.spp = 20};
-    measures.Of(Feature::Noise).assign(100, 0.1);
-    measures.Of(Feature::Noise)[7] = 2;
-    const std::vector<double> x =
-        InputVector(measures, {.features = {Feature::Noise}, .pools = ParsePools("mean,rms,p4")});
+    measures.Of(Feature::DetailMaskedNoise).assign(100, 0.1);
+    measures.Of(Feature::DetailMaskedNoise)[7] = 2;
+    const std::vector<double> x = InputVector(
+        measures, {.features = {Feature::DetailMaskedNoise}, .pools = ParsePools("mean,rms,p4")});
     ASSERT_EQ(x.size(), 3u);
     EXPECT_NEAR(x[0], std::log(0.119 + 0.001), 1e-12);
     EXPECT_NEAR(x[1], std::log(std::sqrt((4 + 99 * 0.01) / 100) + 0.001), 1e-12);
@@ -56,30 +54,29 @@ TEST(InputVector, PoolsByPowerMeans) {
 }
 
 TEST(InputVector, GivesEachSubBlock) {
-    const ModelSettings settings = {
-        .m = 4, .features = {Feature::LogSpp, Feature::H, Feature::MaskedNoise}};
+    const ModelSettings settings = {.m = 4, .features = {Feature::H, Feature::DetailMaskedNoise}};
     const std::vector<InputRange> ranges = InputRanges(settings);
-    ASSERT_EQ(ranges.size(), 3u);
-    EXPECT_EQ(ranges[1].begin, 1);
-    EXPECT_EQ(ranges[1].side, 2);
-    EXPECT_EQ(ranges[2].begin, 5);
-    EXPECT_EQ(ranges[2].side, 10);
-    EXPECT_EQ(InputCount(settings), 105);
+    ASSERT_EQ(ranges.size(), 2u);
+    EXPECT_EQ(ranges[0].begin, 0);
+    EXPECT_EQ(ranges[1].begin, 4);
+    EXPECT_EQ(InputCount(settings), 104);
 
     BlockMeasures measures{.spp = 20};
     measures.Of(Feature::H) = {0.1, 0.2, 0.3, 0.4};
-    measures.Of(Feature::MaskedNoise).assign(100, 1);
+    measures.Of(Feature::DetailMaskedNoise).assign(100, 1);
     const std::vector<double> x = InputVector(measures, settings);
-    EXPECT_EQ(x[0], 0);
-    EXPECT_EQ(x[3], 0.3);
-    EXPECT_NEAR(x[104], 0.001, 1e-6);
+    EXPECT_EQ(x[2], 0.3);
+    EXPECT_NEAR(x[103], 0.001, 1e-6);
     measures.Of(Feature::H).pop_back();
     EXPECT_THROW(InputVector(measures, settings), std::invalid_argument);
 }
 
 TEST(Window, NormalisesEntropiesOnly) {
-    const ModelSettings settings{
-        .k = 2, .n = 20, .m = 1, .features = {Feature::LogSpp, Feature::H}};
+    const ModelSettings settings{.k = 2,
+                                 .n = 20,
+                                 .m = 1,
+                                 .features = {Feature::DetailMaskedNoise, Feature::H},
+                                 .pools = {{1}}};
     History<double> history;
     AddInputs(20, {0.1, 0.2}, settings, &history);
     AddInputs(40, {0.3, 0.6}, settings, &history);
@@ -115,10 +112,8 @@ TEST(Window, NormalisesAttributesAsEntropies) {
 TEST(ModelInputs, AreThoseOfRecordings) {
     for (int m : {25, 100}) {
         ModelSettings settings = {.m = m};
-        settings.features = ParseFeatures(
-            m == 100 ? "H,H1,H2,lightness,noise,masked_noise,detail_masked_noise,attributes26,"
-                       "logspp"
-                     : "H,attributes26,noise,logspp");
+        settings.features = ParseFeatures(m == 100 ? "H,H1,H2,detail_masked_noise,attributes26"
+                                                   : "H,attributes26,detail_masked_noise");
         BlockRecording recording;
         Recorder recorder(20, 100, 100, &recording);
         for (int spp = 20; spp <= 100; spp += 20) {
@@ -136,11 +131,11 @@ TEST(ModelInputs, AreThoseOfRecordings) {
 }
 
 TEST(Learned, ReadsTheHalfMeanForNoise) {
-    ModelSettings settings = {.k = 2, .m = 25, .features = ParseFeatures("masked_noise,logspp")};
+    ModelSettings settings = {.k = 2, .m = 25, .features = ParseFeatures("detail_masked_noise")};
     settings.pools = ParsePools("rms");
     Network network;  // a logistic regression on the last step: noise below exp(-2) is not seen
-    network.dense.push_back({"dense_1", Eigen::MatrixXf::Zero(1, 4), Eigen::VectorXf::Zero(1)});
-    network.dense[0].kernel(0, 2) = 10;
+    network.dense.push_back({"dense_1", Eigen::MatrixXf::Zero(1, 2), Eigen::VectorXf::Zero(1)});
+    network.dense[0].kernel(0, 1) = 10;
     network.dense[0].bias[0] = 20;
     const auto model = std::make_shared<const Model>(Model{network, settings, ""});
     const auto criterion = MakeCriterion(LearnedRule(model, 20));
@@ -156,7 +151,7 @@ TEST(Learned, ReadsTheHalfMeanForNoise) {
 
 TEST(Learned, NeverStopsOnNonsense) {
     const ModelSettings settings = {
-        .k = 2, .m = 25, .features = ParseFeatures("H,noise,detail_masked_noise,lightness")};
+        .k = 2, .m = 25, .features = ParseFeatures("H,detail_masked_noise,attributes26")};
     const auto model = std::make_shared<const Model>(
         Model{RandomNetwork(InputCount(settings), {4}, 10), settings, ""});
     const float infinity = std::numeric_limits<float>::infinity();

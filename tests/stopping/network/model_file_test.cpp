@@ -91,10 +91,12 @@ TEST(ModelFile, ReadsWhatItWrites) {
 }
 
 TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
-    ModelSettings settings = {.k = 3, .features = ParseFeatures("masked_noise,logspp")};
+    ModelSettings settings = {.k = 3,
+                              .features = ParseFeatures("detail_masked_noise,visible_drop")};
     settings.pools = ParsePools("rms,p4");
     Network network;
-    network.dense.push_back({"dense_1", Eigen::MatrixXf::Random(4, 9), Eigen::VectorXf::Random(4)});
+    network.dense.push_back(
+        {"dense_1", Eigen::MatrixXf::Random(4, 12), Eigen::VectorXf::Random(4)});
     network.dense.push_back({"dense_2", Eigen::MatrixXf::Random(1, 4), Eigen::VectorXf::Random(1)});
     const ScratchFile file(".h5");
     WriteModel(file.path, network, settings, {{"seed", "7"}, {"viewpoints", "a: 0 1\nb: 2"}});

@@ -186,9 +186,9 @@ TEST(Learned, KnowsTheNoiseAtWhichItIsUndecided) {
     // A network that is never sure, or never unsure, or that sees something else.
     EXPECT_EQ(undecided(ConstantNetwork(1, 0.1f)), 0);
     EXPECT_EQ(undecided(ConstantNetwork(1, 0.9f)), 0);
-    settings.features = {Feature::VisibleDrop, Feature::LogSpp};
+    settings.features = {Feature::VisibleDrop, Feature::DetailMaskedNoise};
     EXPECT_EQ(undecided(LastStepNetwork(4, 0)), 0);
-    settings.features = {Feature::Lightness};
+    settings.features = {Feature::H};
     EXPECT_EQ(undecided(LastStepNetwork(2, 0)), 0);
     settings.features = {Feature::DetailMaskedNoise};
     settings.spacing = Spacing::Fixed;
@@ -225,7 +225,7 @@ TEST(Learned, SaysHowWhatIsFollowedFalls) {
     EXPECT_NEAR(noise.undecided, 0.7, 1e-3);
     EXPECT_EQ(noise.reference, settings.visibility.reference);
     EXPECT_TRUE(noise.saturates);
-    settings.features = {Feature::VisibleDrop, Feature::LogSpp};
+    settings.features = {Feature::VisibleDrop, Feature::DetailMaskedNoise};
     WriteModel(file.path, LastStepNetwork(4, 0), settings);
     const RuleTrend odds = ParseRule("learned:" + file.path).trend;
     EXPECT_EQ(odds.undecided, 0);

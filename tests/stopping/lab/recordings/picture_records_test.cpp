@@ -127,8 +127,8 @@ TEST(PictureRecords, TrainModelsThatLookAtAnySpp) {
                                   .ratio = 1.4142};
     EXPECT_GT(MakeSamples(std::span(&block, 1), geometric).Count(), 5u);
     EXPECT_THROW(MakeSamples(std::span(&block, 1), ModelSettings{}), std::invalid_argument);
-    EXPECT_EQ(MissingFeatures(recording, {.features = {Feature::H, Feature::Noise}}),
-              std::vector<Feature>{Feature::Noise});
+    EXPECT_EQ(MissingFeatures(recording, {.features = {Feature::H, Feature::DetailMaskedNoise}}),
+              std::vector<Feature>{Feature::DetailMaskedNoise});
 }
 
 TEST(TestBlocks, AreThoseThatAreNotListed) {

@@ -25,9 +25,7 @@ struct Data {
 
 ModelSettings SmallSettings() { return {.k = 3, .m = 25}; }
 
-TrainingOptions SmallOptions() {
-    return {.units = {12, 6}, .batch = 40, .epochs = 3, .seed = 5, .augment = true};
-}
+TrainingOptions SmallOptions() { return {.units = {12, 6}, .batch = 40, .epochs = 3, .seed = 5}; }
 
 std::vector<float> Flat(const Network& network) {
     std::vector<float> all;
@@ -111,7 +109,7 @@ double AucOf(const Network& network, const TrainingSamples& samples) {
 }
 
 TEST(Trainer, LearnsWhatNoiseIs) {
-    ModelSettings settings = {.k = 2, .features = ParseFeatures("masked_noise")};
+    ModelSettings settings = {.k = 2, .features = ParseFeatures("detail_masked_noise")};
     settings.pools = ParsePools("rms");
     const Data data(settings);
     TrainingOptions options = {.units = {8}, .dropout = 0, .learningRate = 0.01, .epochs = 30};
@@ -122,7 +120,9 @@ TEST(Trainer, LearnsWhatNoiseIs) {
 
 TEST(Trainer, LetsEachViewpointCountTheSame) {
     // Two viewpoints that contradict each other: the one with more blocks must not decide.
-    TrainingSamples samples{.settings = {.k = 1, .features = {Feature::LogSpp}}, .windowSize = 1};
+    TrainingSamples samples{
+        .settings = {.k = 1, .features = {Feature::DetailMaskedNoise}, .pools = {{1}}},
+        .windowSize = 1};
     auto add = [&](int viewpoint, char noisy, int count) {
         for (int i = 0; i < count; ++i) {
             samples.windows.push_back(viewpoint == 0 ? 1.f : -1.f);
