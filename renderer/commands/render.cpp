@@ -72,6 +72,9 @@ void ReadRule(PreparedRender* p) {
         p->render.denoiser->Grade(GradingsOf(p->request.Grades()));
     }
     p->rule = p->render.ReadRule("--stop", rule);
+    if (p->request.gradedBy != 0 && p->rule.stopAt && !p->request.denoise)
+        throw UsageError(fmt::format(
+            "--graded-by: {} does not judge the image; choose a rule that does", p->rule.text));
     schedule.smallestSide = p->rule.smallestSide;
     schedule.passLength = PassLengthFor(p->rule, region, schedule);
 }
