@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace lull {
@@ -26,21 +29,42 @@ std::string WithoutMiddle(const std::string& line, size_t most) {
     return line.substr(0, end) + " ... " + line.substr(begin);
 }
 
+// Returns the bytes of the UTF-8 character that a text begins with; 0 if it is none, or a control
+// character.
+size_t PrintedBytes(std::string_view text) {
+    const auto first = static_cast<unsigned char>(text[0]);
+    if (first < 0x80) return first < 0x20 || first == 0x7f ? 0 : 1;
+    const size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    if (length == 0 || text.size() < length) return 0;
+    uint32_t code = first & (0x7f >> length);
+    for (const char c : text.substr(1, length - 1)) {
+        if (!IsWithinCharacter(c)) return 0;
+        code = code << 6 | (static_cast<unsigned char>(c) & 0x3f);
+    }
+    constexpr uint32_t kLeast[] = {0, 0, 0xa0, 0x800, 0x10000};  // shorter ones have less bytes
+    const bool isSurrogate = code >= 0xd800 && code < 0xe000;
+    return code < kLeast[length] || code > 0x10ffff || isSurrogate ? 0 : length;
+}
+
 }  // namespace
 
 std::string OneLine(const std::string& text, size_t most) {
     std::string line;
     bool isBetween = false;
-    for (const char c : text) {
-        if (c == '\n' || c == '\r') {
+    for (size_t i = 0; i < text.size();) {
+        if (text[i] == '\n' || text[i] == '\r') {
             isBetween = true;
+            ++i;
             continue;
         }
         if (std::exchange(isBetween, false) && !line.empty()) line += "; ";
-        if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f)
-            fmt::format_to(std::back_inserter(line), "\\x{:02x}", byte);
+        const size_t length = PrintedBytes(std::string_view(text).substr(i));
+        if (length == 0)
+            fmt::format_to(std::back_inserter(line), "\\x{:02x}",
+                           static_cast<unsigned char>(text[i]));
         else
-            line += c;
+            line.append(text, i, length);
+        i += std::max<size_t>(length, 1);
     }
     return WithoutMiddle(line, most);
 }

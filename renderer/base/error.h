@@ -22,7 +22,7 @@ struct FileLoc {
 };
 
 // Returns the text as one line that a terminal prints as it is: "; " stands between lines, and \xNN
-// for other control characters. Of a line of more than `most` bytes the middle is left out.
+// for control characters and bytes that are not UTF-8. Above `most` bytes the middle is left out.
 std::string OneLine(const std::string& text, size_t most = std::string::npos);
 
 // The most bytes of an error or a warning, which may quote a command of any length.

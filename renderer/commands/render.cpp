@@ -72,6 +72,9 @@ void ReadRule(PreparedRender* p) {
         p->render.denoiser->Grade(GradingsOf(p->grades));
     }
     p->rule = p->render.ReadRule("--stop", rule);
+    if (p->request.gradedBy != 0 && p->rule.stopAt && !p->request.denoise)
+        throw UsageError(fmt::format(
+            "--graded-by: {} does not judge the image; choose a rule that does", p->rule.text));
     schedule.smallestSide = p->rule.smallestSide;
     p->blocks = MakeBlocks(p->render.input.region, schedule);
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);

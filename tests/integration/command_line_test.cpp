@@ -45,6 +45,7 @@ TEST(CommandLine, RefusesWrongUsage) {
           "render scene.pbrt --frame nan",
           "render scene.pbrt --frame 0 --shutter nan",
           "render scene.pbrt --caution nan",
+          "render scene.pbrt --spp 4 --graded-by 2",
           "render scene.pbrt --preview nan",
           "render scene.pbrt --checkpoint c.h5 --checkpoint-interval nan",
           "render scene.pbrt --orbit nan,0",
@@ -190,7 +191,8 @@ TEST(CommandLine, CropsByPixels) {
     EXPECT_EQ(exr.origin, Vec2i(6, 1));
     EXPECT_EQ(exr.width, 12);
     EXPECT_EQ(exr.height, 15);  // of 16 rows; what is beyond is not there
-    ExpectFailure(directory, "render scene.pbrt --crop 24,30,0,9px -o out.exr", {"no pixel"});
+    ExpectFailure(directory, "render scene.pbrt --crop 24,30,0,9px -o out.exr",
+                  {"lull: error: the crop window holds no pixel of 24x16"});
 }
 
 TEST(CommandLine, PrintsThePathOfASample) {

@@ -262,6 +262,8 @@ TEST(Compare, SaysWhatIsMissingOrWrong) {
                   {"human.csv", "need a scene"});
     for (const char* arguments :
          {"compare scene.pbrt --snapshots --reference r.exr", "compare --snapshots",
+          "compare --automatic small.exr --reference small.exr --resolution 9x9",
+          "compare --automatic small.exr --reference small.exr --seed 1",
           "compare scene.pbrt --automatic a.exr", "compare scene.pbrt --snapshots --verify x",
           "compare scene.pbrt --snapshots --report r.pdf"})
         EXPECT_EQ(RunLull(directory, arguments).exitCode, 2) << arguments;
@@ -371,6 +373,8 @@ TEST(Bench, SaysWhatIsWrong) {
     ExpectFailure(directory, "bench scene.pbrt --external lost.csv", {"lost.exr"});
     ExpectFailure(directory, "bench scene.pbrt --rule dammertz:x", {"--rule", "'x'"}, 2);
     ExpectFailure(directory, "bench scene.pbrt --guide on --estimator pbrt-v3", {"--guide on"});
+    ExpectFailure(directory, "bench scene.pbrt --samplers random,random",
+                  {"--samplers: random is given twice"}, 2);
     EXPECT_EQ(RunLull(directory, "bench scene.pbrt --samplers halton").exitCode, 2);
     EXPECT_EQ(RunLull(directory, "bench").exitCode, 2);
 }

@@ -187,6 +187,10 @@ TEST(Evaluate, SaysWhatIsWrong) {
           "evaluate data.h5 --stop fixed:20", "evaluate --answers answers.csv --stop fixed:20",
           "evaluate data.h5 --answers answers.csv",
           "evaluate data.h5 --answers answers.csv --rivals --stop fixed:20",
+          "evaluate data.h5 --answers answers.csv --stop fixed:20 --margins 2",
+          "evaluate data.h5 --human human.csv --stop fixed:20 --block 50",
+          "evaluate data.h5 --human human.csv --stop fixed:20 --choose-by critical",
+          "evaluate data.h5 --human human.csv --rivals --caution 2",
           "evaluate data.h5 --answers answers.csv --human human.csv --stop fixed:20"})
         EXPECT_EQ(RunLull(directory, arguments).exitCode, 2) << arguments;
     ExpectSuccess(directory, "evaluate --help");

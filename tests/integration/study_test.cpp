@@ -124,6 +124,7 @@ TEST(Study, RefusesWhatDoesNotFit) {
     for (const char* usage :
          {"study -o s.html", "study scene.pbrt", "study scene.pbrt -o s.csv",
           "study scene.pbrt --images x -o s.html", "study --images x --record d.h5 -o s.html",
+          "study --images x --seed 1 -o s.html", "study --collect bad.json --cap 20 -o human.csv",
           "study --collect bad.json -o s.html", "study scene.pbrt -o s.html --report r.html",
           "study scene.pbrt -o s.html --procedure guess"})
         EXPECT_EQ(RunLull(directory, usage).exitCode, 2) << usage;

@@ -128,6 +128,13 @@ std::vector<Variant> Variants(const Options& options) {
     return variants;
 }
 
+void CheckSamplers(const std::vector<std::string>& samplers) {
+    for (size_t i = 1; i < samplers.size(); ++i)
+        if (std::find(samplers.begin(), samplers.begin() + ptrdiff_t(i), samplers[i]) !=
+            samplers.begin() + ptrdiff_t(i))
+            throw UsageError("--samplers: " + samplers[i] + " is given twice");
+}
+
 std::string CheckpointName(const Options& options, const Variant& variant) {
     return fmt::format("{}.{}.checkpoint", options.output, NameOf(variant));
 }
@@ -306,6 +313,7 @@ ExitCode RunBench(Options options, MpiJob* ranks) {
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
     if (options.samplers.empty())
         options.samplers = {options.denoise ? "sobol-halves" : "sobol", "random"};
+    CheckSamplers(options.samplers);
     options.output = BeginningOfNames(options.output, SceneName(settings.scene.file) + ".bench");
     const std::unique_ptr<Bench> bench = Prepare(options, ranks);
     const std::vector<Variant> variants = Variants(options);

@@ -9,15 +9,25 @@
 #include "renderer/commands/render_job.h"
 #include "renderer/lab/commands/compare_options.h"
 #include "renderer/lab/commands/comparison_table.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/comparison/compared_files.h"
 #include "renderer/mpi/job.h"
 #include "renderer/results/block_files.h"
 #include "renderer/results/image_files.h"
+#include "stopping/base/parallel.h"
 #include "stopping/rules/denoised.h"
 
 namespace lull::compare {
 
 namespace {
+
+// Those with an effect on images from files, and on those made of pictures.
+constexpr const char* kOptionsOfFiles[] = {
+    "--automatic", "--human",  "--reference", "--block", "--viewing",
+    "--threads",   "--output", "--report",    "--quiet", "--json-progress"};
+constexpr const char* kOptionsOfPictures[] = {
+    "--images",  "--human",  "--stop",   "--caution", "--block",        "--viewing",
+    "--threads", "--output", "--report", "--quiet",   "--json-progress"};
 
 // Returns the results; `rendered` are the images that come from the scene, if there is one.
 std::vector<NamedFile> OutputsOf(const CompareOptions& options,
@@ -63,7 +73,7 @@ ExitCode CompareFiles(CompareOptions options) {
     report.title = std::filesystem::path(options.reference).filename().string();
     report.comparison = ComparisonOf(std::move(files), options.reference, options.render.schedule);
     report.comparison.display = options.display;
-    Measure(&report.comparison);
+    RunWithThreads(options.render.scene.compile.threads, [&] { Measure(&report.comparison); });
     WriteComparison(options, report, {});
     return kDone;
 }
@@ -286,6 +296,10 @@ void AddCommand(CLI::App& app, Command* command, MpiJob* job) {
         const bool hasPictures = !options->render.scene.file.empty() || !options->images.empty();
         if (compare->count("--stop") > 0 && !hasPictures)
             throw CLI::ValidationError("--stop", "needs a SCENE, or --images");
+        if (!options->images.empty())
+            AllowOnly(*compare, kOptionsOfPictures, "with --images");
+        else if (!hasPictures)
+            AllowOnly(*compare, kOptionsOfFiles, "without a SCENE");
         *command = [=] {
             if (!options->render.scene.file.empty()) return CompareRenders(*options, job);
             if (job->Rank() > 0) return kDone;

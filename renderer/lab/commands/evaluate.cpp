@@ -35,6 +35,11 @@ namespace lull::evaluate {
 
 namespace {
 
+// Those with an effect on an evaluation by single answers.
+constexpr const char* kOptionsOfAnswers[] = {"DATASET.h5", "--images", "--block",
+                                             "--answers",  "--stop",   "--caution",
+                                             "--without",  "--brief",  "--csv"};
+
 struct Options {
     std::vector<std::string> datasets, images, predicted, rules, without;
     int blockSize = 200;  // pixels a side, of images
@@ -314,16 +319,13 @@ ExitCode RunEvaluate(const Options& options) {
 }
 
 // Throws a usage error if there is nothing to judge, or nothing to judge it on.
-void CheckUsage(const Options& options) {
+void CheckUsage(const CLI::App& app, const Options& options) {
     const bool runs = options.rivals || !options.rules.empty();
     if (!options.answers.empty()) {
         if (!HasRecordings(options) || options.rules.empty())
             throw CLI::ValidationError("--answers",
                                        "needs DATASET.h5 or --images, and --stop for its rules");
-        if (options.rivals || options.constants || !options.predicted.empty() ||
-            !options.blocks.empty() || !options.split.empty() || !options.curves.empty() ||
-            !options.figure.empty())
-            throw CLI::ValidationError("--answers", "judges the rules of --stop alone");
+        AllowOnly(app, kOptionsOfAnswers, "with --answers");
         return;
     }
     if (options.human.empty())
@@ -337,6 +339,10 @@ void CheckUsage(const Options& options) {
         throw CLI::ValidationError("--split", "needs DATASET.h5 or --images");
     if (!runs && options.predicted.empty())
         throw CLI::ValidationError("evaluate", "needs --predicted, --stop or --rivals");
+    if (app.count("--caution") > 0 && options.rules.empty())
+        throw CLI::ValidationError("--caution", "is for the rules of --stop");
+    if (app.count("--choose-by") > 0 && !options.rivals && !options.constants)
+        throw CLI::ValidationError("--choose-by", "is for --rivals and --constants");
 }
 
 }  // namespace
@@ -348,7 +354,7 @@ void AddCommand(CLI::App& app, Command* command) {
     AddOptions(*evaluate, options.get());
     evaluate->footer(kFooter);
     evaluate->callback([=] {
-        CheckUsage(*options);
+        CheckUsage(*evaluate, *options);
         *command = [=] { return RunEvaluate(*options); };
     });
 }

@@ -1,6 +1,8 @@
 #include "renderer/lab/commands/lab_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
 
 #include "renderer/base/error.h"
 
@@ -33,6 +35,16 @@ void AddViewingOption(CLI::App& app, DisplayModel* display) {
            "and ambient light in lux [" +
                NameOf(DisplayModel()) + "]")
         ->type_name("Lcd,Nppd,Elux");
+}
+
+void AllowOnly(const CLI::App& app, std::span<const char* const> names, const std::string& where) {
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        const bool isAllowed =
+            std::ranges::any_of(names, [&](std::string_view allowed) { return name == allowed; });
+        if (option->count() > 0 && !isAllowed)
+            throw CLI::ValidationError(name, "has no effect " + where);
+    }
 }
 
 }  // namespace lull

@@ -9,13 +9,15 @@
 namespace lull {
 
 void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blockSize) {
-    app.add_option("--images", *folders,
-                   "Pictures of another renderer, their spp in the file names, to run rules on;\n"
-                   "NAME names the viewpoint [the folder's name]; can be given again")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->type_name("DIR[:NAME]");
-    AddBlockOption(app, blockSize);
+    CLI::Option* images =
+        app.add_option(
+               "--images", *folders,
+               "Pictures of another renderer, their spp in the file names, to run rules on;\n"
+               "NAME names the viewpoint [the folder's name]; can be given again")
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->type_name("DIR[:NAME]");
+    AddBlockOption(app, blockSize)->needs(images);
 }
 
 CLI::Option* AddBlockOption(CLI::App& app, int* blockSize) {

@@ -9,6 +9,7 @@
 #include "renderer/commands/option_values.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/files/result_files.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/commands/picture_options.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "renderer/mpi/job.h"
@@ -17,6 +18,11 @@
 namespace lull::record {
 
 namespace {
+
+// Those with an effect on another renderer's pictures.
+constexpr const char* kOptionsOfPictures[] = {"--images", "--block",        "--name", "--output",
+                                              "--blocks", "--human",        "--past", "--threads",
+                                              "--quiet",  "--json-progress"};
 
 struct Options {
     RenderSettings render;
@@ -197,6 +203,7 @@ void AddCommand(CLI::App& app, Command* command, MpiJob* job) {
             throw CLI::ValidationError("record", "a SCENE is needed, or --images");
         if (options->images.empty() && options->name.empty())
             throw CLI::ValidationError("--name", "is needed for a SCENE");
+        if (!options->images.empty()) AllowOnly(*dataset, kOptionsOfPictures, "with --images");
         *command = [=] { return Run(*options, job); };
     });
 }

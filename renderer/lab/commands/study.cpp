@@ -160,7 +160,7 @@ void AddCommand(CLI::App& app, Command* command) {
     auto settings = std::make_shared<Options>();
     AddOptions(*study, settings.get());
     study->callback([=] {
-        CheckOptions(*settings);
+        CheckOptions(*study, *settings);
         *command = [=] { return Run(*settings); };
     });
 }

@@ -4,11 +4,20 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/option_values.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 
 namespace lull::study {
 
 namespace {
+
+// Those with an effect on a study of another renderer's pictures, and on the collection of answers.
+constexpr const char* kOptionsOfPictures[] = {
+    "--images",  "--name",      "--levels",     "--block",   "--threads",
+    "--output",  "--text",      "--procedure",  "--repeats", "--catches",
+    "--answers", "--questions", "--descending", "--quiet",   "--json-progress"};
+constexpr const char* kOptionsOfAnswers[] = {"--collect", "--study", "--output",
+                                             "--report",  "--quiet", "--json-progress"};
 
 constexpr const char* kFooter =
     R"(Makes a page on which observers mark visible noise, and collects their answers.
@@ -115,7 +124,7 @@ void AddOptions(CLI::App& app, Options* s) {
     app.footer(kFooter);
 }
 
-void CheckOptions(const Options& s) {
+void CheckOptions(const CLI::App& app, const Options& s) {
     if (s.listsTexts) return;
     if (s.output.empty()) throw CLI::ValidationError("--output", "is required");
     if (s.study.descending > 0 && s.study.procedure != StudyProcedure::Adjust)
@@ -133,6 +142,8 @@ void CheckOptions(const Options& s) {
         Refuse("--report and --study need --collect");
     if (!s.report.empty() && !s.report.ends_with(".html"))
         Refuse("--report " + s.report + ": the report is a page, PAGE.html");
+    if (!s.images.empty()) AllowOnly(app, kOptionsOfPictures, "with --images");
+    if (!s.collect.empty()) AllowOnly(app, kOptionsOfAnswers, "with --collect");
 }
 
 }  // namespace lull::study

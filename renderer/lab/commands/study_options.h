@@ -24,7 +24,7 @@ inline constexpr double kLadderRatio = 1.25;
 void AddOptions(CLI::App& app, Options* settings);
 
 // Throws CLI::ValidationError for options that do not fit together.
-void CheckOptions(const Options& settings);
+void CheckOptions(const CLI::App& app, const Options& settings);
 
 // Collects answers: the second half of the command. Throws Error.
 void CollectAnswers(const Options& settings);

@@ -85,18 +85,27 @@ std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
     return points;
 }
 
+namespace {
+
+// Returns a figure as a table has it: nothing if it is infinite or not known.
+std::string Figure(double value, int digits = 6) {
+    return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "";
+}
+
+}  // namespace
+
 std::string BenchCsv(const std::vector<BenchPoint>& points) {
     std::string text =
         "rule,setting,sampler,spp,seconds,thread_seconds,rule_seconds,shares_reference,"
         "rmse_lightness,relmse,ssim,flip,rmse,psnr,visible_difference\n";
     for (const BenchPoint& p : points) {
         const ErrorFigures& f = p.figures;
-        text += fmt::format(
-            "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.8g},{:.6g},{:.6g},{:.6g},{:."
-            "6g}\n",
-            p.rule, p.setting, p.sampler, p.spp, p.seconds, p.threadSeconds, p.ruleSeconds,
-            p.sharesReference ? "yes" : "no", f.rmseLightness, f.relMse, f.ssim, f.flip, f.rmse,
-            f.psnr, f.visibleDifference);
+        text +=
+            fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{},{},{},{},{},{}\n", p.rule,
+                        p.setting, p.sampler, p.spp, p.seconds, p.threadSeconds, p.ruleSeconds,
+                        p.sharesReference ? "yes" : "no", Figure(f.rmseLightness), Figure(f.relMse),
+                        Figure(f.ssim, 8), Figure(f.flip), Figure(f.rmse), Figure(f.psnr),
+                        Figure(f.visibleDifference));
     }
     return text;
 }

@@ -33,7 +33,8 @@ std::vector<BenchPoint> MeasurePoints(const ObservedRender&, const std::vector<O
                                       const RgbImage& reference, const DisplayModel&, int threads,
                                       const std::function<void()>& onPoint);
 
-// Returns the points as a CSV with a line of column names.
+// Returns the points as a CSV with a line of column names. Figures that are infinite or not known
+// are empty.
 std::string BenchCsv(const std::vector<BenchPoint>&);
 
 // Names an image of another renderer.

@@ -110,7 +110,7 @@ Json ReadStudyPage(const std::string& path) try {
             throw NotAStudy(path);
     };
     for (const char* key : {"width", "height"}) checkPixels(study.at(key));
-    study.at("id").get<std::string>();
+    for (const char* key : {"id", "procedure"}) study.at(key).get<std::string>();
     study["references"] = Json::array();
     for (size_t i = 0; i < study.at("blocks").size(); ++i) {
         for (const char* key : {"x", "y", "width", "height"})

@@ -27,7 +27,11 @@ void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings*
             film->cropMax[i] = std::min((*overrides.cropInPixels)[2 * i + 1], film->resolution[i]);
         }
     }
-    if (film->Size().minCoeff() < 1) throw Error(entity.loc, "the crop window holds no pixel");
+    if (film->Size().minCoeff() >= 1) return;
+    const bool isFromFile = !overrides.crop && !overrides.cropInPixels;
+    throw Error(isFromFile ? entity.loc : FileLoc(),
+                fmt::format("the crop window holds no pixel of {}x{}", film->resolution.x(),
+                            film->resolution.y()));
 }
 
 }  // namespace

@@ -158,7 +158,9 @@ std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseB
     for (size_t i = 0; i < blocks.size(); ++i)
         if (i == 0 || blocks[i].viewpoint != blocks[i - 1].viewpoint) begins.push_back(i);
     if (begins.size() < 2)
-        throw std::invalid_argument("settings are chosen on other viewpoints, so two are needed");
+        throw std::invalid_argument(
+            "the settings of baselines are chosen on other viewpoints, so that two are needed; "
+            "--stop takes rules with settings");
     begins.push_back(blocks.size());
 
     std::vector<Rival> rivals;

@@ -211,7 +211,9 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
         return
             [rule](const LabelledBlock& block) { return SimulateCycles(block, rule->threshold); };
     if (!rule->recall)
-        throw std::invalid_argument("stopping rule '" + rule->text + "' cannot be simulated");
+        throw std::invalid_argument(
+            "stopping rule '" + rule->text +
+            "' cannot be simulated: recordings do not have what it measures");
     return [rule](const LabelledBlock& block) {
         try {
             return SimulateRule(block, *rule);

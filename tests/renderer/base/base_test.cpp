@@ -150,6 +150,17 @@ TEST(OneLine, JoinsWhatLibrariesSayInSeveral) {
     EXPECT_EQ(OneLine("\u00e4\u00e4\u00e4\u00e4", 6), "\u00e4 ... \u00e4");  // no half characters
 }
 
+TEST(OneLine, EscapesWhatNoTerminalPrints) {
+    EXPECT_EQ(OneLine("a\x1b\x7f"), "a\\x1b\\x7f");
+    EXPECT_EQ(OneLine("\u00e4\u20ac\U0001f600"), "\u00e4\u20ac\U0001f600");
+    EXPECT_EQ(OneLine("a\xe4 b"), "a\\xe4 b");              // Latin-1
+    EXPECT_EQ(OneLine("\xe2\x82"), "\\xe2\\x82");           // cut short
+    EXPECT_EQ(OneLine("\xc2\x9b"), "\\xc2\\x9b");           // a control character
+    EXPECT_EQ(OneLine("\xc0\xaf"), "\\xc0\\xaf");           // too long for its character
+    EXPECT_EQ(OneLine("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // half of a pair
+    EXPECT_EQ(OneLine("\xff\xfe"), "\\xff\\xfe");
+}
+
 TEST(LengthOf, IsRightAlsoWhereSquaresAreNot) {
     for (const float scale : {1e-30f, 1e-20f, 1.f, 1e20f, 1e30f}) {
         const Vec3f v = scale * Vec3f(2, -3, 6);

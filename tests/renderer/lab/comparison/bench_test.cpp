@@ -81,6 +81,14 @@ TEST(BenchCsv, HasALineForEachPoint) {
     EXPECT_TRUE(Contains(csv, "\ndammertz,0.02,sobol,64,0,0,0,no,0,0,0.5,0,0,0,2.5\n")) << csv;
 }
 
+TEST(BenchCsv, LeavesOutWhatIsInfiniteOrUnknown) {
+    const RgbImage image{1, 1, std::vector<float>(3, 0.5f)};
+    const std::string csv = BenchCsv({MeasureExternal({"same", 1, "a.exr"}, image, image, {})});
+    EXPECT_FALSE(Contains(csv, "nan")) << csv;
+    EXPECT_FALSE(Contains(csv, "inf")) << csv;
+    EXPECT_TRUE(Contains(csv, "no,0,0,,0,0,,0\n")) << csv;
+}
+
 TEST(ReadExternalImages, ReadsNamesSecondsAndFiles) {
     const TemporaryDirectory directory;
     const std::string csv = directory.Write(

@@ -99,9 +99,11 @@ TEST(ReadStudyPage, RefusesOtherPages) {
     const std::string page = MakeStudyPage(TwoBlocks(), {});
     std::string huge = page;  // a width that no int can hold
     huge.insert(huge.find("\"width\":") + 8, "99999999999");
+    std::string unnamed = page;
+    unnamed.replace(unnamed.find("\"procedure\""), 11, "\"procedura\"");
     for (const std::string& text :
          {std::string(), std::string("<html></html>"), page.substr(0, page.find("\"levels\"")),
-          page.substr(0, page.find("pictures-1")), huge}) {
+          page.substr(0, page.find("pictures-1")), huge, unnamed}) {
         const std::string path = folder.Write("other.html", text);
         try {
             ReadStudyPage(path);
