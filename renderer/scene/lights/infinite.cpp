@@ -49,6 +49,8 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
     const Rgb L = LightColor(entity, "L", in.warnings);
     const std::string file = params.GetString("mapname", "");
     light.constant = L;
+    if (params.Find(ParameterType::Point3, "portal"))
+        in.warnings.Add(entity.loc, "portals are not used", "the mean of the image is the same");
     if (params.GetBool("studio", false)) {
         light.map = std::make_shared<const EnvironmentMap>(MakeStudio(), L, in.isCompensated);
         return light;

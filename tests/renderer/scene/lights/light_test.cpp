@@ -114,6 +114,21 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
     }
 }
 
+// pbrt-v4's portals guide sampling alone.
+TEST(Lights, PortalsAreNoted) {
+    for (const char* kind : {"", "\"bool studio\" \"true\""}) {
+        Warnings warnings;
+        const auto scene =
+            SceneOf(WorldText(std::string("LightSource \"infinite\" ") + kind +
+                              " \"point3 portal\" [0 0 0  1 0 0  1 1 0  0 1 0]\nShape \"sphere\""),
+                    {}, &warnings);
+        EXPECT_EQ(scene->lights.Count(), 1);
+        auto counts = warnings.Counts();
+        EXPECT_EQ(counts["portals are not used"], 1);
+        EXPECT_EQ(counts["unused parameter"], 0);
+    }
+}
+
 // Both sides of the power heuristic must speak of the same density.
 TEST(Lights, SamplesKnowTheDensityThatRaysCompute) {
     for (const char* shape :
