@@ -39,11 +39,6 @@ int64_t BytesOfDenoising(const LayerOptions& layers) {
     return kDenoiserRows + std::max<int64_t>(0, taken - freed);
 }
 
-// Returns the bytes a pixel of what is made of layers in the end.
-int64_t BytesMadeOf(const LayerOptions& layers) {
-    return Layers::ChannelBytes(layers) + (layers.features ? BytesOfDenoising(layers) : 0);
-}
-
 }  // namespace
 
 FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
@@ -51,12 +46,19 @@ FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
     return options;
 }
 
+int64_t BytesOfLayers(const LayerOptions& layers) {
+    return Layers::Bytes(layers) + Layers::ChannelBytes(layers) +
+           (layers.features ? BytesOfDenoising(layers) : 0);
+}
+
 void CheckFilmFits(const PixelRect& region, const FilmOptions& film, int64_t more) {
+    FilmOptions sums = film;
+    sums.layers = {};
     const int groups = film.layers.groups.Count();
     const int64_t splats = film.withSpreads ? (1 + groups) * int64_t(sizeof(SplatPixel)) : 0;
     const bool hasLayers = Layers::Bytes(film.layers) > 0;
     CheckMemory(
-        Film::Bytes(region, film) + region.Area() * (BytesMadeOf(film.layers) + splats + more),
+        Film::Bytes(region, sums) + region.Area() * (BytesOfLayers(film.layers) + splats + more),
         fmt::format("an image of {}x{} pixels{}", region.Width(), region.Height(),
                     hasLayers ? " with its layers" : ""),
         fmt::format("render it in parts with --crop, {}or smaller with --resolution",

@@ -24,6 +24,9 @@ struct CheckpointOptions {
 // Returns the film of a scene: with the spreads that light paths need.
 FilmOptions FilmFor(const Scene&, FilmOptions);
 
+// Returns the bytes a pixel of such layers, with what is made of them in the end.
+int64_t BytesOfLayers(const LayerOptions&);
+
 // Throws Error where the memory cannot hold such a film, the planes of its light paths, what the
 // denoiser and files make of its layers in the end, and `more` bytes a pixel.
 void CheckFilmFits(const PixelRect& region, const FilmOptions&, int64_t more = 0);
