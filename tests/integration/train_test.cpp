@@ -168,7 +168,7 @@ std::vector<std::string> SearchResults(const TemporaryDirectory& directory) {
 TEST(Search, TrainsAllCombinationsAndRanksThem) {
     if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
     const TrainingDirectory directory;
-    directory.Write("grid.txt", "k 2 4  # steps\nfeatures H noise\n\nsnorm 0 1\n");
+    directory.Write("grid.txt", "k 2 4  # steps\nfeatures H detail_masked_noise\n\nsnorm 0 1\n");
     const Outcome outcome = ExpectSuccess(RunShell(directory, SearchOf("--units 4 --epochs 2")));
     const std::vector<std::string> lines = SearchResults(directory);
     ASSERT_EQ(lines.size(), 9u);

@@ -44,7 +44,7 @@ TEST(KeepRecorded, LeavesOutBlocksWithoutAttributes) {
     const std::vector<LabelledBlock> blocks =
         JoinHuman(viewpoints, std::vector{MakeHumanRow("a")}, nullptr);
     EXPECT_EQ(KeepRecorded(blocks, {}).size(), 3u);
-    const ModelSettings settings = {.features = ParseFeatures("noise,attributes26")};
+    const ModelSettings settings = {.features = ParseFeatures("H,attributes26")};
     const std::vector<LabelledBlock> kept = KeepRecorded(blocks, settings);
     ASSERT_EQ(kept.size(), 2u);
     EXPECT_EQ(kept[1].block, 2);
