@@ -189,7 +189,7 @@ TEST(Search, TrainsAllCombinationsAndRanksThem) {
     // A combination has the figures that it has by itself.
     ExpectSuccess(directory,
                   "train data.h5 --human human.csv --preset paper --units 4 "
-                  "--epochs 2 --k 2 --features noise --no-snorm "
+                  "--epochs 2 --k 2 --features detail_masked_noise --no-snorm "
                   "--cross-validate --csv one.csv");
     const std::string one = ReadBytes(directory.File("one.csv"));
     size_t field = one.find("left out, at least\",all,");
@@ -197,7 +197,7 @@ TEST(Search, TrainsAllCombinationsAndRanksThem) {
     const std::string criticalError = one.substr(field, 8);
     EXPECT_EQ(std::ranges::count_if(lines,
                                     [&](const std::string& line) {
-                                        return line.starts_with("2,noise,0,") &&
+                                        return line.starts_with("2,detail_masked_noise,0,") &&
                                                Contains(line, "," + criticalError + ",");
                                     }),
               1)
