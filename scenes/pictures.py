@@ -2,7 +2,8 @@
 """Renders scenes until their blocks have stopped, and makes the pictures of the documents in scenes/pictures.
 
 pictures.py LULL [cornell|room|report]: of cornell decision.svg, the estimates for the block that stopped last, and report.jpg,
-a screenshot of its report. Of the room, denoised: room-day.jpg, and room-night.jpg with at most 200 spp. All by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
+a screenshot of its report. Of the room, denoised: room-day.jpg, and room-night.jpg with at most 200 spp. All by default. Needs
+oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
 """
 import json
 import math
