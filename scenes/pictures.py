@@ -60,7 +60,7 @@ def cornell(lull, out, pictures):
 
 
 def jpeg(source, target, quality=92):
-    subprocess.run(["oiiotool", source, "--compression", f"jpeg:{quality}", "-o", target], check=True)
+    subprocess.run(["oiiotool", source, "--nosoftwareattrib", "--compression", f"jpeg:{quality}", "-o", target], check=True)
 
 
 def screenshot(page, target, size):
