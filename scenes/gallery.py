@@ -14,6 +14,8 @@ import subprocess
 
 from PIL import Image, ImageDraw, ImageFont
 
+from crops import INK, PAPER
+
 SCENES = pathlib.Path(__file__).resolve().parent
 # Captions of the scenes, in the order of the sheet.
 TITLES = {
@@ -27,7 +29,7 @@ TITLES = {
     "caustic": "light through glass",
 }
 FONTS = "/usr/share/fonts/truetype/dejavu/DejaVuSans%s.ttf"
-PAPER, INK, FAINT = (250, 249, 246), (40, 42, 46), (120, 122, 126)
+FAINT = (120, 122, 126)
 COLUMNS, GAP, TEXT, SIDE = 2, 14, 46, 240  # of the sheet, in pixels
 # Viridis at equal steps: as the program's own map of samples.
 VIRIDIS = [(68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137),

@@ -8,7 +8,7 @@ import bpy
 
 PICTURES = pathlib.Path(__file__).resolve().parent / "pictures"
 TABS = ("RENDER", "VIEW_LAYER")
-PAUSE = 3  # seconds, in which Blender draws what the last step has changed
+PAUSE = 3  # seconds for Blender to draw the effect of a step
 
 
 def largest_area():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders scenes until their blocks have stopped, and makes the pictures of the documents in scenes/pictures.
 
-pictures.py LULL [cornell|room|report]: of cornell decision.svg, the estimates for the block that stopped last, and report.jpg,
+pictures.py LULL [cornell|room]: of cornell decision.svg, the estimates for the block that stopped last, and report.jpg,
 a screenshot of its report. Of the room, denoised: room-day.jpg, and room-night.jpg with at most 200 spp. All by default. Needs
 oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
 """
@@ -50,15 +50,6 @@ def curve(decisions, width, height):
 """
 
 
-def cornell(lull, out, pictures):
-    subprocess.run([lull, "render", SCENES / "cornell/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "-o", out / "r.exr",
-                    "--report", out / "r.json"], check=True)
-    blocks = json.loads((out / "r.json").read_text())["blocks"]
-    stopped = [b for b in blocks if b["end"] == "stopped" and "decisions" in b]
-    last = max(stopped, key=lambda b: b["spp"])
-    (pictures / "decision.svg").write_text(curve(last["decisions"], 420, 300))
-
-
 def jpeg(source, target, quality=92):
     subprocess.run(["oiiotool", source, "--nosoftwareattrib", "--compression", f"jpeg:{quality}", "-o", target], check=True)
 
@@ -72,6 +63,22 @@ def screenshot(page, target, size):
     jpeg(picture, target, 80)
 
 
+def data_of(page):
+    """Returns the data that a report carries: those of --report R.json."""
+    _, _, after = page.read_text().partition('<script id="data" type="application/json">')
+    return json.loads(after.partition("</script>")[0])
+
+
+def cornell(lull, out, pictures):
+    page = out / "r.html"
+    subprocess.run([lull, "render", SCENES / "cornell/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "-o", out / "r.exr",
+                    "--report", page], check=True)
+    stopped = [b for b in data_of(page)["blocks"] if b["end"] == "stopped" and "decisions" in b]
+    last = max(stopped, key=lambda b: b["spp"])
+    (pictures / "decision.svg").write_text(curve(last["decisions"], 420, 300))
+    screenshot(page, pictures / "report.jpg", "1400,1620")
+
+
 def room(lull, out, pictures):
     for name, scene, settings in (("day", "room", ["--resolution", "600x400"]),
                                   ("night", "room-night", ["--block", "120", "--cap", "200"])):
@@ -80,14 +87,8 @@ def room(lull, out, pictures):
         jpeg(out / f"{name}.png", pictures / f"room-{name}.jpg")
 
 
-def report(lull, out, pictures):
-    subprocess.run([lull, "render", SCENES / "cornell/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "-o", out / "r.exr",
-                    "--report", out / "r.html"], check=True)
-    screenshot(out / "r.html", pictures / "report.jpg", "1400,1620")
-
-
 def main():
-    makers = {"cornell": cornell, "room": room, "report": report}
+    makers = {"cornell": cornell, "room": room}
     if len(sys.argv) not in (2, 3) or sys.argv[2:] and sys.argv[2] not in makers:
         raise SystemExit(__doc__)
     pictures = SCENES / "pictures"

@@ -41,7 +41,7 @@ size_t PrintedBytes(std::string_view text) {
         if (!IsWithinCharacter(c)) return 0;
         code = code << 6 | (static_cast<unsigned char>(c) & 0x3f);
     }
-    constexpr uint32_t kLeast[] = {0, 0, 0xa0, 0x800, 0x10000};  // shorter ones have less bytes
+    constexpr uint32_t kLeast[] = {0, 0, 0xa0, 0x800, 0x10000};  // smaller ones have fewer bytes
     const bool isSurrogate = code >= 0xd800 && code < 0xe000;
     return code < kLeast[length] || code > 0x10ffff || isSurrogate ? 0 : length;
 }

@@ -132,8 +132,8 @@ TEST_F(RanksTest, ShareLightGroups) {
                  "light.rest.G");
 }
 
-// Each rank traces a part of the light paths, and what they bring is learned from all; each goes on
-// with what others have begun.
+// Each rank traces a part of the light paths, learns from the light of all, and continues the work
+// of others.
 TEST_F(RanksTest, ShareLightPaths) {
     directory.Write("scene.pbrt", SceneText(kSphere + std::string(kLamp)));
     const std::string options =

@@ -129,10 +129,9 @@ std::vector<Variant> Variants(const Options& options) {
 }
 
 void CheckSamplers(const std::vector<std::string>& samplers) {
-    for (size_t i = 1; i < samplers.size(); ++i)
-        if (std::find(samplers.begin(), samplers.begin() + ptrdiff_t(i), samplers[i]) !=
-            samplers.begin() + ptrdiff_t(i))
-            throw UsageError("--samplers: " + samplers[i] + " is given twice");
+    for (const std::string& sampler : samplers)
+        if (std::ranges::count(samplers, sampler) > 1)
+            throw UsageError("--samplers: " + sampler + " is given twice");
 }
 
 std::string CheckpointName(const Options& options, const Variant& variant) {

@@ -10,7 +10,7 @@
 namespace lull::ranks_test {
 namespace {
 
-// A scene, what is learned there and, with bdpt, the light paths.
+// A scene, and how much is learned there.
 struct Learning {
     std::unique_ptr<const Scene> scene;
     LearningOptions options;
