@@ -132,7 +132,7 @@ TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
                                                 "geometric --ratio 1.4142 --k 2 --units 8,4 "
                                                 "--dropout 0 --learning-rate 0.003 --flare 0 "
                                                 "--balance-viewpoints --no-class-weights "
-                                                "--noisy-weight 1 --mask 1e9 --nearness 0.35 "
+                                                "--noisy-weight 1 --mask 1e9 --nearness 0.25 "
                                                 "--peak-limit 1.1 --preset paper");
     EXPECT_EQ(brief.out, full.out);
     EXPECT_NE(brief.out, RunLull(directory, judge + "--preset paper --units 8,4").out);

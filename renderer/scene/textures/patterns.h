@@ -45,26 +45,26 @@ Made<T, Scale<T>> MakeScale(const TextureInput& input) {
 
 // Interpolates between two textures by a third.
 template <typename T>
-struct Mix {
+struct MixTexture {
     TextureHandle<T> tex1, tex2;
     FloatTexture amount;  // 0: tex1; 1: tex2; not clamped
 };
 
 template <typename T>
-T Evaluate(const Mix<T>& mix, const TextureTable& table, const TextureContext& c) {
+T Evaluate(const MixTexture<T>& mix, const TextureTable& table, const TextureContext& c) {
     const float amount = table.Evaluate(mix.amount, c);
     return (1 - amount) * table.Evaluate(mix.tex1, c) + amount * table.Evaluate(mix.tex2, c);
 }
 
 template <typename T>
-SurfaceNeeds Needs(const Mix<T>& mix, const TextureTable& table) {
+SurfaceNeeds Needs(const MixTexture<T>& mix, const TextureTable& table) {
     return table.Needs(mix.tex1) | table.Needs(mix.tex2) | table.Needs(mix.amount);
 }
 
 template <typename T>
-Made<T, Mix<T>> MakeMix(const TextureInput& input) {
-    const Mix<T> mix{GetTexture<T>(input, "tex1", 0), GetTexture<T>(input, "tex2", 1),
-                     GetTexture<float>(input, "amount", 0.5f)};
+Made<T, MixTexture<T>> MakeMix(const TextureInput& input) {
+    const MixTexture<T> mix{GetTexture<T>(input, "tex1", 0), GetTexture<T>(input, "tex2", 1),
+                            GetTexture<float>(input, "amount", 0.5f)};
     if (IsConstant(mix.amount, 0)) return mix.tex1;
     if (IsConstant(mix.amount, 1)) return mix.tex2;
     if (mix.tex1.IsConstant() && mix.tex2.IsConstant()) {

@@ -11,13 +11,13 @@
 namespace lull {
 
 struct FloatTextureNode {
-    std::variant<Scale<float>, Mix<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
+    std::variant<Scale<float>, MixTexture<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
                  Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>, FilteredImageMap<float>>
         kind;
 };
 
 struct SpectrumTextureNode {
-    std::variant<Scale<Rgb>, Mix<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
+    std::variant<Scale<Rgb>, MixTexture<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
                  Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors, FilteredImageMap<Rgb>>
         kind;
 };

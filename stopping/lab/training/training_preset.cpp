@@ -10,7 +10,7 @@ std::span<const TrainingPreset> TrainingPresets() {
                       .pools = {{1}},
                       .spacing = Spacing::Geometric,
                       .ratio = 1.4142,
-                      .visibility = {.mask = 1e9, .flare = 0, .nearness = 0.35},
+                      .visibility = {.mask = 1e9, .flare = 0, .nearness = 0.25},
                       .peakLimit = 1.1},
          .training = {.units = {8, 4},
                       .dropout = 0,
