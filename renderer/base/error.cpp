@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdint>
 #include <iterator>
 #include <string_view>
 #include <utility>
+
+#include "renderer/base/utf8.h"
 
 namespace lull {
 
@@ -18,32 +19,22 @@ std::string FileLoc::Prefix() const {
 
 namespace {
 
-bool IsWithinCharacter(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
-
 // Returns a line of UTF-8 with " ... " in place of its middle where it is longer than `most` bytes.
 std::string WithoutMiddle(const std::string& line, size_t most) {
     if (line.size() <= most) return line;
-    size_t end = most / 2, begin = line.size() - most / 2;
-    while (end > 0 && IsWithinCharacter(line[end])) --end;
+    size_t begin = line.size() - most / 2;
     while (begin < line.size() && IsWithinCharacter(line[begin])) ++begin;
-    return line.substr(0, end) + " ... " + line.substr(begin);
+    return BeginningOf(line, most / 2) + " ... " + line.substr(begin);
 }
 
-// Returns the bytes of the UTF-8 character that a text begins with; 0 if it is none, or a control
-// character.
+// Returns the bytes of the character of UTF-8 that a text begins with; 0 if it is none, or a
+// control character.
 size_t PrintedBytes(std::string_view text) {
     const auto first = static_cast<unsigned char>(text[0]);
-    if (first < 0x80) return first < 0x20 || first == 0x7f ? 0 : 1;
-    const size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-    if (length == 0 || text.size() < length) return 0;
-    uint32_t code = first & (0x7f >> length);
-    for (const char c : text.substr(1, length - 1)) {
-        if (!IsWithinCharacter(c)) return 0;
-        code = code << 6 | (static_cast<unsigned char>(c) & 0x3f);
-    }
-    constexpr uint32_t kLeast[] = {0, 0, 0xa0, 0x800, 0x10000};  // smaller ones have fewer bytes
-    const bool isSurrogate = code >= 0xd800 && code < 0xe000;
-    return code < kLeast[length] || code > 0x10ffff || isSurrogate ? 0 : length;
+    const size_t bytes = CharacterBytes(text);
+    const bool isControl = bytes == 1 ? first < 0x20 || first == 0x7f
+                                      : first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0;
+    return isControl ? 0 : bytes;
 }
 
 }  // namespace

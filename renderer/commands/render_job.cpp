@@ -87,11 +87,11 @@ Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) con
 
 void RenderJob::Compile() {
     scene = CompileScene(settings, &input);
-    if (settings.scene.integrator == "bdpt" && settings.estimator == Estimator::PbrtV3)
+    const bool isChosen = !settings.scene.integrator.empty();
+    if (isChosen && IsBidirectional(scene->integrator) && settings.estimator == Estimator::PbrtV3)
         throw UsageError(
             "--integrator bdpt has no estimator of pbrt-v3's, by which lull record renders unless "
-            "told "
-            "otherwise; give --estimator combined, or leave --integrator bdpt out");
+            "told otherwise; give --estimator combined, or leave --integrator bdpt out");
     provenance = MakeProvenance(settings, *scene, input.film);
 }
 

@@ -6,16 +6,12 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "renderer/base/utf8.h"
+
 namespace lull {
 namespace {
 
 constexpr int kLayers = 3;  // of two ranks each
-
-// Returns valid UTF-8, which manifests are.
-std::string Utf8(const std::string& text) {
-    using nlohmann::json;
-    return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
-}
 
 // The ids of the names of all numbers that occur.
 using Ids = std::map<uint32_t, uint32_t>;
@@ -70,7 +66,7 @@ LayerChannels MakeCryptomatte(const std::string& layer, const MatteLayer& mattes
     for (const CryptoPixel& pixel : mattes.Crypto().Pixels())
         for (const MatteShare& share : pixel.*shares) {
             if (share.number == 0 || ids.contains(share.number)) continue;
-            const std::string name = Utf8(nameOf(share.number));
+            const std::string name = ToUtf8(nameOf(share.number));
             ids[share.number] = CryptomatteId(name);
             manifest[name] = fmt::format("{:08x}", ids[share.number]);
         }

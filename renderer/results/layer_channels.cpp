@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "renderer/base/utf8.h"
 #include "renderer/results/cryptomatte.h"
 #include "stopping/signals/lightness.h"
 
@@ -80,34 +81,17 @@ void LeaveOutBackground(const LightGroupLayer& lights, int group, const Finished
     });
 }
 
-// Returns the text in UTF-8, with U+FFFD in place of other bytes and of NUL.
-std::string ReadableUtf8(const std::string& text) {
-    using nlohmann::json;
-    const std::string utf8 =
-        json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
-    std::string clean;
-    for (const char c : utf8) clean += c == '\0' ? std::string("\xef\xbf\xbd") : std::string(1, c);
-    return clean;
-}
-
-// Returns the beginning of UTF-8 text, of up to `most` bytes, without part of a character.
-std::string Beginning(const std::string& text, size_t most) {
-    if (text.size() <= most) return text;
-    while (most > 0 && (text[most] & 0xc0) == 0x80) --most;
-    return text.substr(0, most);
-}
-
 // Returns names of layers that differ, in UTF-8: an EXR cuts those of channels off, silently.
 std::vector<std::string> LayerNames(const std::vector<std::string>& groups) {
     constexpr size_t kLongest = 240;  // bytes; 255 with "light." and ".R"
     std::vector<std::string> names;
     for (const std::string& group : groups) {
-        const std::string whole = ReadableUtf8(group);
+        const std::string whole = ToUtf8(group);
         std::string name = whole;
         bool isLong = whole.size() > kLongest;
         for (int number = 1; isLong || std::ranges::count(names, name) > 0; ++number) {
             const std::string end = "~" + std::to_string(number);
-            name = Beginning(whole, kLongest - end.size()) + end;
+            name = BeginningOf(whole, kLongest - end.size()) + end;
             isLong = false;
         }
         names.push_back(name);
