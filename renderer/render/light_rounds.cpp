@@ -29,15 +29,18 @@ double LightRounds::FindUnit() const {
     constexpr BdptShares shares = StrategyLearner::kFirst;
     if (LightPathCount(scene, shares) == 0) return 1;
     Sampler sampler(kind, seed);
+    std::vector<Splat> splats;
     double sum = 0;
     int count = 0;
-    for (uint32_t i = 0; i < kMost && count < kEnough; ++i)
-        TraceLightPath(scene, shares, sampler, 0, i, [&](const Splat& splat) {
+    for (uint32_t i = 0; i < kMost && count < kEnough; ++i) {
+        TraceLightPath(scene, shares, sampler, 0, i, &splats);
+        for (const Splat& splat : splats) {
             const double y = double(Luminance(splat.radiance));
-            if (!(y > 0)) return;
+            if (!(y > 0)) continue;
             sum += y;
             ++count;
-        });
+        }
+    }
     if (count == 0) return double(scene.film.scale);
     return std::exp2(std::round(std::log2(std::clamp(sum / count, 1e-30, 1e30))));
 }
@@ -73,31 +76,33 @@ bool LightRounds::Trace(const std::function<bool()>& isCancelled, int part, int 
 
 void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
     Sampler sampler(kind, seed);
-    const Filter& filter = scene.filter;
-    const Vec2f radius = filter.Radius(), middle(0.5f, 0.5f);
     const bool inHalf = InHalf(sample);
-    const std::function<void(const Splat&)> splat = [&](const Splat& s) {
-        if (s.rejected) {
-            const Vec2i p = s.film.array().floor().cast<int>().matrix();
-            planes[0].Reject(p.cwiseMax(region.min).cwiseMin(region.max - Vec2i(1, 1)));
-            return;
+    std::vector<Splat> splats;
+    for (uint32_t i = begin; i < stop; ++i) {
+        TraceLightPath(scene, round.shares, sampler, sample, i, &splats);
+        for (const Splat& splat : splats) Add(splat, inHalf);
+    }
+}
+
+void LightRounds::Add(const Splat& s, bool inHalf) {
+    if (s.rejected) {
+        const Vec2i p = s.film.array().floor().cast<int>().matrix();
+        planes[0].Reject(p.cwiseMax(region.min).cwiseMin(region.max - Vec2i(1, 1)));
+        return;
+    }
+    const Vec2f radius = scene.filter.Radius(), middle(0.5f, 0.5f);
+    const Vec2f low = s.film - middle - radius, high = s.film - middle + radius;
+    const Vec2i from = low.array().ceil().cast<int>().matrix().cwiseMax(region.min);
+    const Vec2i to = high.array().floor().cast<int>().matrix().cwiseMin(region.max - Vec2i(1, 1));
+    for (int y = from.y(); y <= to.y(); ++y)
+        for (int x = from.x(); x <= to.x(); ++x) {
+            const float weight = scene.filter.Evaluate(s.film - Vec2f(float(x), float(y)) - middle);
+            if (weight == 0) continue;
+            planes[0].Add({x, y}, s.radiance * weight, inHalf);
+            if (groups.Count() > 0)
+                planes[1 + size_t(groups.ofLight[size_t(s.light)])].Add({x, y}, s.radiance * weight,
+                                                                        inHalf);
         }
-        const Vec2f low = s.film - middle - radius, high = s.film - middle + radius;
-        const Vec2i from = low.array().ceil().cast<int>().matrix().cwiseMax(region.min);
-        const Vec2i to =
-            high.array().floor().cast<int>().matrix().cwiseMin(region.max - Vec2i(1, 1));
-        for (int y = from.y(); y <= to.y(); ++y)
-            for (int x = from.x(); x <= to.x(); ++x) {
-                const float weight = filter.Evaluate(s.film - Vec2f(float(x), float(y)) - middle);
-                if (weight == 0) continue;
-                planes[0].Add({x, y}, s.radiance * weight, inHalf);
-                if (groups.Count() > 0)
-                    planes[1 + size_t(groups.ofLight[size_t(s.light)])].Add(
-                        {x, y}, s.radiance * weight, inHalf);
-            }
-    };
-    for (uint32_t i = begin; i < stop; ++i)
-        TraceLightPath(scene, round.shares, sampler, sample, i, splat);
 }
 
 SplatLight LightRounds::LightOf(const SplatPlane& light, const Vec2i& p, uint32_t from) const {

@@ -57,6 +57,7 @@ class LightRounds {
     // Returns light of a plane that belongs to a pixel's samples from `from` on.
     SplatLight LightOf(const SplatPlane&, const Vec2i& p, uint32_t from) const;
     void TraceSome(uint32_t sample, uint32_t begin, uint32_t end);
+    void Add(const Splat&, bool inHalf);
 
     const Scene& scene;
     const PixelRect region;

@@ -384,9 +384,9 @@ namespace {
 // Shows a vertex of a light path to the camera.
 class Onlooker {
   public:
-    Onlooker(const Context& context, const std::function<void(const Splat&)>& splat)
+    Onlooker(const Context& context, std::vector<Splat>* splats)
         : context(context),
-          splat(splat),
+          splats(splats),
           size(context.scene.film.resolution.cast<float>()),
           reach(context.scene.filter.Radius()) {}
 
@@ -428,18 +428,19 @@ class Onlooker {
             L *= scene.film.maxSampleLuminance / luminance;
         L *= scene.film.scale;
         const bool isValid = IsFinite(L) && luminance >= 0;
-        splat({view.film, isValid ? L : Rgb(Rgb::Zero()), light, !isValid});
+        splats->push_back({view.film, isValid ? L : Rgb(Rgb::Zero()), light, !isValid});
     }
 
     const Context& context;
-    const std::function<void(const Splat&)>& splat;
+    std::vector<Splat>* splats;
     const Vec2f size, reach;  // of the image and the filter, pixels
 };
 
 }  // namespace
 
 void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampler, uint32_t round,
-                    uint32_t index, const std::function<void(const Splat&)>& splat) {
+                    uint32_t index, std::vector<Splat>* splats) {
+    splats->clear();
     // Numbers of no pixel: one Sobol sequence for each round.
     sampler.StartSample(Vec2i(-1, int(round)), index);
     const float time = scene.isMoving ? sampler.Get1D() : 0;
@@ -449,7 +450,7 @@ void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampl
                           time,
                           LightPathCount(scene, shares),
                           double(shares.connections)};
-    Onlooker onlooker(context, splat);
+    Onlooker onlooker(context, splats);
     alignas(SubpathVertex) std::byte storage[sizeof(SubpathVertex)];
     FollowLight(
         context, context.integrator.maxDepth,

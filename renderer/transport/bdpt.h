@@ -3,7 +3,7 @@
 // path from a light; that fills an image of its own, from light paths.
 #pragma once
 
-#include <functional>
+#include <vector>
 
 #include "renderer/transport/integrator.h"
 
@@ -21,9 +21,10 @@ struct Splat {
     bool rejected = false;  // was not finite, or of negative luminance, and is black
 };
 
-// Traces light path `index` of those that belong to sample `round` of all pixels. The result
-// depends on the sampler's seed and on these alone. The scene's integrator is BdptIntegrator.
+// Traces light path `index` of those that belong to sample `round` of all pixels, and replaces
+// `splats` by its contributions, at most one a vertex. They depend on the sampler's seed and on
+// these alone. The scene's integrator is BdptIntegrator.
 void TraceLightPath(const Scene&, const BdptShares&, Sampler&, uint32_t round, uint32_t index,
-                    const std::function<void(const Splat&)>&);
+                    std::vector<Splat>* splats);
 
 }  // namespace lull

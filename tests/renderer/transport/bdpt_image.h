@@ -43,9 +43,12 @@ inline std::vector<Eigen::Array3d> Picture(const Scene& scene, const BdptShares&
     };
     const auto paths =
         IsBidirectional(scene.integrator) ? uint32_t(LightPathCount(scene, shares)) : 0;
+    std::vector<Splat> splats;
     for (int k = 0; k < spp; ++k)
-        for (uint32_t i = 0; i < paths; ++i)
-            TraceLightPath(scene, shares, sampler, uint32_t(k), i, splat);
+        for (uint32_t i = 0; i < paths; ++i) {
+            TraceLightPath(scene, shares, sampler, uint32_t(k), i, &splats);
+            for (const Splat& s : splats) splat(s);
+        }
     for (Eigen::Array3d& pixel : image) pixel /= double(spp) * double(scene.film.scale);
     return image;
 }
