@@ -17,15 +17,14 @@ def find(scene, wanted):
 
 
 def add(lamps, scene, flat, notes):
-    """Adds lights to a scene, point lights with a radius, suns with an angle, and meshes for area lights: glTF lacks these."""
+    """Adds lights to a scene, point and spot lights with a radius, suns with an angle, and meshes for area lights, which glTF
+    lacks."""
     folded = {}
     for o, matrix in lamps:
         light = folded.get(o.data)
         if light is None:
             light = folded[o.data] = _folded(o.data.copy(), notes)
-        if light.type == 'SPOT' and light.shadow_soft_size > 0:
-            notes.add("without a radius, with sharp shadows", o.name, "lights")
-        elif not o.visible_camera and _is_in_view(scene, matrix.translation):
+        if not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
                 notes.add("seen by the camera", o.name, "lights")
         if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
@@ -50,7 +49,7 @@ def _place(flat, o, data, matrix):
 def _folded(light, notes):
     if light.use_nodes:
         _fold_nodes(light, notes)
-    if light.type == 'POINT' and light.shadow_soft_size > 0:
+    if light.type in ('POINT', 'SPOT') and light.shadow_soft_size > 0:
         light["lull"] = {"radius": light.shadow_soft_size}
     if light.type == 'SUN' and light.angle > 0:
         light["lull"] = {"angle": light.angle}

@@ -94,10 +94,13 @@ void CheckReach(const Light& light, const LightEntity& entity, float reach) {
         light);
 }
 
+// An area light that shines into a cone, as a spot light does, from the origin of its shape.
+constexpr const char* kAreaSpot = "spot-squared";
+
 // Returns false, with a warning, where another kind of light is to be left out; throws Error where
 // it is not.
 bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
-    if (entity.name == "diffuse" || entity.name == "area") return true;
+    if (entity.name == "diffuse" || entity.name == "area" || entity.name == kAreaSpot) return true;
     warnings.Substitute(entity.loc,
                         fmt::format("AreaLightSource \"{}\" is not supported; only \"diffuse\" is",
                                     Printable(entity.name)),
@@ -186,7 +189,11 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         if (!entity || !IsKnownAreaLight(*entity, warnings)) continue;
         Shape& shape = shapes.shapes[i];
         std::unique_ptr<const EmissionMap> map = MakeEmissionMap(*entity, shape, textures);
+        if (entity->name == kAreaSpot)
+            cones.push_back(std::make_unique<const SpotCone>(
+                SpotCone::Make(*entity, description.shapes[i].worldFromObject, true)));
         AreaLight light = MakeAreaLight(*entity, shape, warnings);
+        if (entity->name == kAreaSpot) light.cone = cones.back().get();
         light.map = map.get();
         if (map) emissionMaps.push_back(std::move(map));
         if (shape.PrimitiveCount() == 0) {
