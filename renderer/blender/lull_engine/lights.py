@@ -34,7 +34,7 @@ def add(lamps, scene, flat, notes):
         if not light.use_shadow or not getattr(light.cycles, "cast_shadow", True):
             notes.add("casting shadows all the same", o.name, "lights")
         if light.type == 'AREA':
-            _add_area(flat, o, light, matrix, notes)
+            _add_area(flat, o, light, matrix)
         else:
             _place(flat, o, light, matrix)
 
@@ -125,10 +125,8 @@ def _is_in_view(scene, point):
     return depth > 0 and 0 < x < 1 and 0 < y < 1
 
 
-def _add_area(flat, o, light, matrix, notes):
+def _add_area(flat, o, light, matrix):
     """Adds a mesh that emits downwards, like the light."""
-    if light.spread < math.pi - 1e-4:
-        notes.add("shining to all sides, without spread", o.name, "lights")
     width = light.size
     height = light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else width
     if light.shape in ('SQUARE', 'RECTANGLE'):
@@ -152,6 +150,8 @@ def _add_area(flat, o, light, matrix, notes):
     # Blender's watts: a Lambertian surface of this radiance emits pi / 4 of them.
     mesh.materials.append(_shining(o.name, light.color, light.energy / (4 * area)))
     mesh.materials[0]["lull_open"] = True
+    if light.spread < math.pi - 1e-4:
+        mesh.materials[0]["lull_spread"] = light.spread
     _place(flat, o, mesh, matrix)
 
 

@@ -3,7 +3,7 @@
 namespace lull {
 
 std::optional<LightBounds> AreaLight::Bounds() const {
-    if (cone) {
+    if (const auto* cone = std::get_if<SpotCone>(profile)) {
         const Vec2f cosines = cone->CosinesOfBounds();
         return LightBounds{
             .box = VisitEmitter(surface, [](const auto& e) { return e.WorldBounds(); }),
@@ -12,10 +12,12 @@ std::optional<LightBounds> AreaLight::Bounds() const {
             .cosEmission = cosines.y(),
             .power = BoundedPower(Whole())};
     }
+    const auto* spread = std::get_if<Spread>(profile);
     const NormalBounds normals = VisitEmitter(surface, [](const auto& e) { return e.Normals(); });
     return LightBounds{.box = VisitEmitter(surface, [](const auto& e) { return e.WorldBounds(); }),
                        .axis = normals.axis,
                        .cosNormals = normals.cosAngle,
+                       .cosEmission = spread ? spread->cosEmission : 0,
                        .power = BoundedPower(Power()),
                        .isTwoSided = twoSided || normals.isTwoSided};
 }

@@ -2,9 +2,9 @@
 
 #include "renderer/scene/geometry/shape.h"
 #include "renderer/scene/lights/emission_map.h"
+#include "renderer/scene/lights/emission_profile.h"
 #include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
-#include "renderer/scene/lights/spot_cone.h"
 
 namespace lull {
 
@@ -14,8 +14,8 @@ struct AreaLight {
 
     Rgb L;
     bool twoSided = false;
-    bool isHidden = false;           // its shape has alpha 0
-    const SpotCone* cone = nullptr;  // that the light leaves into; null: to all sides
+    bool isHidden = false;                     // its shape has alpha 0
+    const EmissionProfile* profile = nullptr;  // null: the same radiance to all sides
     Emitter surface;
     // If the emission of a mesh varies: the factor of L, which triangle this is, and roughly the
     // mean factor over it.
@@ -26,7 +26,7 @@ struct AreaLight {
     // Returns the radiance that leaves a point with normal n towards w, without the map.
     Rgb Le(const Vec3f& n, const Vec3f& w) const {
         if (!twoSided && !(n.dot(w) > 0)) return Rgb::Zero();
-        return cone ? Rgb(L * cone->Falloff(w)) : L;
+        return profile ? Rgb(L * Falloff(*profile, n, w)) : L;
     }
     // Returns it with the map; the point is the hit's.
     Rgb Le(const Vec3f& n, const Vec3f& w, const Hit& hit) const {
@@ -59,13 +59,13 @@ struct AreaLight {
     }
 
     std::optional<LightBounds> Bounds() const;
-    Rgb Power() const { return cone ? Rgb(cone->SolidAngle() / (4 * kPi) * Whole()) : Whole(); }
+    Rgb Power() const { return profile ? Rgb(PowerFraction(*profile) * Whole()) : Whole(); }
     float Area() const {
         return VisitEmitter(surface, [](const auto& e) { return e.Area(); });
     }
 
   private:
-    // Returns the power without a cone.
+    // Returns the power without a profile.
     Rgb Whole() const { return (twoSided ? 2 : 1) * kPi * Area() * L * meanFactor; }
 };
 

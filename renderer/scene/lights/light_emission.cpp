@@ -48,16 +48,19 @@ float Weight(const Light& light) {
 
 // Returns the density of direction w from a point with normal n.
 float OnwardDensity(const AreaLight& light, const Vec3f& n, const Vec3f& w) {
-    if (light.cone) {
-        const Cone cone = ConeOf(*light.cone);
+    if (const auto* spot = std::get_if<SpotCone>(light.profile)) {
+        const Cone cone = ConeOf(*spot);
         return cone.Has(w) && (light.twoSided || n.dot(w) > 0) ? cone.Density() : 0;
     }
     const float cosine = n.dot(w) * kInvPi;
-    return light.twoSided ? 0.5f * std::abs(cosine) : std::max(0.f, cosine);
+    const float density = light.twoSided ? 0.5f * std::abs(cosine) : std::max(0.f, cosine);
+    const auto* spread = std::get_if<Spread>(light.profile);
+    if (!spread) return density;
+    return spread->Has(n, w) ? density / Sqr(spread->sine) : 0;
 }
 
-// Samples the hemisphere about n, or both, by the cosine.
-Vec3f SampleCosine(const Vec3f& n, bool twoSided, Vec2f u) {
+// Samples the hemisphere about n, or both, by the cosine, up to the angle of this sine.
+Vec3f SampleCosine(const Vec3f& n, bool twoSided, float sine, Vec2f u) {
     float side = 1;
     if (twoSided) {
         side = u.x() < 0.5f ? 1.f : -1.f;
@@ -65,7 +68,15 @@ Vec3f SampleCosine(const Vec3f& n, bool twoSided, Vec2f u) {
     }
     Frame frame{{}, {}, side * n};
     CoordinateSystem(frame.n, &frame.s, &frame.t);
-    return frame.FromLocal(SampleCosineHemisphere(u)).normalized();
+    const Vec2f d = sine * SampleConcentricDisk(u);
+    return frame.FromLocal({d.x(), d.y(), SafeSqrt(1 - d.squaredNorm())}).normalized();
+}
+
+// Samples a direction from a point with normal n with OnwardDensity().
+Vec3f SampleOnward(const AreaLight& light, const Vec3f& n, const Vec2f& u) {
+    if (const auto* spot = std::get_if<SpotCone>(light.profile)) return ConeOf(*spot).Sample(u);
+    const auto* spread = std::get_if<Spread>(light.profile);
+    return SampleCosine(n, light.twoSided, spread ? spread->sine : 1, u);
 }
 
 }  // namespace
@@ -94,8 +105,7 @@ std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
             const ShapeSample s =
                 VisitEmitter(l.surface, [&](const auto& e) { return SampleArea(e, origin); });
             ray.p = s.p, ray.pError = s.pError, ray.n = s.n;
-            ray.w = l.cone ? ConeOf(*l.cone).Sample(direction)
-                           : SampleCosine(s.n, l.twoSided, direction);
+            ray.w = SampleOnward(l, s.n, direction);
             ray.L = l.Le(s.n, ray.w);
             if (l.map) {
                 const Vec2f b = SampleUniformTriangle(origin);  // as the triangle does

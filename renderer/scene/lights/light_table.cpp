@@ -108,6 +108,22 @@ bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
     return false;
 }
 
+// Reads the cone of a spot, or "spread", degrees across the cone about each normal that the light
+// leaves into. Returns null where the radiance is the same to all sides.
+std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
+                                                   const Mat4d& worldFromShape) {
+    if (entity.name == kAreaSpot)
+        return std::make_unique<const EmissionProfile>(
+            SpotCone::Make(entity, worldFromShape, true));
+    const float degrees = entity.parameters.GetFloat("spread", 180);
+    if (!(degrees > 0 && degrees <= 180))
+        throw Error(entity.loc, fmt::format("the area light's \"spread\" is {:g}; it has to be "
+                                            "above 0 and at most 180 degrees",
+                                            degrees));
+    if (degrees == 180) return {};
+    return std::make_unique<const EmissionProfile>(Spread::Make(double(degrees)));
+}
+
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
     const Parameters& params = entity.parameters;
     AreaLight light;
@@ -189,11 +205,11 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         if (!entity || !IsKnownAreaLight(*entity, warnings)) continue;
         Shape& shape = shapes.shapes[i];
         std::unique_ptr<const EmissionMap> map = MakeEmissionMap(*entity, shape, textures);
-        if (entity->name == kAreaSpot)
-            cones.push_back(std::make_unique<const SpotCone>(
-                SpotCone::Make(*entity, description.shapes[i].worldFromObject, true)));
+        std::unique_ptr<const EmissionProfile> profile =
+            MakeProfile(*entity, description.shapes[i].worldFromObject);
         AreaLight light = MakeAreaLight(*entity, shape, warnings);
-        if (entity->name == kAreaSpot) light.cone = cones.back().get();
+        light.profile = profile.get();
+        if (profile) profiles.push_back(std::move(profile));
         light.map = map.get();
         if (map) emissionMaps.push_back(std::move(map));
         if (shape.PrimitiveCount() == 0) {

@@ -132,6 +132,14 @@ INSTANTIATE_TEST_SUITE_P(
             "\"float coneangle\" [50] \"float conedeltaangle\" [20] Shape \"sphere\" "
             "\"float radius\" [.1] AttributeEnd",
             false, false, true},
+        Lit{"Spread",
+            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"float spread\" [100] "
+            "Shape \"disk\" AttributeEnd",
+            true, false, true},
+        Lit{"NarrowSpreadOnBothSides",
+            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"float spread\" [5] "
+            "\"bool twosided\" \"true\" Shape \"disk\" AttributeEnd",
+            true, false, true},
         Lit{"TwoSided",
             "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"bool twosided\" \"true\" "
             "Shape \"disk\" AttributeEnd",

@@ -83,6 +83,10 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
          "AttributeBegin\nTranslate .3 .2 2\nAreaLightSource \"spot-squared\" "
          "\"point to\" [.2 .3 -1] \"float coneangle\" [80] \"float conedeltaangle\" [60]\n"
          "Shape \"sphere\" \"float radius\" [.7]\nAttributeEnd"},
+        {"triangles with a spread",
+         "AttributeBegin\nTranslate .3 .2 2\nRotate 170 1 .2 0\nAreaLightSource \"diffuse\" "
+         "\"float spread\" [150]\n" +
+             mesh + "\nAttributeEnd"},
         {"infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]"},
         {"sun", "LightSource \"distant\" \"point from\" [1 2 -3] \"float angle\" [70]"},
         {"image", "Rotate 40 1 1 0\nLightSource \"infinite\" \"string mapname\" \"sky.exr\""},
