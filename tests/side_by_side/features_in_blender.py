@@ -11,6 +11,7 @@ import sys
 
 import bpy
 import numpy as np
+from mathutils import Euler, Matrix
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "blender"))
 from scenes import camera, dress, floor, lamp, material, matte  # noqa: E402
@@ -316,6 +317,15 @@ def spot(scene):
 @case("spot lamp with a radius")
 def spot_radius(scene):
     only('SPOT', 800, (2, -3, 4), (0.65, 0, 0.6), shadow_soft_size=0.5, spot_size=0.8)
+
+
+@case("penumbra of a spot lamp of radius 0.25, under the edge of a card")
+def spot_penumbra(scene):
+    without("ball")
+    scene.world.node_tree.nodes["Background"].inputs[1].default_value = 0
+    only('SPOT', 800, (0, 0, 4), shadow_soft_size=0.25, spot_size=1.2)
+    wall(matte("card", (0, 0, 0, 1)), x=2).matrix_world = Matrix.LocRotScale((-2, 1, 2), Euler((math.pi / 2, 0, 0)), (1, 1, 1))
+    camera((0, 0, 1.5), (0, 0, 0), type='ORTHO', ortho_scale=3)
 
 
 @case("lamp without shadows")

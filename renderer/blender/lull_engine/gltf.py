@@ -73,6 +73,8 @@ def _patch_material(material):
         extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
     own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"))
            if extras.pop(mark, None)}  # Blender has numbers only
+    if spread := extras.pop("lull_spread", None):
+        own["spread"] = spread
     if own:
         extras["lull"] = own
     absorbs = extras.pop("lull_absorbs", None)

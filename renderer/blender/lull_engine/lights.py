@@ -17,15 +17,14 @@ def find(scene, wanted):
 
 
 def add(lamps, scene, flat, notes):
-    """Adds lights to a scene, point lights with a radius, suns with an angle, and meshes for area lights: glTF lacks these."""
+    """Adds lights to a scene, point and spot lights with a radius, suns with an angle, and meshes for area lights, which glTF
+    lacks."""
     folded = {}
     for o, matrix in lamps:
         light = folded.get(o.data)
         if light is None:
             light = folded[o.data] = _folded(o.data.copy(), notes)
-        if light.type == 'SPOT' and light.shadow_soft_size > 0:
-            notes.add("without a radius, with sharp shadows", o.name, "lights")
-        elif not o.visible_camera and _is_in_view(scene, matrix.translation):
+        if not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
                 notes.add("seen by the camera", o.name, "lights")
         if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
@@ -35,7 +34,7 @@ def add(lamps, scene, flat, notes):
         if not light.use_shadow or not getattr(light.cycles, "cast_shadow", True):
             notes.add("casting shadows all the same", o.name, "lights")
         if light.type == 'AREA':
-            _add_area(flat, o, light, matrix, notes)
+            _add_area(flat, o, light, matrix)
         else:
             _place(flat, o, light, matrix)
 
@@ -50,7 +49,7 @@ def _place(flat, o, data, matrix):
 def _folded(light, notes):
     if light.use_nodes:
         _fold_nodes(light, notes)
-    if light.type == 'POINT' and light.shadow_soft_size > 0:
+    if light.type in ('POINT', 'SPOT') and light.shadow_soft_size > 0:
         light["lull"] = {"radius": light.shadow_soft_size}
     if light.type == 'SUN' and light.angle > 0:
         light["lull"] = {"angle": light.angle}
@@ -126,10 +125,8 @@ def _is_in_view(scene, point):
     return depth > 0 and 0 < x < 1 and 0 < y < 1
 
 
-def _add_area(flat, o, light, matrix, notes):
+def _add_area(flat, o, light, matrix):
     """Adds a mesh that emits downwards, like the light."""
-    if light.spread < math.pi - 1e-4:
-        notes.add("shining to all sides, without spread", o.name, "lights")
     width = light.size
     height = light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else width
     if light.shape in ('SQUARE', 'RECTANGLE'):
@@ -153,6 +150,8 @@ def _add_area(flat, o, light, matrix, notes):
     # Blender's watts: a Lambertian surface of this radiance emits pi / 4 of them.
     mesh.materials.append(_shining(o.name, light.color, light.energy / (4 * area)))
     mesh.materials[0]["lull_open"] = True
+    if light.spread < math.pi - 1e-4:
+        mesh.materials[0]["lull_spread"] = light.spread
     _place(flat, o, mesh, matrix)
 
 

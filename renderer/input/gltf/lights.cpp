@@ -10,10 +10,25 @@
 namespace lull {
 namespace {
 
-// Adds a point light that `extras` give a radius: a sphere that emits evenly, and is no obstacle to
-// other light, being a sheet of air.
-void AddSphere(const Rgb& intensity, double radius, const LightEntity& light,
-               Description* description) {
+void WriteCone(const tinygltf::SpotLight& spot, const FileLoc& loc, const ParameterWriter& write) {
+    constexpr double kWidest = std::numbers::pi / 2;
+    const auto outerAngle = InRange(spot.outerConeAngle, 0, kWidest);
+    const auto innerAngle = InRange(spot.innerConeAngle, 0, kWidest);
+    if (!outerAngle || !innerAngle || !(*outerAngle > 0) || IsAbove(*innerAngle, *outerAngle))
+        throw Error(loc, fmt::format("the cone's angles are {} and {}; they have to be 0 <= inner "
+                                     "<= outer <= pi/2, and outer above 0",
+                                     spot.innerConeAngle, spot.outerConeAngle));
+    const double outer = *outerAngle, inner = std::min(*innerAngle, outer);
+    write.Point("from", Vec3f::Zero());
+    write.Point("to", Vec3f(0, 0, -1));
+    write.Float("coneangle", outer * 180 / std::numbers::pi);
+    write.Float("conedeltaangle", (outer - inner) * 180 / std::numbers::pi);
+}
+
+// Adds a point or spot light that `extras` give a radius: a sphere that emits evenly, or as the
+// spot, and is no obstacle to other light, being a sheet of air.
+void AddSphere(const tinygltf::Light& source, const Rgb& intensity, double radius,
+               const LightEntity& light, Description* description) {
     const FileLoc& loc = light.loc;
     MaterialEntity air;
     air.name = "metallicroughness";
@@ -30,9 +45,11 @@ void AddSphere(const Rgb& intensity, double radius, const LightEntity& light,
     sphere.label = light.label;
     sphere.material = int(description->materials.size());
     ParameterWriter(&sphere.parameters, loc).Float("radius", radius);
-    sphere.areaLight = Entity{"diffuse", {}, loc};
-    ParameterWriter(&sphere.areaLight->parameters, loc)
-        .Spectrum("L", intensity / float(std::numbers::pi * radius * radius));
+    const bool isSpot = source.type == "spot";
+    sphere.areaLight = Entity{isSpot ? "spot-squared" : "diffuse", {}, loc};
+    const ParameterWriter emission(&sphere.areaLight->parameters, loc);
+    emission.Spectrum("L", intensity / float(std::numbers::pi * radius * radius));
+    if (isSpot) WriteCone(source.spot, loc, emission);
     description->materials.push_back(std::move(air));
     description->shapes.push_back(std::move(sphere));
 }
@@ -56,21 +73,6 @@ double AngleOf(const tinygltf::Light& light, const FileLoc& loc) {
     if (!across)
         throw Error(loc, fmt::format("its angle is {:g}; it has to be from 0 to pi", angle));
     return *across * 180 / std::numbers::pi;
-}
-
-void WriteCone(const tinygltf::SpotLight& spot, const FileLoc& loc, const ParameterWriter& write) {
-    constexpr double kWidest = std::numbers::pi / 2;
-    const auto outerAngle = InRange(spot.outerConeAngle, 0, kWidest);
-    const auto innerAngle = InRange(spot.innerConeAngle, 0, kWidest);
-    if (!outerAngle || !innerAngle || !(*outerAngle > 0) || IsAbove(*innerAngle, *outerAngle))
-        throw Error(loc, fmt::format("the cone's angles are {} and {}; they have to be 0 <= inner "
-                                     "<= outer <= pi/2, and outer above 0",
-                                     spot.innerConeAngle, spot.outerConeAngle));
-    const double outer = *outerAngle, inner = std::min(*innerAngle, outer);
-    write.Point("from", Vec3f::Zero());
-    write.Point("to", Vec3f(0, 0, -1));
-    write.Float("coneangle", outer * 180 / std::numbers::pi);
-    write.Float("conedeltaangle", (outer - inner) * 180 / std::numbers::pi);
 }
 
 // Returns the node's transform without its scale, which is not that of lights.
@@ -108,8 +110,8 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     if (light.color.size() == 3)
         color = Eigen::Array3d(light.color[0], light.color[1], light.color[2]).cast<float>();
     const Rgb strength = color.max(0.f) * float(light.intensity / kLumensPerWatt);
-    if (const double radius = RadiusOf(light, loc); radius > 0 && light.type == "point")
-        return AddSphere(strength, radius, entity, description);
+    if (const double radius = RadiusOf(light, loc); radius > 0 && light.type != "directional")
+        return AddSphere(light, strength, radius, entity, description);
     if (light.type == "directional") {
         entity.name = "distant";
         write.Spectrum("L", strength);

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
+#include "renderer/base/rounding.h"
+
 namespace lull {
 namespace {
 
@@ -42,6 +46,20 @@ bool OwnProperty(const tinygltf::Material& material, const std::string& name,
     if (!value.IsBool())
         throw Error(document.At(path + "/extras/lull/" + name), "has to be true or false");
     return value.Get<bool>();
+}
+
+// Returns "spread" of our own `extras`, the angle across the cone about each normal that emission
+// leaves into, degrees; 180: to all sides. Throws Error.
+double SpreadOf(const tinygltf::Material& material, const GltfDocument& document,
+                const std::string& path) {
+    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has("spread")) return 180;
+    const tinygltf::Value& value = material.extras.Get("lull").Get("spread");
+    const auto spread =
+        InRange(value.IsNumber() ? value.GetNumberAsDouble() : 0, 0, std::numbers::pi);
+    if (!spread || !(*spread > 0))
+        throw Error(document.At(path + "/extras/lull/spread"),
+                    "has to be a number above 0 and at most pi");
+    return *spread * 180 / std::numbers::pi;
 }
 
 double TransmissionFactor(const tinygltf::Material& material) {
@@ -206,9 +224,13 @@ std::optional<Entity> GltfMaterials::EmissionOfSurface(const MaterialUse& use, W
     if (emissive.maxCoeff() <= 0) return {};
     const GltfTextureUse texture =
         ReadTextureUse(material.emissiveTexture, use.path + "/emissiveTexture");
-    return EmissionOf(emissive.max(0.f), material.doubleSided,
-                      textures.Add(texture, GltfTexels::EncodedColor, warnings), texture.uvSet,
-                      document.At(use.path));
+    const FileLoc loc = document.At(use.path);
+    Entity light =
+        EmissionOf(emissive.max(0.f), material.doubleSided,
+                   textures.Add(texture, GltfTexels::EncodedColor, warnings), texture.uvSet, loc);
+    if (const double spread = SpreadOf(material, document, use.path); spread < 180)
+        ParameterWriter(&light.parameters, loc).Float("spread", spread);
+    return light;
 }
 
 void GltfMaterials::AddSurface(const MaterialUse& use, const GltfTextureUse& color, bool hasColors,

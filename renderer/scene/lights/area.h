@@ -2,6 +2,7 @@
 
 #include "renderer/scene/geometry/shape.h"
 #include "renderer/scene/lights/emission_map.h"
+#include "renderer/scene/lights/emission_profile.h"
 #include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
 
@@ -13,7 +14,8 @@ struct AreaLight {
 
     Rgb L;
     bool twoSided = false;
-    bool isHidden = false;  // its shape has alpha 0
+    bool isHidden = false;                     // its shape has alpha 0
+    const EmissionProfile* profile = nullptr;  // null: the same radiance to all sides
     Emitter surface;
     // If the emission of a mesh varies: the factor of L, which triangle this is, and roughly the
     // mean factor over it.
@@ -23,7 +25,8 @@ struct AreaLight {
 
     // Returns the radiance that leaves a point with normal n towards w, without the map.
     Rgb Le(const Vec3f& n, const Vec3f& w) const {
-        return twoSided || n.dot(w) > 0 ? L : Rgb(Rgb::Zero());
+        if (!twoSided && !(n.dot(w) > 0)) return Rgb::Zero();
+        return profile ? Rgb(L * Falloff(*profile, n, w)) : L;
     }
     // Returns it with the map; the point is the hit's.
     Rgb Le(const Vec3f& n, const Vec3f& w, const Hit& hit) const {
@@ -56,10 +59,14 @@ struct AreaLight {
     }
 
     std::optional<LightBounds> Bounds() const;
-    Rgb Power() const { return (twoSided ? 2 : 1) * kPi * Area() * L * meanFactor; }
+    Rgb Power() const { return profile ? Rgb(PowerFraction(*profile) * Whole()) : Whole(); }
     float Area() const {
         return VisitEmitter(surface, [](const auto& e) { return e.Area(); });
     }
+
+  private:
+    // Returns the power without a profile.
+    Rgb Whole() const { return (twoSided ? 2 : 1) * kPi * Area() * L * meanFactor; }
 };
 
 }  // namespace lull

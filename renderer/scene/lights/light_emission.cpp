@@ -24,9 +24,10 @@ struct Cone {
 // Return the cones that lights of one place shine into.
 Cone ConeOf(const PointLight&) { return {}; }
 Cone ConeOf(const GoniometricLight&) { return {}; }
-Cone ConeOf(const SpotLight& light) {
-    return {light.axis, std::clamp(light.cosTotalWidth, -1.f, 1 - 1e-6f)};
+Cone ConeOf(const SpotCone& cone) {
+    return {cone.axis, std::clamp(cone.cosTotalWidth, -1.f, 1 - 1e-6f)};
 }
+Cone ConeOf(const SpotLight& light) { return ConeOf(light.cone); }
 // A transform that stretches the picture could make the cone wider: then all directions do.
 Cone ConeOf(const ProjectionLight& light) {
     const Mat3f& m = light.lightFromWorld;
@@ -45,9 +46,37 @@ float Weight(const Light& light) {
     return power > 0 && std::isfinite(power) ? power : 0;
 }
 
-float CosineDensity(const AreaLight& light, const Vec3f& n, const Vec3f& w) {
+// Returns the density of direction w from a point with normal n.
+float OnwardDensity(const AreaLight& light, const Vec3f& n, const Vec3f& w) {
+    if (const auto* spot = std::get_if<SpotCone>(light.profile)) {
+        const Cone cone = ConeOf(*spot);
+        return cone.Has(w) && (light.twoSided || n.dot(w) > 0) ? cone.Density() : 0;
+    }
     const float cosine = n.dot(w) * kInvPi;
-    return light.twoSided ? 0.5f * std::abs(cosine) : std::max(0.f, cosine);
+    const float density = light.twoSided ? 0.5f * std::abs(cosine) : std::max(0.f, cosine);
+    const auto* spread = std::get_if<Spread>(light.profile);
+    if (!spread) return density;
+    return spread->Has(n, w) ? density / Sqr(spread->sine) : 0;
+}
+
+// Samples the hemisphere about n, or both, by the cosine, up to the angle of this sine.
+Vec3f SampleCosine(const Vec3f& n, bool twoSided, float sine, Vec2f u) {
+    float side = 1;
+    if (twoSided) {
+        side = u.x() < 0.5f ? 1.f : -1.f;
+        u.x() = std::min(u.x() < 0.5f ? 2 * u.x() : 2 * u.x() - 1, kOneMinusEpsilon);
+    }
+    Frame frame{{}, {}, side * n};
+    CoordinateSystem(frame.n, &frame.s, &frame.t);
+    const Vec2f d = sine * SampleConcentricDisk(u);
+    return frame.FromLocal({d.x(), d.y(), SafeSqrt(1 - d.squaredNorm())}).normalized();
+}
+
+// Samples a direction from a point with normal n with OnwardDensity().
+Vec3f SampleOnward(const AreaLight& light, const Vec3f& n, const Vec2f& u) {
+    if (const auto* spot = std::get_if<SpotCone>(light.profile)) return ConeOf(*spot).Sample(u);
+    const auto* spread = std::get_if<Spread>(light.profile);
+    return SampleCosine(n, light.twoSided, spread ? spread->sine : 1, u);
 }
 
 }  // namespace
@@ -76,16 +105,7 @@ std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
             const ShapeSample s =
                 VisitEmitter(l.surface, [&](const auto& e) { return SampleArea(e, origin); });
             ray.p = s.p, ray.pError = s.pError, ray.n = s.n;
-            Vec2f v = direction;
-            float side = 1;
-            if (l.twoSided) {
-                side = v.x() < 0.5f ? 1.f : -1.f;
-                v.x() = std::min(v.x() < 0.5f ? 2 * v.x() : 2 * v.x() - 1, kOneMinusEpsilon);
-            }
-            const Vec3f local = SampleCosineHemisphere(v);
-            Frame frame{{}, {}, side * s.n};
-            CoordinateSystem(frame.n, &frame.s, &frame.t);
-            ray.w = frame.FromLocal(local).normalized();
+            ray.w = SampleOnward(l, s.n, direction);
             ray.L = l.Le(s.n, ray.w);
             if (l.map) {
                 const Vec2f b = SampleUniformTriangle(origin);  // as the triangle does
@@ -122,7 +142,7 @@ EmissionDensity LightEmission::Density(int index, const Vec3f& n, const Vec3f& w
     if (!(pmf > 0)) return {};
     return Visit(lights[index], [&]<typename L>(const L& l) -> EmissionDensity {
         if constexpr (L::kType == LightType::Area) {
-            return {pmf / l.Area(), CosineDensity(l, n, w)};
+            return {pmf / l.Area(), OnwardDensity(l, n, w)};
         } else if constexpr (L::kType == LightType::DeltaPosition) {
             const Cone cone = ConeOf(l);
             if (cone.cosAngle == -1) return {pmf, kUniformSphere};

@@ -45,7 +45,7 @@ float SumOver(const E&, bool, const LightProbes&, const Places&) {
 }
 
 float SumAtOnce(const AreaLight& light, const LightProbes& probes, const Places& places) {
-    if (light.map) return -1;
+    if (light.map || light.profile) return -1;
     return Luminance(light.L) * Visit(light.surface, [&](const auto& emitter) {
                return SumOver(emitter, light.twoSided, probes, places);
            });

@@ -94,15 +94,34 @@ void CheckReach(const Light& light, const LightEntity& entity, float reach) {
         light);
 }
 
+// An area light that shines into a cone, as a spot light does, from the origin of its shape.
+constexpr const char* kAreaSpot = "spot-squared";
+
 // Returns false, with a warning, where another kind of light is to be left out; throws Error where
 // it is not.
 bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
-    if (entity.name == "diffuse" || entity.name == "area") return true;
+    if (entity.name == "diffuse" || entity.name == "area" || entity.name == kAreaSpot) return true;
     warnings.Substitute(entity.loc,
                         fmt::format("AreaLightSource \"{}\" is not supported; only \"diffuse\" is",
                                     Printable(entity.name)),
                         "it gives no light");
     return false;
+}
+
+// Reads the cone of a spot, or "spread", degrees across the cone about each normal that the light
+// leaves into. Returns null where the radiance is the same to all sides.
+std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
+                                                   const Mat4d& worldFromShape) {
+    if (entity.name == kAreaSpot)
+        return std::make_unique<const EmissionProfile>(
+            SpotCone::Make(entity, worldFromShape, true));
+    const float degrees = entity.parameters.GetFloat("spread", 180);
+    if (!(degrees > 0 && degrees <= 180))
+        throw Error(entity.loc, fmt::format("the area light's \"spread\" is {:g}; it has to be "
+                                            "above 0 and at most 180 degrees",
+                                            degrees));
+    if (degrees == 180) return {};
+    return std::make_unique<const EmissionProfile>(Spread::Make(double(degrees)));
 }
 
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {
@@ -186,7 +205,11 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         if (!entity || !IsKnownAreaLight(*entity, warnings)) continue;
         Shape& shape = shapes.shapes[i];
         std::unique_ptr<const EmissionMap> map = MakeEmissionMap(*entity, shape, textures);
+        std::unique_ptr<const EmissionProfile> profile =
+            MakeProfile(*entity, description.shapes[i].worldFromObject);
         AreaLight light = MakeAreaLight(*entity, shape, warnings);
+        light.profile = profile.get();
+        if (profile) profiles.push_back(std::move(profile));
         light.map = map.get();
         if (map) emissionMaps.push_back(std::move(map));
         if (shape.PrimitiveCount() == 0) {

@@ -90,6 +90,7 @@ class LightTable {
         evenContributions;  // by light: Contribution(), or -1 where it depends on the place
     std::vector<int> entities;
     std::vector<std::unique_ptr<const EmissionMap>> emissionMaps;
+    std::vector<std::unique_ptr<const EmissionProfile>> profiles;
     std::vector<int> infinite;
     int environment = -1;
     bool anyVisible = false;

@@ -5,6 +5,7 @@
 #include "renderer/scene/lights/light_image.h"
 #include "renderer/scene/lights/light_reader.h"
 #include "renderer/scene/lights/light_sample.h"
+#include "renderer/scene/lights/spot_cone.h"
 
 namespace lull {
 
@@ -21,21 +22,18 @@ struct PointLight {
     std::optional<LightBounds> Bounds() const;
 };
 
-// Emits I, W/sr, from one point into a cone, falling off smoothly towards its edge: by the fourth
-// power of how far the cosine is from the edge's ("spot"), or by its square, as
-// KHR_lights_punctual proposes ("spot-squared").
+// Emits I, W/sr, along the axis of a cone from one point ("spot", and "spot-squared").
 struct SpotLight {
     static constexpr LightType kType = LightType::DeltaPosition;
 
-    Vec3f p, axis;
+    Vec3f p;
     Rgb I;
-    float cosTotalWidth, cosFalloffStart;
-    bool isSquared = false;
+    SpotCone cone;
 
     static SpotLight Make(const LightReader&);
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
     std::optional<LightBounds> Bounds() const;
-    Rgb Power() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)) * I; }
+    Rgb Power() const { return cone.SolidAngle() * I; }
 };
 
 // Emits from one point by an image in latitude-longitude form, about the y axis of the light's

@@ -79,6 +79,29 @@ TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {
                     .isApprox(Rgb::Constant(4 / kPi)));
 }
 
+TEST(GltfLights, AreSpheresThatShineAsSpots) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.root["extensions"] = {{"KHR_lights_punctual",
+                                {{"lights",
+                                  {{{"type", "spot"},
+                                    {"intensity", 683},
+                                    {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 1}}},
+                                    {"extras", {{"lull", {{"radius", 0.5}}}}}}}}}}};
+    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const Description d = kFolder.Parse(file);
+    EXPECT_TRUE(d.lights.empty());
+    ASSERT_EQ(d.shapes.size(), 2u);
+    ASSERT_TRUE(d.shapes[1].areaLight);
+    EXPECT_EQ(d.shapes[1].areaLight->name, "spot-squared");
+    const Parameters& light = d.shapes[1].areaLight->parameters;
+    EXPECT_TRUE(light.GetSpectrum("L", Rgb::Zero()).isApprox(Rgb::Constant(4 / kPi)));
+    EXPECT_TRUE(light.GetPoint3("to", Vec3f::Zero()).isApprox(Vec3f(0, 0, -1)));
+    EXPECT_NEAR(light.GetFloat("coneangle", 0), 180 / kPi, 1e-4f);
+    EXPECT_NEAR(light.GetFloat("conedeltaangle", 0), 90 / kPi, 1e-4f);
+}
+
 TEST(GltfLights, HaveAnAngleOfOurOwn) {
     GltfFile file;
     file.Node({{"mesh", file.Triangle()}});

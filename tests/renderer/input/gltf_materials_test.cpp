@@ -1,4 +1,6 @@
 // Checks materials of glTF files, and their variants.
+#include <numbers>
+
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull::gltf_materials_test {
@@ -33,6 +35,25 @@ TEST(GltfMaterials, MayAddTheInterfaceToTheBase) {
     file.root["materials"][0]["extras"]["lull"]["addedInterface"] = 1;
     EXPECT_EQ(kFolder.ErrorOf(file),
               "scene.gltf: /materials/0/extras/lull/addedInterface: has to be true or false");
+}
+
+TEST(GltfMaterials, MayEmitIntoACone) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};
+    json& own = file.root["materials"][0]["extras"]["lull"];
+    const auto spread = [&](const json& value) {
+        own = {{"spread", value}};
+        return kFolder.Parse(file).shapes.at(0).areaLight->parameters.GetFloat("spread", -1);
+    };
+    EXPECT_NEAR(spread(0.5), 90 / std::numbers::pi, 1e-4);
+    EXPECT_EQ(spread(3.1415927), -1);  // to all sides
+    for (const json& bad : {json(0), json(-1), json(4), json("wide")}) {
+        own = {{"spread", bad}};
+        EXPECT_EQ(kFolder.ErrorOf(file),
+                  "scene.gltf: /materials/0/extras/lull/spread: has to be a number above 0 and at "
+                  "most pi");
+    }
 }
 
 TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {

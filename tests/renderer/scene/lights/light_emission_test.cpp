@@ -127,6 +127,19 @@ INSTANTIATE_TEST_SUITE_P(
             "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" Shape \"disk\" "
             "AttributeEnd",
             true},
+        Lit{"SpotWithARadius",
+            "AttributeBegin AreaLightSource \"spot-squared\" \"point to\" [.3 .2 1] "
+            "\"float coneangle\" [50] \"float conedeltaangle\" [20] Shape \"sphere\" "
+            "\"float radius\" [.1] AttributeEnd",
+            false, false, true},
+        Lit{"Spread",
+            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"float spread\" [100] "
+            "Shape \"disk\" AttributeEnd",
+            true, false, true},
+        Lit{"NarrowSpreadOnBothSides",
+            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"float spread\" [5] "
+            "\"bool twosided\" \"true\" Shape \"disk\" AttributeEnd",
+            true, false, true},
         Lit{"TwoSided",
             "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"bool twosided\" \"true\" "
             "Shape \"disk\" AttributeEnd",

@@ -155,7 +155,11 @@ TEST(LightHierarchy, LeavesNoLightOut) {
                               p.z(), 360 * random.Point().x());
         if (i % 5 == 0) lights += "LightSource \"point\" \"rgb I\" [1 2 3]\n";
         if (i % 5 == 1) lights += "LightSource \"spot\" \"float coneangle\" [50]\n";
-        if (i % 5 >= 2)
+        if (i % 10 == 4)
+            lights += "AreaLightSource \"diffuse\" \"float spread\" [60]\n";
+        else if (i % 10 == 3)
+            lights += "AreaLightSource \"spot-squared\" \"float coneangle\" [50]\n";
+        else if (i % 5 >= 2)
             lights += fmt::format("AreaLightSource \"diffuse\" \"bool twosided\" \"{}\"\n",
                                   i % 2 ? "true" : "false");
         if (i % 5 == 2) lights += "Scale 1 1 -1\nShape \"disk\" \"float radius\" [.3]\n";

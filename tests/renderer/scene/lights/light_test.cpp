@@ -79,6 +79,14 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
         {"two-sided triangles", fmt::format(kPlaced, "true", mesh)},
         {"sphere", fmt::format(kPlaced, "false", "Shape \"sphere\" \"float radius\" [.7]")},
         {"disk", fmt::format(kPlaced, "true", "Shape \"disk\" \"float radius\" [.7]")},
+        {"spot with a radius",
+         "AttributeBegin\nTranslate .3 .2 2\nAreaLightSource \"spot-squared\" "
+         "\"point to\" [.2 .3 -1] \"float coneangle\" [80] \"float conedeltaangle\" [60]\n"
+         "Shape \"sphere\" \"float radius\" [.7]\nAttributeEnd"},
+        {"triangles with a spread",
+         "AttributeBegin\nTranslate .3 .2 2\nRotate 170 1 .2 0\nAreaLightSource \"diffuse\" "
+         "\"float spread\" [150]\n" +
+             mesh + "\nAttributeEnd"},
         {"infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]"},
         {"sun", "LightSource \"distant\" \"point from\" [1 2 -3] \"float angle\" [70]"},
         {"image", "Rotate 40 1 1 0\nLightSource \"infinite\" \"string mapname\" \"sky.exr\""},
@@ -112,6 +120,37 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
                 << name << " from " << from.transpose();
         }
     }
+}
+
+// From afar a small sphere shines as the spot light at its centre does.
+TEST(Lights, SpotsWithARadiusShineAsSpots) {
+    const std::string cone =
+        "\"spot-squared\" \"point to\" [.2 .3 -1] \"float coneangle\" [50] "
+        "\"float conedeltaangle\" [30] ";
+    const std::string placed = "AttributeBegin\nRotate 40 1 2 3\nTranslate 1 2 3\n";
+    const LightScene sharp(placed + "LightSource " + cone + "\"rgb I\" [3 2 1]\nAttributeEnd\n");
+    const double area = std::numbers::pi * 1e-4;
+    const LightScene soft(placed + "AreaLightSource " + cone +
+                          fmt::format("\"rgb L\" [{} {} {}]\nShape \"sphere\" \"float radius\" "
+                                      "[.01]\nAttributeEnd\n",
+                                      3 / area, 2 / area, 1 / area));
+    const LightTable &point = sharp.scene->lights, &sphere = soft.scene->lights;
+    Random random(6);
+    int lit = 0, dark = 0;
+    for (int k = 0; k < 1000; ++k) {
+        const Vec3f from = 20 * SampleUniformSphere(random.Point());
+        const auto expected = point.Sample(0, from, random.Point());
+        const auto s = sphere.Sample(0, from, random.Point());
+        ++(expected ? lit : dark);
+        if (!expected || expected->L.x() < 1e-3f * 3 / 400) continue;
+        ASSERT_TRUE(s);
+        const Rgb L = s->L / s->pdf;
+        EXPECT_TRUE(L.isApprox(expected->L, 0.05f))
+            << L.transpose() << " " << expected->L.transpose();
+    }
+    EXPECT_GT(lit, 100);
+    EXPECT_GT(dark, 100);
+    EXPECT_TRUE(sphere[0].index() != point[0].index());
 }
 
 // pbrt-v4's portals guide sampling alone.
