@@ -54,6 +54,8 @@ def _folded(light, notes):
     if light.type == 'SUN' and light.angle > 0:
         light["lull"] = {"angle": light.angle}
     if light.type == 'SPOT':
+        if 1 / math.cos(min(light.spot_size / 2, 1.5)) > 1.1:  # Cycles dims by the cosine of the angle from the axis
+            notes.add("brighter towards the edge of its cone", light.name, "lights")
         light.spot_blend = _blend_of(light)
     light.use_nodes = False  # would be taken for all of its strength
     return light

@@ -84,7 +84,7 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
          "\"point to\" [.2 .3 -1] \"float coneangle\" [80] \"float conedeltaangle\" [60]\n"
          "Shape \"sphere\" \"float radius\" [.7]\nAttributeEnd"},
         {"triangles with a spread",
-         "AttributeBegin\nTranslate .3 .2 2\nRotate 170 1 .2 0\nAreaLightSource \"diffuse\" "
+         "AttributeBegin\nTranslate .3 .2 2\nRotate 10 1 .2 0\nAreaLightSource \"diffuse\" "
          "\"float spread\" [150]\n" +
              mesh + "\nAttributeEnd"},
         {"infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]"},
