@@ -26,7 +26,9 @@ TEST(EmissionProfile, KeepsThePower) {
                      std::numbers::pi * half / kSteps;
         }
         EXPECT_NEAR(power, std::numbers::pi, 2e-3) << degrees;
-        if (degrees < 180) EXPECT_EQ(FalloffAt(spread, 1.01 * half), 0) << degrees;
+        if (degrees < 180) {
+            EXPECT_EQ(FalloffAt(spread, 1.01 * half), 0) << degrees;
+        }
         EXPECT_EQ(PowerFraction(spread), 1);
     }
 }
