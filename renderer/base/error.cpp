@@ -32,8 +32,9 @@ std::string WithoutMiddle(const std::string& line, size_t most) {
 size_t PrintedBytes(std::string_view text) {
     const auto first = static_cast<unsigned char>(text[0]);
     const size_t bytes = CharacterBytes(text);
-    const bool isControl = bytes == 1 ? first < 0x20 || first == 0x7f
-                                      : first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0;
+    const bool isControl =
+        bytes == 1 ? first < 0x20 || first == 0x7f
+                   : bytes == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0;
     return isControl ? 0 : bytes;
 }
 
