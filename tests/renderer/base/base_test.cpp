@@ -155,7 +155,7 @@ TEST(OneLine, EscapesWhatNoTerminalPrints) {
     EXPECT_EQ(OneLine("\u00e4\u20ac\U0001f600"), "\u00e4\u20ac\U0001f600");
     EXPECT_EQ(OneLine("a\xe4 b"), "a\\xe4 b");              // Latin-1
     EXPECT_EQ(OneLine("\xe2\x82"), "\\xe2\\x82");           // cut short
-    EXPECT_EQ(OneLine("\xc2"), "\\xc2");
+    EXPECT_EQ(OneLine("\xc2"), "\\xc2");                    // its second byte is missing
     EXPECT_EQ(OneLine("\xc2\x9b"), "\\xc2\\x9b");           // a control character
     EXPECT_EQ(OneLine("\xc0\xaf"), "\\xc0\\xaf");           // too long for its character
     EXPECT_EQ(OneLine("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // half of a pair
