@@ -37,25 +37,31 @@ Rgb Color(const tinygltf::Value& owner, const std::string& name, const Rgb& othe
             float(c.Get(2).GetNumberAsDouble())};
 }
 
-// Returns whether a property of our own, in `extras`, is true: "addedInterface", the base is not
+// Returns a property of our own, in `extras`; null: there is none.
+const tinygltf::Value* OwnValue(const tinygltf::Material& material, const std::string& name) {
+    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has(name)) return nullptr;
+    return &material.extras.Get("lull").Get(name);
+}
+
+// Returns whether a property of our own is true: "addedInterface", the base is not
 // attenuated by the interface above it; "openBehind", rays from behind pass. Throws Error.
 bool OwnProperty(const tinygltf::Material& material, const std::string& name,
                  const GltfDocument& document, const std::string& path) {
-    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has(name)) return false;
-    const tinygltf::Value& value = material.extras.Get("lull").Get(name);
-    if (!value.IsBool())
+    const tinygltf::Value* value = OwnValue(material, name);
+    if (!value) return false;
+    if (!value->IsBool())
         throw Error(document.At(path + "/extras/lull/" + name), "has to be true or false");
-    return value.Get<bool>();
+    return value->Get<bool>();
 }
 
-// Returns "spread" of our own `extras`, the angle across the cone about each normal that emission
+// Returns our own "spread", the angle across the cone about each normal that emission
 // leaves into, degrees; 180: to all sides. Throws Error.
 double SpreadOf(const tinygltf::Material& material, const GltfDocument& document,
                 const std::string& path) {
-    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has("spread")) return 180;
-    const tinygltf::Value& value = material.extras.Get("lull").Get("spread");
+    const tinygltf::Value* value = OwnValue(material, "spread");
+    if (!value) return 180;
     const auto spread =
-        InRange(value.IsNumber() ? value.GetNumberAsDouble() : 0, 0, std::numbers::pi);
+        InRange(value->IsNumber() ? value->GetNumberAsDouble() : 0, 0, std::numbers::pi);
     if (!spread || !(*spread > 0))
         throw Error(document.At(path + "/extras/lull/spread"),
                     "has to be a number above 0 and at most pi");
