@@ -115,7 +115,8 @@ ExitCode RunDenoise(Options options) {
     // The next steps need the memory.
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     const auto start = std::chrono::steady_clock::now();
-    const DenoisedImage denoised = DenoiseImage(std::move(picture), region, blocks);
+    const DenoisedImage denoised = DenoiseWithReports(std::move(picture), region, blocks,
+                                                      StyleOfReports(false, options.quiet));
     PrintDenoised(denoised, SecondsSince(start), options.quiet);
 
     std::ranges::move(ColourChannels("", denoised.image.values), std::back_inserter(exr.channels));

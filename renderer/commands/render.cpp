@@ -340,8 +340,9 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const Talk talk = TalkOf(settings);
     const auto start = std::chrono::steady_clock::now();
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
-    made.image = hasGroups ? DenoiseImage(std::move(lights), region, p.blocks, how)
-                           : DenoiseImage(std::move(picture), region, p.blocks, how);
+    const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
+    made.image = hasGroups ? DenoiseWithReports(std::move(lights), region, p.blocks, style, how)
+                           : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
         talk.Warn(fmt::format(

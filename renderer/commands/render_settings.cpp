@@ -1,7 +1,5 @@
 #include "renderer/commands/render_settings.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
@@ -135,11 +133,7 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
 }
 
 ProgressPrinter MakePrinter(const RenderSettings& settings, bool adaptive) {
-    const ProgressStyle style = settings.jsonProgress   ? ProgressStyle::Json
-                                : settings.quiet        ? ProgressStyle::Silent
-                                : isatty(STDERR_FILENO) ? ProgressStyle::Line
-                                                        : ProgressStyle::Plain;
-    return ProgressPrinter(style, adaptive, stderr);
+    return ProgressPrinter(StyleOfReports(settings.jsonProgress, settings.quiet), adaptive, stderr);
 }
 
 }  // namespace lull

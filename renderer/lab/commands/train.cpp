@@ -61,7 +61,7 @@ ExitCode RunTrain(const TrainOptions& options) {
     const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
     TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
     if (options.resume) checkpoint.Read();
-    TrainingPrinter printer(StyleOf(options), stderr);
+    TrainingPrinter printer(StyleOfReports(options.jsonProgress, options.quiet), stderr);
     CatchInterrupts();
 
     const std::optional<TrainingResult> result = TrainAll(
