@@ -178,7 +178,7 @@ Rgb SampledLight(const Context& context, const SubpathVertex& v, const LightChoi
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     const BsdfValue value = v.TowardsLight(light->wi);
     if (IsBlack(value.f)) return Rgb::Zero();
-    const auto ray = ShadowRay(SurfaceVertex{v.hit, v.bsdf, 0}, *light);
+    const auto ray = ShadowRay(v.hit, *light);
     const Rgb share = ray ? ShareAlong(scene, *ray, context.time) : Rgb(Rgb::Zero());
     if (IsBlack(share)) return Rgb::Zero();
     const Rgb L = share * (light->isOnMap ? scene.lights.Radiance(index, *light) : light->L);
@@ -336,8 +336,7 @@ template <typename Recorder>
         path.beta = stride.beta;
         path.ray = stride.ray;
         path.seesLights &= isSpecular;
-        if (isSpecular && isTransmission)
-            path.etaScale *= SurfaceVertex{v.hit, v.bsdf, found.shape}.EtaScale();
+        if (isSpecular && isTransmission) path.etaScale *= EtaScaleAt(v.hit, v.bsdf);
         recorder.Scatter(path, isTransmission);
         if (!SurvivesRoulette(stride.beta.maxCoeff() * path.etaScale, bounces,
                               context.integrator.rrThreshold, context.sampler, &stride.beta))

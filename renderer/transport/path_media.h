@@ -17,13 +17,13 @@ struct Sighting {
 // are moved off their surfaces; the factor keeps the light's own surface out (pbrt-v3's
 // ShadowEpsilon). Where that or rounding turns a grazing ray to the other side of the surface, it
 // would pass through: that is in shadow.
-[[gnu::always_inline]] inline std::optional<Ray> ShadowRay(const SurfaceVertex& v,
+[[gnu::always_inline]] inline std::optional<Ray> ShadowRay(const SurfaceInteraction& hit,
                                                            const LightSample& light) {
-    if (light.isAtInfinity) return v.hit.SpawnRay(light.wi);
-    const Vec3f origin = v.OriginTowards(light.wi);
+    if (light.isAtInfinity) return hit.SpawnRay(light.wi);
+    const Vec3f origin = OffsetRayOrigin(hit.p, hit.pError, hit.n, light.wi);
     const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
     const Vec3f d = target - origin;
-    if (!v.IsSameSide(d, light.wi)) return {};
+    if (!IsSameSide(hit.n, d, light.wi)) return {};
     return Ray{origin, d, 1 - 0.0001f};
 }
 
@@ -39,7 +39,7 @@ struct Vacuum {
     // Returns the share of a light's sample that gets to a vertex; without panes, whether it does.
     [[gnu::always_inline]] static auto See(const Context& context, const SurfaceVertex& v,
                                            const LightSample& light) {
-        const std::optional<Ray> ray = ShadowRay(v, light);
+        const std::optional<Ray> ray = ShadowRay(v.hit, light);
         const float time = context.camera.time;
         if constexpr (panes)
             return ray ? ShareAlong(context.scene, *ray, time) : Rgb(Rgb::Zero());

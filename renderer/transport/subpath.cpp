@@ -84,10 +84,7 @@ Rgb ShareBetween(const Scene& scene, const SurfaceInteraction& a, const SurfaceI
     const Vec3f from = OffsetRayOrigin(a.p, a.pError, a.n, w);
     const Vec3f to = OffsetRayOrigin(b.p, b.pError, b.n, -w);
     const Vec3f d = to - from;
-    const auto isSameSide = [](const Vec3f& n, const Vec3f& v, const Vec3f& u) {
-        return (n.dot(v) < 0) == (n.dot(u) < 0);
-    };
-    if (!isSameSide(a.n, d, w) || !isSameSide(b.n, d, w)) return Rgb::Zero();
+    if (!IsSameSide(a.n, d, w) || !IsSameSide(b.n, d, w)) return Rgb::Zero();
     return ShareAlong(scene, {from, d, 1 - 0.0001f}, time);
 }
 
