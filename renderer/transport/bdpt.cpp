@@ -249,6 +249,66 @@ class LightSubpath {
     Vertices vertices;
 };
 
+// Returns the camera's ray as a stride, where `length` is that of its direction.
+Stride StrideFromCamera(const Context& context, const Ray& ray, float length) {
+    Stride stride;
+    stride.ray = ray;
+    if (std::abs(length - 1) > 1e-5f) stride.ray.d /= length, stride.ray.tMax *= length;
+    stride.beta = Rgb::Ones();
+    stride.p = ray.o;
+    stride.n = stride.ray.d;
+    stride.connects = false;
+    if (context.lightPaths > 0)
+        stride.pdf = PixelsPerSolidAngle(context.scene.camera, ray.d, context.time);
+    return stride;
+}
+
+// Returns whether a subpath from the camera goes straight on through the pane at vertex v, and
+// makes that stride.
+template <typename Recorder>
+[[gnu::always_inline]] inline bool PassesPane(const Context& context, bool isLast, SubpathVertex* v,
+                                              Stride* stride, Path* path, Recorder& recorder) {
+    const bool goesThrough =
+        GoesThroughPane(v->hit.wo, isLast, context.sampler, &v->bsdf, &v->beta);
+    path->beta = stride->beta = v->beta;
+    if (!goesThrough) return false;
+    path->ray = stride->ray = v->hit.SpawnRay(stride->ray.d);
+    recorder.Scatter(*path, true);
+    return true;
+}
+
+// Connects vertex v of a subpath from the camera to those of one from a light, up to `most`. Calls
+// use(light, L) with the light's number and the light L that comes to v.
+template <typename Use>
+[[gnu::always_inline]] inline void Connect(const Context& context, const SubpathVertex& v, int most,
+                                           LightSubpath* fromLight, const Use& use) {
+    const Vertices& vertices = fromLight->All(most);
+    for (int i = 0; i < std::min(most, vertices.Count()); ++i)
+        if (vertices[i].Connects())
+            use(fromLight->Light(), ConnectedLight(context, v, vertices[i]));
+}
+
+// Scatters a subpath from the camera at vertex v, and ends dim ones by Russian roulette. Returns
+// false where it ends.
+template <typename Recorder>
+[[gnu::always_inline]] inline bool GoesOn(const Context& context, const SubpathVertex& v,
+                                          int bounces, Stride* stride, Path* path,
+                                          Recorder& recorder) {
+    bool isSpecular, isTransmission;
+    if (!Scatter(Origin::Camera, v, context.sampler.Get2D(), stride, &isSpecular, &isTransmission))
+        return false;
+    path->beta = stride->beta;
+    path->ray = stride->ray;
+    path->seesLights &= isSpecular;
+    if (isSpecular && isTransmission) path->etaScale *= EtaScaleAt(v.hit, v.bsdf);
+    recorder.Scatter(*path, isTransmission);
+    if (!SurvivesRoulette(stride->beta.maxCoeff() * path->etaScale, bounces,
+                          context.integrator.rrThreshold, context.sampler, &stride->beta))
+        return false;
+    path->beta = stride->beta;
+    return true;
+}
+
 // Follows the camera's ray, and returns its radiance. `connected` receives that of connections.
 template <typename Recorder>
 [[gnu::noinline]] Rgb Follow(const Context& context, const SampleStart& start, Recorder& recorder,
@@ -258,18 +318,10 @@ template <typename Recorder>
     const bool canConnect = scene.emission->Any() && context.connections > 0;
     LightSubpath fromLight(context);
     LightChoice choice;  // at the last vertex
-    Stride stride;
-    stride.ray = start.ray;
     // Of a camera whose transform scales, rays are not of unit length; recorders know them so.
     const float length = start.ray.d.norm();
-    if (std::abs(length - 1) > 1e-5f) stride.ray.d /= length, stride.ray.tMax *= length;
-    stride.beta = Rgb::Ones();
-    stride.p = start.ray.o;
-    stride.n = stride.ray.d;
-    stride.connects = false;
-    if (context.lightPaths > 0)
-        stride.pdf = PixelsPerSolidAngle(scene.camera, start.ray.d, context.time);
-    Path path{.ray = start.ray};  // for recorders
+    Stride stride = StrideFromCamera(context, start.ray, length);
+    Path path{.ray = start.ray};  // as recorders know it
     Rgb L = Rgb::Zero();          // without connections
     const auto find = [&](int light, const Rgb& found) {
         L += stride.beta * found;
@@ -277,12 +329,16 @@ template <typename Recorder>
     };
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
+
+        // Find the next surface, or add the light of the sky where there is none.
         Hit found;
         if (!scene.accelerator.Intersect(stride.ray, &found, context.time)) {
             L += stride.beta * LeavingLight(context, stride, choice, path, recorder);
             recorder.LeaveScene(path);
             break;
         }
+
+        // Compute the interaction with the surface, and the densities of arriving there.
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         SurfaceInteraction hit;
@@ -293,55 +349,39 @@ template <typename Recorder>
             Arrive(stride, hit.p, hit.n,
                    bounces == 0 ? context.SeenFromCamera() : context.Connected(stride.connects));
         if (!(arrival.density > 0)) break;
+
+        // Add the emission of the surface.
         if (hit.areaLight >= 0)
             find(hit.areaLight, EmittedLight(context, stride, hit, found, arrival, choice));
         if (bounces == 0 && stride.ray.d != start.ray.d) found.t /= length;
         recorder.ReachSurface(path, found, hit);
         if (isLast && !recorder.Wanted() && !(needs & kLetsThrough)) break;
 
+        // Make the BSDF, and go straight on through a pane, which is no vertex.
         SubpathVertex v(scene, hit, stride.beta, arrival);
         recorder.MeetSurface(path, found, v.hit, v.bsdf);
-        if (needs & kLetsThrough) {
-            const bool goesThrough =
-                GoesThroughPane(v.hit.wo, isLast, context.sampler, &v.bsdf, &v.beta);
-            path.beta = stride.beta = v.beta;
-            if (goesThrough) {
-                path.ray = stride.ray = v.hit.SpawnRay(stride.ray.d);
-                recorder.Scatter(path, true);
-                --bounces;
-                continue;
-            }
+        if ((needs & kLetsThrough) && PassesPane(context, isLast, &v, &stride, &path, recorder)) {
+            --bounces;
+            continue;
         }
         if (isLast) break;
+
+        // Sample the light that arrives directly from lights, and connect to a subpath from one.
         if (v.Connects() && scene.lights.Count() > 0) {
             choice = scene.lights.Choice(v.hit, v.bsdf, scene.lights.PlaceOf(v.hit.p));
             int chosen;
             const Rgb sampled = SampledLight(context, v, choice, &chosen);
             find(chosen, sampled);
             const int left = maxDepth - bounces - 1;
-            if (canConnect && left > 0) {
-                const Vertices& vertices = fromLight.All(left);
-                for (int i = 0; i < std::min(left, vertices.Count()); ++i)
-                    if (vertices[i].Connects()) {
-                        const Rgb found = ConnectedLight(context, v, vertices[i]);
-                        *connected += v.beta * found;
-                        recorder.FindLight(path, fromLight.Light(), found);
-                    }
-            }
+            if (canConnect && left > 0)
+                Connect(context, v, left, &fromLight, [&](int light, const Rgb& found) {
+                    *connected += v.beta * found;
+                    recorder.FindLight(path, light, found);
+                });
         }
-        bool isSpecular, isTransmission;
-        if (!Scatter(Origin::Camera, v, context.sampler.Get2D(), &stride, &isSpecular,
-                     &isTransmission))
-            break;
-        path.beta = stride.beta;
-        path.ray = stride.ray;
-        path.seesLights &= isSpecular;
-        if (isSpecular && isTransmission) path.etaScale *= EtaScaleAt(v.hit, v.bsdf);
-        recorder.Scatter(path, isTransmission);
-        if (!SurvivesRoulette(stride.beta.maxCoeff() * path.etaScale, bounces,
-                              context.integrator.rrThreshold, context.sampler, &stride.beta))
-            break;
-        path.beta = stride.beta;
+
+        // Sample the direction in which the subpath goes on, unless roulette ends it.
+        if (!GoesOn(context, v, bounces, &stride, &path, recorder)) break;
     }
     recorder.End(path);
     return L + *connected;
