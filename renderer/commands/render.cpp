@@ -282,7 +282,7 @@ SessionOptions MakeOptions(PreparedRender* p) {
 
 // A preview that cannot be written is a warning: the files may be written in the end.
 void WritePreview(const PreparedRender& p, Session* session, const RenderResult& result) try {
-    const Film& film = session->TheFilm();
+    const Film& film = session->GetFilm();
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
         denoised = DenoisePreview(film);
@@ -324,7 +324,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
                              Session* session) {
     const RenderSettings& settings = p.render.settings;
     const PixelRect& region = p.render.input.region;
-    Film& film = session->TheFilm();
+    Film& film = session->GetFilm();
     DenoiserResults made;
     NoisyPicture picture;
     GroupedPicture lights;
@@ -357,14 +357,14 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
     const RenderSettings& settings = p.render.settings;
     const Talk talk = TalkOf(settings);
-    const int64_t rejected = session->TheFilm().RejectedCount();
+    const int64_t rejected = session->GetFilm().RejectedCount();
     PrintResult(settings, p.render.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
     const bool isFrame = p.request.frameNumber > 0 && !settings.checkpoint.file.empty();
     const ResultFiles written =
         WriteFiles(p.files, {{*p.render.scene, p.render.provenance},
-                             session->TheFilm(),
+                             session->GetFilm(),
                              result,
                              p.histories,
                              p.render.input.warnings,

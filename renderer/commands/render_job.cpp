@@ -19,7 +19,7 @@ namespace {
 // Lets all ranks share a render, of which a warning says so if one does not answer.
 void ShareAmongRanks(MpiJob* ranks, SessionOptions* options) {
     options->agree = [ranks](const std::string& what) { ranks->Begin(what); };
-    options->render.peers = ranks->ThePeers();
+    options->render.peers = ranks->GetPeers();
     options->render.events.onSilence = [ranks](const std::vector<int>& silent) {
         ranks->Warn(
             fmt::format("rank {} does not respond; if it has died, --resume continues from the "
@@ -107,7 +107,7 @@ SessionOptions RenderJob::MakeSessionOptions(bool adaptive) const {
 }
 
 RenderResult RenderJob::Run(Session* session, const RenderFunction& render) const {
-    if (denoiser) denoiser->Show(&session->TheFilm());
+    if (denoiser) denoiser->Show(&session->GetFilm());
     session->Resume();
     CatchInterrupts();
     return session->Run(render);

@@ -108,7 +108,7 @@ BlockCheck BlockCriteria::Check(int index, const Block& block, int spp, double s
     check.variance = view.variance;
     if (criterion) {
         check.decision = criterion->Observe(view);
-        check.noiseTold = criterion->NoiseTold();
+        check.networkNoise = criterion->NetworkNoise();
     }
     check.answer.stop = check.decision.stop;
     if (hasClock) check.answer.noise = NoiseOf(view);

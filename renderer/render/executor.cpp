@@ -107,7 +107,7 @@ void Executor::BeginLight() {
     if (context.light->IsCutShort() && !isLastRound) WriteCheckpoint();
     isLastRound = context.light->IsCutShort();
     schedule.BeginRound(RoundEndOf(context));
-    isLit = context.light->Trace([this] { return IsCancelled(); });
+    isLightTraced = context.light->Trace([this] { return IsCancelled(); });
 }
 
 bool Executor::EndRound() {
@@ -128,7 +128,7 @@ void Executor::Quiesce() {
 }
 
 void Executor::RunTile() {
-    if (pausing || IsCancelled() || !isLit) return;
+    if (pausing || IsCancelled() || !isLightTraced) return;
     const std::optional<Tile> tile = schedule.Next();
     if (!tile) return;
     const double tileStart = ThreadSeconds(), wallStart = ledger.Seconds();

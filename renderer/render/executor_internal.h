@@ -60,8 +60,8 @@ class Executor {
     TaskSet tasks;
     std::atomic<bool> pausing = false;  // takes no more tiles
     std::atomic<bool> peerInterrupted = false;
-    std::atomic<bool> isLit = true;  // the light of the round, if there is any, has been traced
-    bool isLastRound = false;        // the cap cuts it short: the checkpoint is of before
+    std::atomic<bool> isLightTraced = true;  // of the round, if there is any
+    bool isLastRound = false;                // the cap cuts it short: the checkpoint is of before
     double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:

@@ -17,7 +17,7 @@ namespace lull {
 struct DecisionRecord {
     int spp;
     Decision decision;
-    std::optional<double> noiseTold = {};  // Criterion::NoiseTold(), for forecasts
+    std::optional<double> networkNoise = {};  // Criterion::NetworkNoise(), for forecasts
 };
 
 struct BlockResult {

@@ -177,7 +177,7 @@ Verification Verify(const Compared& compared, int threads, const ComparedImage& 
     if (!render.settings.quiet) TalkOf(render.settings).Note("the automatic image by itself");
     Session session(*render.scene, render.input.region, how);
     const RenderResult result = session.Run();
-    return VerificationOf(result, session.TheFilm(), expected);
+    return VerificationOf(result, session.GetFilm(), expected);
 }
 
 ResultFiles WriteImages(const Compared& compared) {

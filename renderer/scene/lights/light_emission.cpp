@@ -99,7 +99,7 @@ std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
     float pmf;
     ray.light = choice.SampleDiscrete(u, &pmf);
     const Light& light = lights[ray.light];
-    const bool isLit = Visit(light, [&]<typename L>(const L& l) {
+    const bool isSampled = Visit(light, [&]<typename L>(const L& l) {
         if constexpr (L::kType == LightType::Area) {
             const ShapeSample s =
                 VisitEmitter(l.surface, [&](const auto& e) { return SampleArea(e, origin); });
@@ -130,7 +130,7 @@ std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
         }
         return true;
     });
-    if (!isLit || IsBlack(ray.L) || !IsFinite(ray.L)) return {};
+    if (!isSampled || IsBlack(ray.L) || !IsFinite(ray.L)) return {};
     ray.density = Density(ray.light, ray.n, ray.w);
     if (!(ray.density.origin > 0 && ray.density.onward > 0)) return {};
     return ray;
