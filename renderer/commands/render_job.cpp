@@ -59,7 +59,7 @@ void RenderJob::CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile
 void RenderJob::LockCheckpoint() {
     checkpointLock.reset();
     if (const std::string& file = settings.checkpoint.file; Leads() && !file.empty())
-        checkpointLock.emplace(lull::LockCheckpoint(file));
+        checkpointLock.emplace(LockCheckpointFile(file));
 }
 
 void RenderJob::LockResults(const std::string& output) {
@@ -82,7 +82,7 @@ void RenderJob::CheckSampler(SamplerKind sampler) const {
 Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) const {
     std::map<std::string, SignalMeasure> measures;
     if (denoiser) measures[kDenoisedRuleName] = MeasureOf(denoiser);
-    return lull::ReadRule(option, rule, settings, input.region, std::move(measures));
+    return ReadRuleOption(option, rule, settings, input.region, std::move(measures));
 }
 
 void RenderJob::Compile() {

@@ -14,7 +14,7 @@ std::vector<StopTrend> MakeTrends(const RenderOptions& options,
     if (!options.trend || !options.events.onProgress || options.peers) return {};
     std::vector<StopTrend> made(results.size(), StopTrend(*options.trend));
     for (size_t i = 0; i < results.size(); ++i)
-        for (const DecisionRecord& record : results[i].decisions)
+        for (const BlockDecision& record : results[i].decisions)
             made[i].Add(record.spp, record.decision, 1, record.networkNoise);
     return made;
 }

@@ -112,7 +112,7 @@ void AddOtherRules(Compared* compared) {
     if (!options.human.empty() && !IsImageFile(options.human)) {
         RenderSettings plain = options.render;
         plain.caution = 1;
-        const Rule human = ReadRule("--human", "thresholds:" + options.human, plain, region);
+        const Rule human = ReadRuleOption("--human", "thresholds:" + options.human, plain, region);
         compared->rules.push_back(MakeRule("human", human));
         compared->humanChecksum = human.checksum;
     }
