@@ -11,9 +11,9 @@ namespace lull {
 class Backoff {
   public:
     void Wait() {
-        constexpr std::chrono::microseconds longest{10000};
+        constexpr std::chrono::microseconds kLongest{10000};
         std::this_thread::sleep_for(length);
-        length = std::min(2 * length, longest);
+        length = std::min(2 * length, kLongest);
     }
     double Seconds() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
 

@@ -133,11 +133,11 @@ int CapIn(const RenderIdentity& identity) {
 
 // Throws Error naming the first thing that is not the same.
 void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, MayDiffer what) {
-    constexpr std::array stops = {"stop", "model", "cap"};
+    constexpr std::array kStops = {"stop", "model", "cap"};
     RenderIdentity all = wanted;
     all.insert(found.begin(), found.end());
     for (const auto& [key, value] : all)
-        if (what == MayDiffer::Stops && std::ranges::find(stops, key) != stops.end())
+        if (what == MayDiffer::Stops && std::ranges::find(kStops, key) != kStops.end())
             continue;
         else if (found.contains(key) != wanted.contains(key) || ValueIn(found, key) != value)
             throw Error(fmt::format(

@@ -63,7 +63,7 @@ std::vector<NoisyBlock> FindShortfall(const Provenance& provenance, const Render
 }
 
 std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend& trend) {
-    constexpr int mostCap = 1 << 24;
+    constexpr int kMostCap = 1 << 24;
     if (trend.kind == RuleTrend::Samples) return {};
     std::vector<StopTrend> trends(result.blocks.size(), StopTrend(trend));
     std::vector<Block> blocks;
@@ -79,13 +79,13 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend&
         const Decision& last = decisions.back().decision;
         capped.push_back({int(i), last.value, last.threshold, 0});
     }
-    if (const auto stops = PredictStops(trends, blocks, mostCap))
+    if (const auto stops = PredictStops(trends, blocks, kMostCap))
         for (CappedBlock& c : capped) {
             // A prediction that is no more than its sample count is of a block without a
             // trend.
             const int had = blocks[size_t(c.block)].spp;
             const double spp = std::ceil((*stops)[size_t(c.block)]);
-            if (spp < mostCap && (spp > had || c.value <= c.threshold))
+            if (spp < kMostCap && (spp > had || c.value <= c.threshold))
                 c.neededSpp = std::max(int(spp), had + 1);
         }
     std::ranges::stable_sort(capped, [](const CappedBlock& a, const CappedBlock& b) {
