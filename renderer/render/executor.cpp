@@ -100,12 +100,15 @@ bool Executor::IsPauseDue() const {
            (options.events.onPreview && ledger.Seconds() >= nextPreview);
 }
 
-void Executor::BeginLight() {
+void Executor::BeginLightRound(const std::function<void()>& writeCheckpoint) {
     context.learners->Begin(schedule.Unlocked());
     context.light->Begin(schedule.Unlocked(), context.learners->Paths().shares);
-    // With a larger cap this round would be a longer one: whoever goes on begins it again.
-    if (context.light->IsCutShort() && !isLastRound) WriteCheckpoint();
+    if (context.light->IsCutShort() && !isLastRound) writeCheckpoint();
     isLastRound = context.light->IsCutShort();
+}
+
+void Executor::BeginLight() {
+    BeginLightRound([this] { WriteCheckpoint(); });
     schedule.BeginRound(RoundEndOf(context));
     isLightTraced = context.light->Trace([this] { return IsCancelled(); });
 }

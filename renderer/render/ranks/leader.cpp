@@ -103,10 +103,7 @@ class Leader {
             if (std::exchange(hasGivenUp, false)) return TakeOver();
             LearnLight();
         }
-        context.learners->Begin(schedule.Unlocked());
-        light.Begin(schedule.Unlocked(), context.learners->Paths().shares);
-        if (light.IsCutShort() && !executor.isLastRound) WriteCheckpoint();
-        executor.isLastRound = light.IsCutShort();
+        executor.BeginLightRound([this] { WriteCheckpoint(); });
         splats.clear();
         traced.clear();
         executor.isLightTraced = true;
