@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "renderer/progress/forecast.h"
+#include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -17,7 +18,7 @@ bool CountsSamples(const std::string& text) {
 
 bool ComparesVisibleNoise(const std::string& text) {
     const RuleEntry* rule = FindRule(text);
-    return rule && rule->name == "lnoise";
+    return rule && rule->name == kLightnessNoiseName;
 }
 
 // Returns the noise of blocks that the rule has stopped.
@@ -25,7 +26,7 @@ double NoiseAtStop(const std::vector<BlockResult>& blocks) {
     std::vector<double> noise;
     for (const BlockResult& b : blocks)
         if (b.block.stoppedByVote && std::isfinite(b.block.noise)) noise.push_back(b.block.noise);
-    if (noise.empty()) return std::stod(ArgumentOf("lnoise"));
+    if (noise.empty()) return std::stod(ArgumentOf(kLightnessNoiseName));
     const auto middle = noise.begin() + noise.size() / 2;
     std::nth_element(noise.begin(), middle, noise.end());
     return *middle;
