@@ -12,12 +12,6 @@
 
 namespace lull {
 
-template <>
-struct EnumNames<ToneMap> {
-    static constexpr std::pair<ToneMap, const char*> all[] = {{ToneMap::None, "none"},
-                                                              {ToneMap::Filmic, "filmic"}};
-};
-
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
     AddChoiceOption(app, "--tone-map", &options->format.grade.toneMap,
                     "Map the tones of the PNG; filmic keeps highlights up to 5.6 times white")

@@ -90,8 +90,9 @@ std::string ModelFolder() {
     return (program.parent_path().parent_path() / "share/lull/models").string();
 }
 
-Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
-              const PixelRect& region, std::map<std::string, SignalMeasure> measures) try {
+Rule ReadRuleOption(const std::string& option, const std::string& rule,
+                    const RenderSettings& settings, const PixelRect& region,
+                    std::map<std::string, SignalMeasure> measures) try {
     if (IsRule(rule, kDenoisedRuleName) && measures.empty())
         throw Error(option + " " + rule +
                     ": needs --denoise of lull render; lull compare and lull bench add a denoised "

@@ -6,12 +6,19 @@
 #include <span>
 #include <string>
 
+#include "renderer/base/enum_names.h"
 #include "renderer/formats/view_transform.h"
 
 namespace lull {
 
 // How radiance is fitted to the range of a display.
 enum class ToneMap { None, Filmic };
+
+template <>
+struct EnumNames<ToneMap> {
+    static constexpr std::pair<ToneMap, const char*> all[] = {{ToneMap::None, "none"},
+                                                              {ToneMap::Filmic, "filmic"}};
+};
 
 // Applies the curve of J. Hable ("Filmic Tonemapping Operators", 2010; from Uncharted 2) to a
 // linear component: toe and shoulder of film, with his constants, an exposure bias of 2 and a

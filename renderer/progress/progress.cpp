@@ -56,9 +56,10 @@ std::string TextOf(const TimeLeft& left) {
 
 // Returns the columns of a terminal.
 int ColumnsOf(std::FILE* stream) {
-    constexpr int usual = 80;
+    constexpr int kUsualColumns = 80;
     winsize size = {};
-    return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+    return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col
+                                                                            : kUsualColumns;
 }
 
 }  // namespace
@@ -88,14 +89,14 @@ std::string FormatDuration(double seconds) {
 }
 
 std::string FormatCount(double count) {
-    static constexpr const char* units[] = {"", "k", "M", "G", "T"};
+    static constexpr const char* kUnits[] = {"", "k", "M", "G", "T"};
     int unit = 0;
     while (count >= 999.5 && unit < 4) {
         count /= 1000;
         ++unit;
     }
     const int decimals = unit == 0 || count >= 99.95 ? 0 : count >= 9.995 ? 1 : 2;
-    return fmt::format("{:.{}f}{}{}", count, decimals, unit > 0 ? " " : "", units[unit]);
+    return fmt::format("{:.{}f}{}{}", count, decimals, unit > 0 ? " " : "", kUnits[unit]);
 }
 
 double ShareDone(const RenderProgress& p) {

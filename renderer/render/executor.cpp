@@ -100,14 +100,17 @@ bool Executor::IsPauseDue() const {
            (options.events.onPreview && ledger.Seconds() >= nextPreview);
 }
 
-void Executor::BeginLight() {
+void Executor::BeginLightRound(const std::function<void()>& writeCheckpoint) {
     context.learners->Begin(schedule.Unlocked());
     context.light->Begin(schedule.Unlocked(), context.learners->Paths().shares);
-    // With a larger cap this round would be a longer one: whoever goes on begins it again.
-    if (context.light->IsCutShort() && !isLastRound) WriteCheckpoint();
+    if (context.light->IsCutShort() && !isLastRound) writeCheckpoint();
     isLastRound = context.light->IsCutShort();
+}
+
+void Executor::BeginLight() {
+    BeginLightRound([this] { WriteCheckpoint(); });
     schedule.BeginRound(RoundEndOf(context));
-    isLit = context.light->Trace([this] { return IsCancelled(); });
+    isLightTraced = context.light->Trace([this] { return IsCancelled(); });
 }
 
 bool Executor::EndRound() {
@@ -128,7 +131,7 @@ void Executor::Quiesce() {
 }
 
 void Executor::RunTile() {
-    if (pausing || IsCancelled() || !isLit) return;
+    if (pausing || IsCancelled() || !isLightTraced) return;
     const std::optional<Tile> tile = schedule.Next();
     if (!tile) return;
     const double tileStart = ThreadSeconds(), wallStart = ledger.Seconds();

@@ -14,10 +14,10 @@
 namespace lull {
 
 // A decision of a criterion on a block.
-struct DecisionRecord {
+struct BlockDecision {
     int spp;
     Decision decision;
-    std::optional<double> noiseTold = {};  // Criterion::NoiseTold(), for forecasts
+    std::optional<double> networkNoise = {};  // Criterion::NetworkNoise(), for forecasts
 };
 
 struct BlockResult {
@@ -25,7 +25,7 @@ struct BlockResult {
     double seconds = 0;  // of processors, spent on its samples
     // Spent on its criterion and, with a clock, on its noise, the view of the pixels included.
     double criterionSeconds = 0;
-    std::vector<DecisionRecord> decisions;  // those for which the block was checked
+    std::vector<BlockDecision> decisions;  // those for which the block was checked
 };
 
 // With the film, all that is needed to continue a render: the pixels will be the

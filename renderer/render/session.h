@@ -69,7 +69,7 @@ class Session {
 
     // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
-    Film& TheFilm() { return film; }
+    Film& GetFilm() { return film; }
     // Returns the state of learning, or the reason for none; empty without a guide.
     GuideFigures Guidance() const;
     // Return the image and its provenance.

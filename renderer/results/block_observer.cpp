@@ -53,7 +53,7 @@ Decision BlockObserver::ObserveRule(size_t i, const BlockView& view) {
     const double start = ThreadSeconds();
     const bool needsView = rules[i]->Need(view.spp) != ViewNeed::Nothing;
     const Decision decision = rules[i]->Observe(view);
-    if (i == 0) noiseTold = rules[i]->NoiseTold();
+    if (i == 0) networkNoise = rules[i]->NetworkNoise();
     RuleStop& stop = history->stops[i];
     stop.ruleSeconds += ThreadSeconds() - start + (needsView ? view.viewSeconds : 0);
     if (!decision.stop) return decision;

@@ -54,7 +54,7 @@ class BlockObserver final : public Criterion {
     ViewNeed Need(int spp) const override;
     Decision Observe(const BlockView& view) override;
     // Of the first rule.
-    std::optional<double> NoiseTold() const override { return noiseTold; }
+    std::optional<double> NetworkNoise() const override { return networkNoise; }
     std::vector<std::byte> Save() const override;
     void Restore(std::span<const std::byte> state) override;
 
@@ -65,7 +65,7 @@ class BlockObserver final : public Criterion {
     std::vector<std::unique_ptr<Criterion>> rules;  // null once they have stopped the block
     ObserverOptions options;
     BlockHistory* history;
-    std::optional<double> noiseTold;
+    std::optional<double> networkNoise;
 };
 
 }  // namespace lull

@@ -54,13 +54,12 @@ double Noise(double squares, double mean, double count) {
     return std::min(noise, double(std::numeric_limits<float>::max()));
 }
 
-// Returns the means of a group's samples; the first look of the film, where there are none, belongs
-// to the last group.
+// Returns the means of a group's samples, or its first look where there are none.
 std::vector<float> MeansOf(const LightGroupLayer& lights, int group, const Film& film) {
     std::vector<float> rgb(size_t(film.Region().Area()) * 3);
     ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {
         const FilmPixel pixel = lights.At(group, p, film.At(p).count);
-        const bool showsLook = pixel.count == 0 && group + 1 == lights.Count();
+        const bool showsLook = pixel.count == 0 && lights.HasFirstLook(group);
         const Rgb mean = showsLook ? film.MeanAt(p) : pixel.Mean();
         std::copy_n(mean.data(), 3, &rgb[3 * i]);
     });

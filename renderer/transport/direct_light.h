@@ -99,16 +99,17 @@ template <typename Media, typename Vertex, typename Guiding>
         return light->isOnMap ? Rgb(arriving * context.scene.lights.Radiance(sample.index, *light))
                               : arriving;
     } else {
-        const auto sight = context.media.See(context, v, *light);
-        if (IsBlack(sight.share)) return Rgb::Zero();
+        const auto visibility = context.media.See(context, v, *light);
+        if (IsBlack(visibility.share)) return Rgb::Zero();
         const Rgb share =
-            light->isOnMap ? Rgb(sight.share * context.scene.lights.Radiance(sample.index, *light))
-                           : sight.share;
-        if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * share;
+            light->isOnMap
+                ? Rgb(visibility.share * context.scene.lights.Radiance(sample.index, *light))
+                : visibility.share;
+        if (light->isDelta || hasOwnRay || !visibility.isOutOfReach.any()) return L * share;
         // Light that no ray can reach keeps pbrt-v3's weight, too, whatever has been learned.
         const float evenly =
             PowerHeuristic(light->pdf * sample.powerRatio, v.EvaluateEvenly(light->wi).pdf);
-        return sight.isOutOfReach.select(
+        return visibility.isOutOfReach.select(
                    value.f * light->L * (cosine * evenly / (light->pdf * pmf)), L) *
                share;
     }
@@ -123,23 +124,23 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
     if (!IsVisible(light)) return Rgb::Zero();
     const auto sample = v.Sample(u, LobeSet::NonSpecular);
     if (!sample) return Rgb::Zero();
-    Sighting sighting;
+    LightHit lightHit;
     Rgb L;
     float lightPdf;
     if (TypeOf(light) == LightType::Infinite) {
         const Emitted found = LeAndPdf(light, sample->wi);
-        if (found.pdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &sighting))
+        if (found.pdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &lightHit))
             return Rgb::Zero();
         L = found.L;
         lightPdf = found.pdf;
     } else {
-        if (!context.media.MeetsLight(context, v, sample->wi, index, &sighting)) return Rgb::Zero();
-        const SurfaceInteraction& at = sighting.at;
-        L = Le(light, at.n, -sample->wi, sighting.found);
+        if (!context.media.MeetsLight(context, v, sample->wi, index, &lightHit)) return Rgb::Zero();
+        const SurfaceInteraction& at = lightHit.at;
+        L = Le(light, at.n, -sample->wi, lightHit.found);
         lightPdf = Pdf(light, v.Position(), at.p, at.n);
         if (lightPdf == 0) return Rgb::Zero();
     }
-    return sample->f * L * sighting.share *
+    return sample->f * L * lightHit.share *
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 

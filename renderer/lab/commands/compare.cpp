@@ -112,7 +112,7 @@ void AddOtherRules(Compared* compared) {
     if (!options.human.empty() && !IsImageFile(options.human)) {
         RenderSettings plain = options.render;
         plain.caution = 1;
-        const Rule human = ReadRule("--human", "thresholds:" + options.human, plain, region);
+        const Rule human = ReadRuleOption("--human", "thresholds:" + options.human, plain, region);
         compared->rules.push_back(MakeRule("human", human));
         compared->humanChecksum = human.checksum;
     }
@@ -177,7 +177,7 @@ Verification Verify(const Compared& compared, int threads, const ComparedImage& 
     if (!render.settings.quiet) TalkOf(render.settings).Note("the automatic image by itself");
     Session session(*render.scene, render.input.region, how);
     const RenderResult result = session.Run();
-    return VerificationOf(result, session.TheFilm(), expected);
+    return VerificationOf(result, session.GetFilm(), expected);
 }
 
 ResultFiles WriteImages(const Compared& compared) {

@@ -103,13 +103,10 @@ class Leader {
             if (std::exchange(hasGivenUp, false)) return TakeOver();
             LearnLight();
         }
-        context.learners->Begin(schedule.Unlocked());
-        light.Begin(schedule.Unlocked(), context.learners->Paths().shares);
-        if (light.IsCutShort() && !executor.isLastRound) WriteCheckpoint();
-        executor.isLastRound = light.IsCutShort();
+        executor.BeginLightRound([this] { WriteCheckpoint(); });
         splats.clear();
         traced.clear();
-        executor.isLit = true;
+        executor.isLightTraced = true;
         channel.PostToAll(Pack(light.Round()));
         TracePart(0);
         Await(traced);
@@ -118,7 +115,7 @@ class Leader {
                 Merge(other);
             else
                 TracePart(other);  // of one that was given up
-        if (!executor.isLit) return;
+        if (!executor.isLightTraced) return;
         for (size_t i = 0; i < light.Planes().size(); ++i)
             channel.PostToAll(PackSplats(int(i), light.Planes()[i]));
         channel.PostToAll(Pack(RankWord::Lit));
@@ -139,7 +136,7 @@ class Leader {
         rank.Enqueue([&] {
             if (!context.light->Trace([this] { return executor.IsCancelled(); }, part,
                                       channel.Count()))
-                executor.isLit = false;
+                executor.isLightTraced = false;
             isDone = true;
         });
         while (!isDone) {
@@ -353,7 +350,7 @@ class Leader {
             std::vector<std::byte>& message = splats[from].emplace_back(reader.Left());
             reader.GetAll(std::span(message));
         } else if (word == RankWord::Traced) {
-            executor.isLit = reader.Get<uint8_t>() && executor.isLit;
+            executor.isLightTraced = reader.Get<uint8_t>() && executor.isLightTraced;
             traced.insert(from);
         } else if (word == RankWord::Quiet) {
             quiet.insert(from);
