@@ -65,7 +65,8 @@ void Learners::EndRound(Film* film, const lull::RoundEnd& ended) {
 
 void Learners::SetPaths() {
     paths = Estimator::Combined;
-    ForEachPresent(kinds, [&](auto& kind) { kind.Apply(&paths); });
+    records = {};
+    ForEachPresent(kinds, [&](auto& kind) { kind.Apply(&paths, &records); });
 }
 
 GuideFigures Learners::Figures() const {

@@ -58,7 +58,9 @@ SampleSource SamplesOf(const Scene& scene, const Learners& learners, const Light
         PathOptions options = learners.Paths();
         options.throughSpecular = throughSpecular;
         if (light) options.shares = light->Round().shares;
-        return RenderSample(scene, options, sampler, pixel, index, detail);
+        SampleDetail all = detail;
+        all.records = &learners.Records();
+        return RenderSample(scene, options, sampler, pixel, index, all);
     };
 }
 

@@ -223,7 +223,8 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
         Unguided unguided;
         return {trace(unguided), false};
     }
-    Guided guided(*options.guide, options.record, options.usual);
+    const PathRecords records = detail.records ? *detail.records : PathRecords();
+    Guided guided(*options.guide, records.directions, records.usualForDirections);
     const Rgb L = trace(guided);
     return {L, false, guided.Vertices()};
 }
@@ -233,9 +234,10 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
 PathSample Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& options,
               Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const auto trace = [&]<typename Media>(const Media& media) {
-        return TracePath<Media>({scene, integrator, options.estimator, sampler, start.camera, media,
-                                 options.learned.IsEmpty() ? nullptr : &options.learned},
-                                options, start.ray, detail);
+        return TracePath<Media>(
+            {scene, integrator, options.estimator, sampler, start.camera, media,
+             options.learned.IsEmpty() ? nullptr : &options.learned, detail.records},
+            options, start.ray, detail);
     };
     if (scene.isVolumetric) return trace(Media(scene));
     return scene.hasPanes ? trace(NoMediaButPanes(scene)) : trace(NoMedia(scene));
