@@ -7,7 +7,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/grading.h"
 #include "renderer/commands/guide_options.h"

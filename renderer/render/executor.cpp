@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/color.h"
-#include "renderer/base/thread_clock.h"
 #include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "renderer/base/thread_clock.h"
+#include "renderer/base/clocks.h"
 #include "stopping/base/state.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/signals/lightness.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
-#include "renderer/base/thread_clock.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
 #include "stopping/rules/baselines.h"
