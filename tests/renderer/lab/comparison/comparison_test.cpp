@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
-#include "renderer/lab/comparison/verification.h"
 #include "stopping/base/block_view.h"
 #include "stopping/rules/baselines.h"
 #include "tests/renderer/render/synthetic_samples.h"
