@@ -7,8 +7,8 @@
 
 #include "renderer/lab/metrics/image_error.h"
 #include "renderer/lab/metrics/seams.h"
+#include "renderer/render/block_observer.h"
 #include "renderer/render/render.h"
-#include "renderer/results/block_observer.h"
 
 namespace lull {
 

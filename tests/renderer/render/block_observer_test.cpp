@@ -1,4 +1,4 @@
-#include "renderer/results/block_observer.h"
+#include "renderer/render/block_observer.h"
 
 #include <gtest/gtest.h>
 
