@@ -128,7 +128,7 @@ struct RenderContext {
     Learners* learners = nullptr;
     // Traces light paths in rounds, with the shares that learners have found (light_rounds.h). The
     // film keeps spreads. Null: none.
-    LightRounds* light = nullptr;
+    LightRounds* lightRounds = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
     // given the next pass. Then the render ends after the tiles under way: passes that are not
