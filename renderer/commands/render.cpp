@@ -240,8 +240,8 @@ CriterionMaker MakeCriterionMaker(const Rule& rule, const std::vector<Grade>& gr
     return [criteriaOf, histories](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;
         rules.push_back(criteriaOf(info));
-        return std::make_unique<BlockObserver>(std::move(rules), ObserverOptions{.curves = true},
-                                               &(*histories)[size_t(info.index)]);
+        return std::make_unique<BlockMonitor>(std::move(rules), MonitorOptions{.curves = true},
+                                              &(*histories)[size_t(info.index)]);
     };
 }
 
