@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/command.h"
 #include "renderer/progress/time_limit.h"
 

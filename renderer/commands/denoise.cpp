@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
-#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/option_values.h"

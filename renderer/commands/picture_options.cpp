@@ -8,7 +8,7 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/option_values.h"
-#include "renderer/image/color_view.h"
+#include "renderer/image/grade.h"
 
 namespace lull {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/grading.h"
 #include "renderer/commands/guide_options.h"
@@ -240,8 +240,8 @@ CriterionMaker MakeCriterionMaker(const Rule& rule, const std::vector<Grade>& gr
     return [criteriaOf, histories](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;
         rules.push_back(criteriaOf(info));
-        return std::make_unique<BlockObserver>(std::move(rules), ObserverOptions{.curves = true},
-                                               &(*histories)[size_t(info.index)]);
+        return std::make_unique<BlockMonitor>(std::move(rules), MonitorOptions{.curves = true},
+                                              &(*histories)[size_t(info.index)]);
     };
 }
 

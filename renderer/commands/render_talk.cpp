@@ -7,8 +7,8 @@
 
 #include "renderer/base/say.h"
 #include "renderer/progress/progress.h"
+#include "renderer/render/shortfall.h"
 #include "renderer/results/report.h"
-#include "renderer/results/shortfall.h"
 
 namespace lull {
 

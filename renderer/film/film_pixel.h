@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "renderer/base/half.h"
 #include "renderer/base/math.h"
+#include "renderer/base/sampler.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

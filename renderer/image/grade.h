@@ -56,4 +56,8 @@ bool MapColors(const Grade&, std::span<float> rgb);
 // finite, at least 0, above 1 only without tone map and view, and not rounded.
 void ApplyGrade(const Grade&, std::span<float> rgb);
 
+// Returns a view of the configuration file `config`, empty: $OCIO, for its default display; the
+// default view if `view` is empty. Throws Error, with the names of the views if there is no such.
+std::shared_ptr<const ViewTransform> LoadView(const std::string& config, const std::string& view);
+
 }  // namespace lull

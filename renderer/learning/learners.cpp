@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/learning/learner_state.h"
 
 namespace lull {

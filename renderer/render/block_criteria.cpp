@@ -1,6 +1,6 @@
 #include "renderer/render/block_criteria_internal.h"
 
-#include "renderer/base/thread_clock.h"
+#include "renderer/base/clocks.h"
 #include "renderer/learning/learners.h"
 #include "renderer/render/peers.h"
 #include "stopping/rules/lnoise.h"

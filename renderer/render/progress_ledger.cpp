@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 
 namespace lull {
 

@@ -88,7 +88,7 @@ class Session {
     Film film;
     std::optional<RenderState> interrupted;
     std::unique_ptr<Learners> learners;  // null: nothing is learned
-    std::unique_ptr<LightRounds> light;
+    std::unique_ptr<LightRounds> lightRounds;
     RenderContext context;
 };
 

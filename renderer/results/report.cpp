@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "renderer/render/shortfall.h"
 #include "renderer/results/report_json.h"
-#include "renderer/results/shortfall.h"
 #include "stopping/network/human_range.h"
 
 namespace lull {

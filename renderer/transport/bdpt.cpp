@@ -3,7 +3,7 @@
 #include "renderer/base/color.h"
 #include "renderer/scene/cameras/camera_view.h"
 #include "renderer/scene/cameras/footprint.h"
-#include "renderer/transport/group_recorder_internal.h"
+#include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_media.h"
 #include "renderer/transport/subpath.h"

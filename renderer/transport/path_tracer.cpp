@@ -1,6 +1,6 @@
 #include "renderer/scene/cameras/footprint.h"
 #include "renderer/transport/direct_light.h"
-#include "renderer/transport/group_recorder_internal.h"
+#include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_recorder_internal.h"
 #include "renderer/transport/subsurface.h"

@@ -11,7 +11,6 @@
 #include "renderer/files/file_io.h"
 #include "renderer/image/files/png_library.h"
 #include "renderer/image/image_io.h"
-#include "renderer/image/png_format.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "renderer/results/shortfall.h"
+#include "renderer/render/shortfall.h"
 
 #include <algorithm>
 #include <cmath>
