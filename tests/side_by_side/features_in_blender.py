@@ -328,6 +328,11 @@ def spot_penumbra(scene):
     camera((0, 0, 1.5), (0, 0, 0), type='ORTHO', ortho_scale=3)
 
 
+@case("lamp of negative strength")
+def negative_lamp(scene):
+    lamp('POINT', -20, (0, -2, 2))
+
+
 @case("lamp without shadows")
 def no_shadow(scene):
     the("key").data.use_shadow = the("key").data.cycles.cast_shadow = False
@@ -478,6 +483,16 @@ def sheared(scene):
     parent.scale = (3, 1, 1)
     o = cube(matte("box", (0.6, 0.2, 0.1, 1)), rotation=(0, 0, 0.7))
     o.parent = parent
+
+
+@case("empty slot of a material")
+def empty_slot(scene):
+    the("ball").data.materials.append(None)
+    made, shown, _, tree = textured()
+    tree.links.new(node(tree, 'ShaderNodeUVMap', uv_map="UVMap").outputs[0], shown.inputs[0])
+    wall(made).location.y = 1
+    ball(matte("red", (0.6, 0.2, 0.1, 1))).data.materials.append(None)
+    the("ball").data.polygons[0].material_index = 1
 
 
 @case("negative scale")
@@ -868,6 +883,18 @@ def no_uvs(scene):
     dressed(textured()[0])
     layers = the("ball").data.uv_layers
     layers.remove(layers[0])
+
+
+@case("image texture over the second of two sets of UVs, and bump")
+def two_uvs(scene):
+    made, shown, bsdf, tree = textured()
+    tree.links.new(node(tree, 'ShaderNodeUVMap', uv_map="small").outputs[0], shown.inputs[0])
+    bumped = node(tree, 'ShaderNodeBump', Strength=0.2)
+    tree.links.new(node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[0], bumped.inputs['Height'])
+    tree.links.new(bumped.outputs[0], bsdf.inputs['Normal'])
+    layer = wall(made).data.uv_layers.new(name="small")
+    for loop in layer.data:
+        loop.uv *= 0.5
 
 
 @case("image texture times a colour")

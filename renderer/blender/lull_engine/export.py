@@ -183,7 +183,7 @@ def main():
     bpy.context.window.scene = flat
     path = base + what["suffix"]
     export(path)
-    groups = gltf.patch(path, [g.name for g in layer.lightgroups])
+    groups = gltf.patch(path, [g.name for g in layer.lightgroups], notes)
     if environment and scene.world.lightgroup in layer.lightgroups:
         groups[scene.world.lightgroup] = "environment"
     with open(what["said"], "w", encoding="utf-8") as f:
