@@ -178,6 +178,7 @@ def main():
         panes.prepare(made, notes)
     lights.add(lamps, scene, flat, notes)
     flatten.leave_copies(flat)
+    flatten.undress_others(flat)
     base = os.path.join(what["folder"], what["name"])
     environment, backdrop = world.write(scene, flat.camera, base, notes)
     bpy.context.window.scene = flat

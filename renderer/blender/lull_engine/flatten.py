@@ -126,6 +126,15 @@ def leave_copies(flat):
         flat.collection.objects.link(place)
 
 
+def undress_others(flat):
+    """Removes the materials of all meshes but those of a scene: where a material uses a UV map by its name, Blender's exporter
+    asks all meshes for their materials, and fails at an empty slot."""
+    used = {o.data for o in flat.collection.objects}
+    for mesh in bpy.data.meshes:
+        if mesh not in used:
+            mesh.materials.clear()
+
+
 def _note_of(original, notes):
     for system in original.particle_systems:
         settings = system.settings
