@@ -24,6 +24,9 @@ def add(lamps, scene, flat, notes):
         light = folded.get(o.data)
         if light is None:
             light = folded[o.data] = _folded(o.data.copy(), notes)
+        if min(light.energy * c for c in light.color) < 0:
+            notes.add("left out, taking light away", o.name, "lights")
+            continue
         if not o.visible_camera and _is_in_view(scene, matrix.translation):
             if light.type == 'AREA' or "lull" in light:
                 notes.add("seen by the camera", o.name, "lights")

@@ -578,7 +578,7 @@ class _Surface:
             return
         pixels = self._pixels('Radiance')
         most = float(pixels.max())
-        new.inputs['Emission Strength'].default_value = most
+        new.inputs['Emission Strength'].default_value = max(most, 0)
         if most <= 0:
             self._set(emission, (0, 0, 0))
         elif pixels.ndim == 1:
