@@ -787,6 +787,32 @@ def glass_by_rays(scene):
     dressed(made)
 
 
+def sheet(made):
+    """Puts a plane before the wall, in the way of the sun."""
+    wall(matte("red", (0.6, 0.2, 0.1, 1))).location.y = 1
+    only('SUN', 3, (0, 0, 9), (0.9, 0, 0), angle=0)
+    o = wall(made, x=2, z=2.2)
+    o.location.y = -1
+
+
+@case("pane: Transparent and Glossy by Fresnel")
+def pane_by_fresnel(scene):
+    made, clear, tree = surface('BsdfTransparent', Color=(0.9, 0.95, 0.9, 1))
+    shine, fresnel, mix = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfGlossy', 'Fresnel', 'MixShader'))
+    shine.inputs['Roughness'].default_value, shine.inputs['Color'].default_value = 0, (1, 1, 1, 1)
+    for a, b in ((fresnel.outputs[0], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2])):
+        tree.links.new(a, b)
+    cover(mix, tree)
+    sheet(made)
+
+
+@case("pane: plane of Glass without a shadow by Light Path")
+def pane_by_rays(scene):
+    glass_by_rays(scene)
+    made = the("ball").data.materials[0]
+    sheet(made)
+
+
 @case("Mix by Fresnel: Diffuse and Glossy")
 def coated(scene):
     made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))

@@ -8,6 +8,7 @@ import numpy as np
 
 import displacement
 import groups
+import solids
 from versions import HAS_ADDED_INTERFACE, principled_input
 
 # Nodes that the exporter follows from an input of a Principled BSDF to an image.
@@ -72,12 +73,12 @@ def _convert(material, meshes, baker, notes):
         return _of_viewport(material)
     if _is_empty(material):
         return material
-    surface = _Surface(material, notes)
+    surface = _Surface(material, meshes, notes)
     if surface.parameters is None:
         return _of_viewport(material)
     if not surface.needs_mesh:
         return surface.write(baker, None)
-    return {mesh: _Surface(material, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
+    return {mesh: _Surface(material, meshes, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
 
 
 def principled(material):
@@ -161,8 +162,9 @@ def _place_of(socket):
 class _Surface:
     """A material as parameters: plain values, or outputs of nodes of a copy of its tree."""
 
-    def __init__(self, material, notes):
-        self.name, self.original, self.notes = material.name, material, notes
+    def __init__(self, material, meshes, notes):
+        """`meshes` has an object and a slot for each mesh with the material."""
+        self.name, self.original, self.meshes, self.notes = material.name, material, meshes, notes
         self.copy = material.copy()
         self.copy["lull_name"] = material.name
         self.tree = self.copy.node_tree
@@ -297,12 +299,45 @@ class _Surface:
         return mixed
 
     def _mix_by_view(self, a, b, factor):
-        """A coat that a Fresnel factor adds is glTF's own; of tricks with kinds of rays the first holds."""
+        """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what the
+        camera sees holds."""
         is_ray = any(n.type == 'LIGHT_PATH' for n in _upstream(factor))
         if not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
             return dict(a, Specular=0.5, Roughness=b['Roughness'])
+        clear, other = (a, b) if a['Alpha'] == 0 else (b, a)
+        is_glass = clear['Alpha'] == 0 and other['Alpha'] == 1 and (other['Metallic'] == 1 or other['Transmission'] == 1)
+        if is_glass and not is_ray:
+            return self._pane(clear, other, factor if clear is a else None)
+        if is_glass and other['Transmission'] == 1:
+            return self._lit_through(other)
         self.notes.add("the same from all sides and for all rays", self.name, "materials")
-        return a if a['Alpha'] != 0 or is_ray else b
+        if is_ray:
+            return b if factor.name == 'Is Camera Ray' else a
+        return other if clear['Alpha'] == 0 else a
+
+    def _pane(self, clear, shine, factor):
+        """Returns a sheet of glass, for a clear surface that shines as a factor says, None for one that is not known."""
+        ior = _ior_of(factor) if factor is not None else None
+        if ior is None:
+            self.notes.add("reflecting as clear glass does", self.name, "materials")
+        if self._is_output(shine['Roughness']) or shine['Roughness'] > 0.1 or shine['Base Color'] != (1, 1, 1) and \
+                (self._is_output(shine['Base Color']) or min(shine['Base Color']) < 0.75):
+            self.notes.add("reflecting white light, and sharply", self.name, "materials")
+        self.notes.add("made a sheet of glass, the same from both sides", self.name, "materials")
+        self.copy["lull_thin"] = True
+        return dict(_DEFAULTS, **{'Base Color': clear['Tint'], 'Transmission': 1, 'Specular': 0.5, 'Roughness': 0,
+                                  'IOR': ior or 1.45})
+
+    def _lit_through(self, glass):
+        """Returns glass which light passes that other glass refracts."""
+        if self.copy.get("lull_thin"):
+            return glass
+        if any(solids.has_solid(o, slot) for o, slot in self.meshes.values()):
+            self.notes.add("solid glass, which lamps do not shine through", self.name, "materials")
+            return glass
+        self.notes.add("made a sheet of glass, the same from both sides", self.name, "materials")
+        self.copy["lull_thin"] = True
+        return glass
 
     def _add_shader(self, node):
         a, b = self._closure(node.inputs[0]), self._closure(node.inputs[1])
@@ -599,6 +634,18 @@ class _Surface:
         node.uv_map = "lull"
         self.tree.links.new(image.outputs['Color'], node.inputs['Color'])
         self.tree.links.new(node.outputs[0], new.inputs['Normal'])
+
+
+def _ior_of(factor):
+    """Returns the index of refraction by which a factor grows with the angle; None where it does not as glass has it."""
+    value = factor.node.inputs[0]
+    if value.links:
+        return None
+    if factor.node.type == 'FRESNEL':
+        return value.default_value
+    if factor.node.type == 'LAYER_WEIGHT' and factor.name == 'Fresnel':
+        return 1 / max(1 - value.default_value, 1e-5)
+    return None
 
 
 def _is_neutral(socket):
