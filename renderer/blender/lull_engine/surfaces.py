@@ -424,7 +424,9 @@ class _Surface:
             return name == 'Base Color' and value.node.type == 'VERTEX_COLOR'
         if len(images) > 1 or any(not _is_plain(n) for n in images):
             return False
-        if name == 'Radiance' and images[0].image.is_float or name in _EVEN:
+        if name in _EVEN or images[0].image.is_float:
+            return False
+        if name != 'Alpha' and not _is_encoded(images[0].image, name in ('Base Color', 'Radiance')):
             return False
         if name == 'Alpha':
             return value.node.type == 'TEX_IMAGE' and value.name == 'Alpha'
@@ -661,6 +663,12 @@ def _is_plain(node):
     """Returns whether glTF's samplers read an image as its node does."""
     return (node.image is not None and node.image.size[0] > 0 and node.projection == 'FLAT' and
             node.extension in ('REPEAT', 'EXTEND') and node.image.source in ('FILE', 'GENERATED'))
+
+
+def _is_encoded(image, is_colour):
+    """Returns whether the numbers of a file are what glTF takes them for: encoded colours, or data."""
+    space = image.colorspace_settings
+    return space.name == 'sRGB' if is_colour else space.is_data
 
 
 def _is_known_mapping(node):
