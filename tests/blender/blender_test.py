@@ -172,6 +172,14 @@ class AddOn(unittest.TestCase):
             self.assertAlmostEqual(got / wanted, 1, delta=0.02, msg=group)
         self.assertEqual(rgb(passes, "Combined_none").max(), 0)
 
+    def test_passes_by_the_names_that_composites_link(self):
+        passes, said = self.render("passes", SAMPLES + "c = scene.view_layers[0].cycles; c.denoising_store_passes = True; "
+                                   "c.pass_debug_sample_count = c.use_pass_volume_direct = True")
+        for theirs, ours in (("Denoising Normal.X", "Normal.X"), ("Denoising Albedo.G", "Albedo.G"), ("Denoising Depth.Z", "Depth.Z"),
+                             ("Noisy Image.R", "Combined.R"), ("Debug Sample Count.X", "Samples.X")):
+            self.assertTrue((passes[theirs] == passes[ours]).all(), theirs)
+        self.assertIn("passes that lull lacks are missing: uv, volume direct", said)
+
     def test_brightens_as_the_film_and_the_view_do(self):
         once, _ = self.render("lamps")
         twice, said = self.render("lamps", SAMPLES + "scene.cycles.film_exposure = 2; scene.view_settings.exposure = 1")

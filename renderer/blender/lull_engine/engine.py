@@ -194,14 +194,16 @@ class _Job:
             raise Failure(str(e)) from e
         for made in self.passes:
             self.engine.add_pass(made.name, len(made.channels), made.channels, layer=self.layer)
+        if exported["backdrop"] and not self.is_transparent:
+            behind = (1 - channels["A"][..., None]) * self._backdrop(exported["backdrop"])
+            for name in channels.keys() & {prefix + c for prefix in ("", "noisy.") for c in "RGB"}:
+                channels[name] = channels[name] + behind[..., "RGB".index(name[-1])]
         targets = result.layers[0].passes
         combined = np.ones((self.size[1], self.size[0], 4), np.float32)
         for i, name in enumerate("RGB"):
             combined[:, :, i] = channels[name]
         if self.is_transparent:  # colours are multiplied by it, as Blender wants them
             combined[:, :, 3] = channels["A"]
-        elif exported["backdrop"]:
-            combined[:, :, :3] += (1 - channels["A"][..., None]) * self._backdrop(exported["backdrop"])
         _set(targets["Combined"], combined)
         picture = passes.Picture(channels, attributes, exported, self.scene, self.eye)
         for made in self.passes:
