@@ -495,6 +495,50 @@ def empty_slot(scene):
     the("ball").data.polygons[0].material_index = 1
 
 
+@case("instanced collection outside the scene, with an object hidden from renders")
+def instanced_collection(scene):
+    without("ball")
+    parts = bpy.data.collections.new("parts")
+    shown = cube(matte("shown", (0.6, 0.2, 0.1, 1)))
+    shown.modifiers.new("round", 'SUBSURF').render_levels = 3
+    cutter = cube(matte("cutter", (0.1, 0.8, 0.1, 1)), 0.6, (0.4, -0.4, 0.8))
+    cutter.hide_render = True
+    cut = shown.modifiers.new("cut", 'BOOLEAN')
+    cut.object = cutter
+    unseen = cube(matte("unseen", (0.1, 0.8, 0.1, 1)), 0.6, (1.5, 0, 0.3))
+    unseen.hide_viewport = True
+    for o in shown, cutter, unseen:
+        parts.objects.link(o)
+        scene.collection.objects.unlink(o)
+    copy = bpy.data.objects.new("copy", None)
+    copy.instance_type, copy.instance_collection = 'COLLECTION', parts
+    scene.collection.objects.link(copy)
+
+
+@case("other values in the viewport: particles, curves, Screw, metaballs, geometry nodes")
+def viewport_values(scene):
+    particle_objects(scene)
+    bpy.data.particles[0].display_method = 'PATH'
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.7, location=(1.5, -1, 0.8))
+    bpy.context.object.data.bevel_depth, bpy.context.object.data.resolution_u = 0.2, 1
+    bpy.context.object.data.render_resolution_u = 12
+    bpy.ops.object.metaball_add(location=(-2, 0, 0.8), radius=1)
+    bpy.context.object.data.resolution = 1
+    rod = cube(matte("rod", (0.6, 0.2, 0.1, 1)), 0.3, (0, -1.5, 1))
+    screw = rod.modifiers.new("screw", 'SCREW')
+    screw.angle, screw.screw_offset, screw.steps, screw.render_steps = 0.1, 1, 2, 16
+    group = bpy.data.node_groups.new("late", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, switch, asks = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeSwitch', 'GeometryNodeIsViewport'))
+    switch.input_type = 'GEOMETRY'
+    geometry = [s for s in switch.inputs if s.type == 'GEOMETRY']
+    group.links.new(inlet.outputs[0], geometry[0])
+    group.links.new(next(s for s in switch.outputs if s.type == 'GEOMETRY'), outlet.inputs[0])
+    group.links.new(asks.outputs[0], switch.inputs[1])
+    cube(matte("late", (0.1, 0.2, 0.6, 1)), 0.6, (-1, -1.5, 0.4)).modifiers.new("late", 'NODES').node_group = group
+
+
 @case("negative scale")
 def negative(scene):
     without("ball")
@@ -875,6 +919,16 @@ def repeated(scene):
     turn, where = node(tree, 'ShaderNodeMapping', Scale=(2, 3, 1), Rotation=(0, 0, 0.4)), tree.nodes.new('ShaderNodeTexCoord')
     tree.links.new(where.outputs['UV'], turn.inputs[0]), tree.links.new(turn.outputs[0], shown.inputs[0])
     dressed(made)
+
+
+@case("image texture: data read as colours, and colours as data")
+def colour_spaces(scene):
+    made, shown, bsdf, tree = textured()
+    shown.image.colorspace_settings.name = 'Non-Color'
+    rough = node(tree, 'ShaderNodeTexImage', image=image(np.ones((64, 64, 3)) * 0.5, "rough", 'sRGB'))
+    tree.links.new(rough.outputs[0], bsdf.inputs['Roughness'])
+    bsdf.inputs['Specular'].default_value = 1
+    wall(made)
 
 
 @case("image texture: Clip")

@@ -53,29 +53,44 @@ def rendered_objects(layer_collection):
 
 
 def show_as_rendered(scene, layer):
-    """Sets the visibility of the viewport, which the exporter uses, to that of a render."""
+    """Sets what the viewport shows, which can be read, to what a render does, also in collections that have copies alone."""
     wanted = rendered_objects(layer.layer_collection)
-    collections = [layer.layer_collection]
-    for collection in collections:
-        collections += collection.children
+    for collection in _collections(layer.layer_collection):
         collection.hide_viewport = False
-        collection.collection.hide_viewport = False
-    for o in scene.objects:
-        o.hide_render = o not in wanted
-        o.hide_viewport = False  # dependencies are evaluated, too
+    for collection in bpy.data.collections:
+        collection.hide_viewport = collection.hide_render
+    for o in bpy.data.objects:
+        o.hide_viewport = o.hide_render
         if o.name in layer.objects:
-            o.hide_set(o.hide_render)
+            o.hide_set(o not in wanted)
         o.show_instancer_for_viewport = o.show_instancer_for_render
-        for system in o.particle_systems:
-            system.settings.display_percentage = 100
         for modifier in o.modifiers:
             modifier.show_viewport = modifier.show_render
-            if hasattr(modifier, "render_levels"):
-                modifier.levels = modifier.render_levels
-    strands.prepare(scene)
+            for shown, rendered in (("levels", "render_levels"), ("steps", "render_steps"), ("viewport_resolution", "resolution")):
+                if hasattr(modifier, shown) and hasattr(modifier, rendered):
+                    setattr(modifier, shown, getattr(modifier, rendered))
+    for settings in bpy.data.particles:
+        settings.display_percentage, settings.display_method = 100, 'RENDER'
+    for curve in bpy.data.curves:
+        curve.resolution_u = curve.render_resolution_u or curve.resolution_u
+        curve.resolution_v = curve.render_resolution_v or curve.resolution_v
+    for ball in bpy.data.metaballs:
+        ball.resolution = ball.render_resolution
+    for tree in bpy.data.node_groups:
+        _deny_viewport(tree)
+    strands.prepare()
     r = scene.render
     r.simplify_subdivision, r.simplify_child_particles = r.simplify_subdivision_render, r.simplify_child_particles_render
     return wanted
+
+
+def _deny_viewport(tree):
+    """Lets geometry nodes that ask for the viewport know that there is none."""
+    for node in [n for n in tree.nodes if n.type == 'IS_VIEWPORT']:
+        answer = tree.nodes.new('FunctionNodeInputBool')
+        answer.boolean = False
+        for link in list(node.outputs[0].links):
+            tree.links.new(answer.outputs[0], link.to_socket)
 
 
 def note_film(scene, notes):
