@@ -268,6 +268,11 @@ def area_unseen(scene):
     lamp('AREA', 50, (-1.5, 1, 1.5), (math.pi / 2, 0, 0), size=1).visible_camera = False
 
 
+@case("edge of an area lamp that the camera does not see")
+def area_unseen_edge(scene):
+    lamp('AREA', 200, (-4, 0, 1.5), (0, -math.pi / 4, 0), size=3).visible_camera = False
+
+
 @case("area lamp as a portal")
 def portal(scene):
     lamp('AREA', 100, (0, 2, 1.5), (-1.57, 0, 0), size=2).data.cycles.is_portal = True
