@@ -480,6 +480,18 @@ def override(scene):
     scene.view_layers[0].material_override = matte("clay", (0.8, 0.8, 0.8, 1))
 
 
+@case("view layer without the sky and strands")
+def layer_without(scene):
+    hair(scene)
+    scene.view_layers[0].use_sky = scene.view_layers[0].use_strand = False
+
+
+@case("view layer without surfaces")
+def layer_of_strands(scene):
+    hair(scene)
+    scene.view_layers[0].use_solid = False
+
+
 @case("sheared object")
 def sheared(scene):
     without("ball")

@@ -16,8 +16,8 @@ def flatten(flat, wanted, override, notes):
 
     Returns: its objects. Lights and cameras are left to others.
     """
-    made, meshes, shown = [], {}, set()
-    graph = bpy.context.evaluated_depsgraph_get()
+    made, meshes, shown, copied = [], {}, set(), {}
+    graph, layer = bpy.context.evaluated_depsgraph_get(), bpy.context.view_layer
     # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
     listed = {i.parent.original for i in graph.object_instances if i.is_instance}
     for instance in graph.object_instances:
@@ -25,8 +25,10 @@ def flatten(flat, wanted, override, notes):
         source = instance.parent.original if instance.is_instance else o.original
         if source not in wanted or not (instance.is_instance or _shows_itself(instance, listed)):
             continue
-        if o.original.particle_systems:
+        if o.original.particle_systems and layer.use_strand:
             _place_hair(flat, instance, graph, override, meshes, made)
+        if o.type == 'CURVES' and not layer.use_strand or o.type in _MESHES and not layer.use_solid:
+            continue
         if o.type == 'CURVES' and (mesh := strands.of_curves(o)):
             if override:
                 mesh.materials[0] = override
