@@ -132,6 +132,9 @@ class AddOn(unittest.TestCase):
     def test_glass_under_an_image(self):
         passes, said = self.render("glass")
         self.assert_close("glass", passes, 0.01, 0.02)
+        cycles = self.read("glass.cycles", None)
+        behind = (cycles["Depth.Z"] > 1e9) & (passes["Depth.Z"] > 1e9)
+        self.assertLess(np.percentile(abs(rgb(passes) - rgb(cycles))[behind], 95), 0.01)  # the world, as sharp as there
         self.assertNotIn("Warning", said)
 
     def test_alpha_portals_and_a_sun(self):

@@ -55,8 +55,9 @@ class LullEngine(bpy.types.RenderEngine):
             self.report({'ERROR'}, str(e))  # and in the terminal
 
 
-def export(scene, layer, folder, stopped, name="scene", suffix=".gltf"):
-    """Writes a view layer as NAME.gltf or NAME.glb, in another Blender, which leaves the scene unchanged.
+def export(scene, layer, folder, stopped, name="scene", suffix=".gltf", is_sharp=False, heard=lambda said: None):
+    """Writes a view layer as NAME.gltf or NAME.glb, in another Blender, which leaves the scene unchanged; with the world behind it
+    as a picture of its own if that `is_sharp`. `heard` is called with what that Blender has printed so far.
 
     Returns: the result of export.py; None if `stopped` has returned true. Raises: Failure.
     """
@@ -65,7 +66,8 @@ def export(scene, layer, folder, stopped, name="scene", suffix=".gltf"):
     bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
     what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
             "folder": folder, "name": name, "suffix": suffix, "frame": scene.frame_current, "subframe": scene.frame_subframe,
-            "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "said": said}
+            "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "sharp": is_sharp,
+            "said": said}
     scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
     try:
         code, output, ended = run(
@@ -133,7 +135,7 @@ class _Job:
     def run(self):
         lull, engine = find_lull(), self.engine
         engine.update_stats("", "Exporting")
-        exported = export(self.scene, self.layer, self.folder, engine.test_break)
+        exported = export(self.scene, self.layer, self.folder, engine.test_break, is_sharp=True, heard=self._show_export)
         if exported is None:
             return
         for warning in exported["warnings"]:
@@ -196,7 +198,7 @@ class _Job:
             self.engine.add_pass(made.name, len(made.channels), made.channels, layer=self.layer)
         if exported["backdrop"] and not self.is_transparent:
             behind = (1 - channels["A"][..., None]) * self._backdrop(exported["backdrop"])
-            for name in channels.keys() & {prefix + c for prefix in ("", "noisy.") for c in "RGB"}:
+            for name in channels.keys() & {prefix + c for prefix in ("", "noisy.", "light.environment.") for c in "RGB"}:
                 channels[name] = channels[name] + behind[..., "RGB".index(name[-1])]
         targets = result.layers[0].passes
         combined = np.ones((self.size[1], self.size[0], 4), np.float32)

@@ -1,7 +1,8 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
 The last argument is a JSON object: the file, the names of scene, view layer and its material override (or
-null), the frame, the size of baked images, whether slabs of glass become sheets, the number of bounces, the output folder, the
+null), the frame, the size of baked images, whether slabs of glass become sheets and whether
+the world is photographed where one image of all directions is less sharp, the number of bounces, the output folder, the
 name of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
 of the background of a world that has another light, or null), `groups` (light groups by the names that lull takes),
 `objects` and `materials` (pass indices by name), `warnings`, and `remarks` on Cycles' usual settings.
@@ -195,7 +196,7 @@ def main():
     flatten.leave_copies(flat)
     flatten.undress_others(flat)
     base = os.path.join(what["folder"], what["name"])
-    environment, backdrop = world.write(scene, flat.camera, base, notes)
+    environment, backdrop = world.write(scene, layer, flat.camera, base, what["sharp"], notes)
     bpy.context.window.scene = flat
     path = base + what["suffix"]
     export(path)
