@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import tempfile
 import time
 
@@ -73,7 +74,7 @@ def export(scene, layer, folder, stopped, name="scene", suffix=".gltf", is_sharp
         code, output, ended = run(
             [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",
              "--enable-autoexec" if scripts else "--disable-autoexec", "--python-exit-code", "1",
-             "--python", _EXPORT, "--", json.dumps(what)], stopped)
+             "--python", _EXPORT, "--", json.dumps(what)], stopped, heard)
         if ended:
             return None
         if code != 0 or not os.path.exists(said):
@@ -113,6 +114,7 @@ class _Job:
         self.layer = depsgraph.view_layer.name
         self.view_layer = self.scene.view_layers[self.layer]
         self.passes = passes.wanted(self.scene, self.view_layer)
+        self.shown = time.monotonic()  # the progress of the export
         self.eye = depsgraph.scene.camera.matrix_world.translation.copy() if depsgraph.scene.camera else None
         self._measure(depsgraph.scene.render)
 
@@ -163,6 +165,13 @@ class _Job:
                                           "ended with exit code %d" % render.code))
         finally:
             engine.end_result(result)
+
+    def _show_export(self, said):
+        if time.monotonic() - self.shown < (_SECONDS_BETWEEN_LINES if bpy.app.background else _SECONDS_BETWEEN_VIEWS):
+            return
+        self.shown = time.monotonic()
+        if found := re.findall(r"^lull: (material \d+ of \d+)$", said, re.M):
+            self.engine.update_stats("", "Exporting " + found[-1])
 
     def _watch(self, render, result):
         """Shows the progress of the render until it ends."""

@@ -41,7 +41,8 @@ def prepare(made, baker, notes):
         for i, material in enumerate(o.data.materials):
             users.setdefault(material, {}).setdefault(o.data, (o, i))
     converted = {}
-    for material, meshes in users.items():
+    for i, (material, meshes) in enumerate(users.items()):
+        print(f"lull: material {i + 1} of {len(users)}", flush=True)
         converted[material] = _convert(material, meshes, baker, notes)
     done = set()
     for o in made:
