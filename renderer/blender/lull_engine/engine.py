@@ -100,7 +100,17 @@ def arguments(scene, exported, size):
         said += ["--exposure", "%.9g" % math.log2(scene.cycles.film_exposure)]
     if scene.view_settings.exposure:
         said += ["--view-exposure", "%.9g" % scene.view_settings.exposure]
-    return said
+    return said + _view(scene)
+
+
+def _view(scene):
+    """Returns the arguments for the view transform, which lull has by Blender's own configuration."""
+    name = scene.view_settings.view_transform
+    folder = bpy.utils.system_resource('DATAFILES', path="colormanagement")
+    config = os.environ.get("OCIO") or os.path.join(folder, "config.ocio")
+    if name == 'Standard' or scene.display_settings.display_device != 'sRGB' or not os.path.exists(config):
+        return []
+    return ["--ocio", config, "--view", name]
 
 
 class _Job:
