@@ -185,7 +185,7 @@ def main():
     made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], notes)
     lamps = lights.find(scene, wanted)
     add_camera(scene, flat, notes)
-    baker = bake.Baker(what["texture"])
+    baker = bake.Baker(what["texture"], flat)
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])
         flat.collection.objects.unlink(o)

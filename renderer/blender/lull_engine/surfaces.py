@@ -27,6 +27,7 @@ _DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Spec
              'Tint': (1, 1, 1)}
 # Values of Specular, and the differences of albedos.
 _MORE_THAN_SCHLICK = (0, 0.1, 0.25, 0.5, 0.75, 1), (0, -0.0116, -0.0008, 0.0061, 0.0084, 0.0087)
+_FINE = 0.005  # difference of neighbouring pixels, on average, from which an image has details of their size
 # Of one number for a whole material.
 _EVEN = ('IOR', 'Specular', 'Clearcoat', 'Clearcoat Roughness', 'Transmission')
 # Plain values of these are left out by glTF, or by its exporter.
@@ -534,7 +535,10 @@ class _Surface:
         return self._over_mesh(value)
 
     def _over_mesh(self, value, kind='EMIT'):
-        return self.baker.over_mesh(self.copy, value, self.object, self.original, kind)[:, :, :3]
+        pixels = self.baker.over_mesh(self.copy, value, self.object, self.original, kind)[:, :, :3]
+        if abs(np.diff(pixels, axis=1)).mean() > _FINE and self.baker.is_coarse(self.object):
+            self.notes.add(f"blurred, by images of {self.baker.size} pixels over whole meshes (Texture Size)", self.name, "materials")
+        return pixels
 
     def _even(self, name):
         pixels = self._pixels(name)
