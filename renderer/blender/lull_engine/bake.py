@@ -8,7 +8,7 @@ _PLAIN = 4  # pixels across, of a value that is the same everywhere
 
 
 class Baker:
-    """Bakes in a scene of its own. `size` is that of images that have no size of their own, in pixels."""
+    """Bakes in a scene of its own, for the view of another. `size` is that of images that have no size of their own, in pixels."""
 
     def __init__(self, size, view):
         self.size, self.view = size, view

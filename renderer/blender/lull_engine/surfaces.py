@@ -541,8 +541,10 @@ class _Surface:
         return pixels
 
     def _even(self, name):
-        pixels = self._pixels(name)
-        return float(pixels.reshape(-1, 3)[:, 0].mean())
+        values = self._pixels(name).reshape(-1, 3)[:, 0]
+        if np.ptp(values) > 0.05:
+            self.notes.add(f"of the same {name.lower()} everywhere", self.name, "materials")
+        return float(values.mean())
 
     @staticmethod
     def _layers(value):
