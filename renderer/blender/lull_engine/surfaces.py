@@ -15,6 +15,7 @@ from versions import HAS_ADDED_INTERFACE, principled_input
 _KNOWN = {'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP', 'SEPRGB', 'SEPARATE_COLOR', 'VERTEX_COLOR', 'REROUTE', 'TEX_COORD'}
 # What depends on the direction from which a surface is seen, or on who asks.
 _BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA'}
+_OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': ('Backfacing', 'Incoming'), 'TEX_COORD': ('Camera', 'Window', 'Reflection')}
 _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT_INFO', 'TANGENT', 'AMBIENT_OCCLUSION', 'BEVEL',
              'WIREFRAME', 'VERTEX_COLOR', 'ATTRIBUTE', 'TEX_NOISE', 'TEX_MUSGRAVE', 'TEX_VORONOI', 'TEX_WAVE', 'TEX_MAGIC',
              'TEX_CHECKER', 'TEX_BRICK', 'TEX_GRADIENT', 'TEX_WHITE_NOISE', 'TEX_ENVIRONMENT', 'TEX_SKY', 'TEX_POINTDENSITY',
@@ -131,6 +132,12 @@ def _upstream(socket):
             found.append(node)
             todo += [link.from_node for s in node.inputs for link in s.links]
     return found
+
+
+def _is_by_view(socket):
+    """Returns whether an output depends on the direction from which a surface is seen, or on who asks."""
+    return any(n.type in _BY_VIEW or any(o.links for o in n.outputs if o.name in _OUTPUTS_BY_VIEW.get(n.type, ()))
+               for n in _upstream(socket))
 
 
 def _is_whole(value):
@@ -284,9 +291,10 @@ class _Surface:
     def _mix_shader(self, node):
         a, b = self._closure(node.inputs[1]), self._closure(node.inputs[2])
         factor = self._value(node.inputs[0])
-        if a is None or b is None:
-            return a or b
-        if self._is_output(factor) and any(n.type in _BY_VIEW for n in _upstream(factor)):
+        if a is None and b is None:
+            return None
+        a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[1]), (b, node.inputs[2])))
+        if self._is_output(factor) and _is_by_view(factor):
             return self._mix_by_view(a, b, factor)
         if not self._is_output(factor) and factor in (0, 1):
             return b if factor else a
@@ -300,15 +308,25 @@ class _Surface:
             mixed['Normal'] = a.get('Normal', b.get('Normal'))
         return mixed
 
+    def _half(self, found, socket):
+        """Returns the parameters of a half of a mixture: black where nothing is linked, as in Cycles."""
+        if found is not None:
+            return found
+        if _source(socket) is None:
+            return dict(_DEFAULTS, **{'Base Color': (0, 0, 0)})
+        self.notes.add("in part in the viewport colour, as one of its surfaces is unknown", self.name, "materials")
+        return dict(_DEFAULTS, **{'Base Color': tuple(self.original.diffuse_color)[:3]})
+
     def _mix_by_view(self, a, b, factor):
         """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what the
         camera sees holds."""
-        is_ray = any(n.type == 'LIGHT_PATH' for n in _upstream(factor))
-        if not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
+        kinds = {n.type for n in _upstream(factor)}
+        is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
+        if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
             return dict(a, Specular=0.5, Roughness=b['Roughness'])
         clear, other = (a, b) if a['Alpha'] == 0 else (b, a)
         is_glass = clear['Alpha'] == 0 and other['Alpha'] == 1 and (other['Metallic'] == 1 or other['Transmission'] == 1)
-        if is_glass and not is_ray:
+        if is_glass and is_by_angle and not is_ray:
             return self._pane(clear, other, factor if clear is a else None)
         if is_glass and other['Transmission'] == 1:
             return self._lit_through(other)
@@ -343,8 +361,9 @@ class _Surface:
 
     def _add_shader(self, node):
         a, b = self._closure(node.inputs[0]), self._closure(node.inputs[1])
-        if a is None or b is None:
-            return a or b
+        if a is None and b is None:
+            return None
+        a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[0]), (b, node.inputs[1])))
         shines = a['Base Color'] == (0, 0, 0) and a['Radiance'] != (0, 0, 0)
         first, other = (b, a) if shines else (a, b)
         if other['Base Color'] != (0, 0, 0):
@@ -525,7 +544,7 @@ class _Surface:
             return value
         if not self._is_output(value):
             return np.array(_triple(value), np.float32)
-        if any(n.type in _BY_VIEW for n in _upstream(value)):
+        if _is_by_view(value):
             self.notes.add("the same from all sides and for all rays", self.name, "materials")
         place = _place_of(value)
         if place == 'all':
