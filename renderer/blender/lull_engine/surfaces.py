@@ -79,7 +79,7 @@ def _convert(material, meshes, baker, notes):
     surface = _Surface(material, meshes, notes)
     if surface.parameters is None:
         return _of_viewport(material)
-    if not surface.needs_mesh:
+    if not surface.needs_mesh and not surface.differs_by_mesh():
         return surface.write(baker, None)
     return {mesh: _Surface(material, meshes, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
 
@@ -193,6 +193,21 @@ class _Surface:
                 self.needs_mesh |= not self._is_known_normal(value)
             elif self._is_output(value) and not self._is_known(name, value):
                 self.needs_mesh |= _place_of(value) == 'mesh'
+
+    def differs_by_mesh(self):
+        """Returns whether meshes have UV maps that it names in other places: materials of glTF have their numbers."""
+        names = {n.uv_map for v in self.parameters.values() if self._is_output(v) for n in _upstream(v)
+                 if n.type in ('UVMAP', 'NORMAL_MAP') and n.uv_map}
+        return len({tuple(mesh.uv_layers.find(n) for n in sorted(names)) for mesh in self.meshes}) > 1
+
+    def _note_what_holds_of_the_whole(self, output):
+        p, notes = self.parameters, self.notes
+        if _source(output.inputs['Displacement']) and displacement_method(self.original) == 'BOTH':
+            notes.add("displaced as finely as meshes are, without bump", self.name, "materials")
+        if not getattr(self.original.cycles, "use_transparent_shadow", True) and (p['Alpha'] != 1 or self.copy.get("lull_thin")):
+            notes.add("letting light through where transparent", self.name, "materials")
+        if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for v in p.values() if self._is_output(v) for n in _upstream(v)):
+            notes.add("occluded by the same object alone", self.name, "materials")
 
     def _mark(self, node):
         """Leaves to the written file the values that the exporter cannot write."""
