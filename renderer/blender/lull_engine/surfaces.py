@@ -155,7 +155,7 @@ def _place_of(socket):
             if used != ['UV']:
                 return 'mesh'
         if node.type == 'TEX_IMAGE':
-            if node.projection != 'FLAT' or node.extension != 'REPEAT':
+            if node.projection != 'FLAT' or node.extension != 'REPEAT' or node.image and node.image.source == 'TILED':
                 return 'mesh'
             place = 'uv'
         if node.type == 'MAPPING':
