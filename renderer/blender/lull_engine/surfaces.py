@@ -9,7 +9,7 @@ import numpy as np
 import displacement
 import groups
 import solids
-from versions import HAS_ADDED_INTERFACE, principled_input
+from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 
 # Nodes that the exporter follows from an input of a Principled BSDF to an image.
 _KNOWN = {'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP', 'SEPRGB', 'SEPARATE_COLOR', 'VERTEX_COLOR', 'REROUTE', 'TEX_COORD'}
@@ -188,6 +188,7 @@ class _Surface:
         self._mark(_source(output.inputs['Surface']).node)
         if _source(output.inputs['Displacement']) and not displacement.moves(material):
             self.parameters['Normal'] = _source(output.inputs['Displacement'])  # with which the normals are baked
+        self._note_what_holds_of_the_whole(output)
         for name, value in self.parameters.items():
             if name == 'Normal':
                 self.needs_mesh |= not self._is_known_normal(value)
@@ -260,6 +261,8 @@ class _Surface:
         if HAS_ADDED_INTERFACE:
             found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
             self.copy["lull_adds"] = True
+        if found['Clearcoat'] != 0 and principled_input(node, 'Clearcoat Normal').links:
+            self.notes.add("with the normals of the surface on its clear coat", self.name, "materials")
         emission = principled_input(node, 'Emission')
         found['Radiance'] = self._times(self._value(emission), self._value(node.inputs['Emission Strength']))
         for name in _UNSAID:
@@ -283,7 +286,10 @@ class _Surface:
     def _bsdf_glossy(self, node):
         return self._made(node, Base_Color=self._value(node.inputs['Color']), Metallic=1, Roughness=self._roughness(node))
 
-    _bsdf_anisotropic = _bsdf_glossy
+    def _bsdf_anisotropic(self, node):
+        if node.inputs['Anisotropy'].links or node.inputs['Anisotropy'].default_value != 0:
+            self.notes.add("without anisotropic", self.name, "materials")
+        return self._bsdf_glossy(node)
 
     def _bsdf_glass(self, node):
         return self._made(node, Base_Color=self._value(node.inputs['Color']), Transmission=1, Specular=0.5,
@@ -320,6 +326,8 @@ class _Surface:
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
         if 'Normal' in a or 'Normal' in b:
+            if a.get('Normal') != b.get('Normal'):
+                self.notes.add("with the normals of the first of mixed surfaces that has any", self.name, "materials")
             mixed['Normal'] = a.get('Normal', b.get('Normal'))
         return mixed
 
@@ -343,7 +351,7 @@ class _Surface:
         is_glass = clear['Alpha'] == 0 and other['Alpha'] == 1 and (other['Metallic'] == 1 or other['Transmission'] == 1)
         if is_glass and is_by_angle and not is_ray:
             return self._pane(clear, other, factor if clear is a else None)
-        if is_glass and other['Transmission'] == 1:
+        if is_glass and is_ray and other['Transmission'] == 1:
             return self._lit_through(other)
         self.notes.add("the same from all sides and for all rays", self.name, "materials")
         if is_ray:
@@ -490,6 +498,7 @@ class _Surface:
     def write(self, baker, o):
         """Returns the new material. `o` is the object on whose mesh is baked what depends on it."""
         self.baker, self.object = baker, o
+        self.copy.use_backface_culling = False  # which Cycles ignores, and glTF does not
         self._divide_base()
         new = self.tree.nodes.new('ShaderNodeBsdfPrincipled')
         self._write_normal(new)
