@@ -42,8 +42,12 @@ def flatten(flat, wanted, override, notes):
         if key not in meshes:
             meshes[key] = _mesh(o, instance.is_instance, graph, override)
         if meshes[key] is not None:
+            if instance.is_instance:
+                copied[key] = copied.get(key, 0) + 1
             made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
             shown.add(o.original)
+    if override is None:
+        _note_copies({name for key, n in copied.items() if n > 1 for name in key[2] if name}, notes)
     for original in shown:
         _note_of(original, notes)
     return made
@@ -135,6 +139,24 @@ def undress_others(flat):
     for mesh in bpy.data.meshes:
         if mesh not in used:
             mesh.materials.clear()
+
+
+def _note_copies(names, notes):
+    """Notes those of the materials of copies that ask which copy they are on."""
+    for name in names:
+        material = bpy.data.materials[name]
+        if material.use_nodes and _asks_for_copy(material.node_tree):
+            notes.add("the same on all copies", name, "materials")
+
+
+def _asks_for_copy(tree):
+    for node in tree.nodes:
+        used = {o.name for o in node.outputs if o.links}
+        if node.type == 'GROUP' and node.node_tree and _asks_for_copy(node.node_tree) or node.type == 'PARTICLE_INFO' and used or \
+                node.type == 'OBJECT_INFO' and used & {'Location', 'Random'} or \
+                node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER':
+            return True
+    return False
 
 
 def _note_of(original, notes):
