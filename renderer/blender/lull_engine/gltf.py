@@ -126,7 +126,7 @@ def _shines(root, node):
     return any(max(m.get("emissiveFactor", [0])) > 0 for m in materials)
 
 
-def _patch_nodes(root, groups):
+def _patch_nodes(root, groups, notes):
     """Gives nodes the meshes that they share with others, and the names of Blender's objects, or that of their light group.
 
     Returns: the names of groups that shine.
@@ -139,7 +139,11 @@ def _patch_nodes(root, groups):
             node["mesh"] = meshes[mesh]
         node["name"] = extras.pop("lull_source", node.get("name", ""))
         group = extras.pop("lull_group", None)
-        if group in groups and _shines(root, node) and (group in found or len(found) < _MOST_GROUPS):
+        if group not in groups or not _shines(root, node):
+            continue
+        if group not in found and len(found) == _MOST_GROUPS:
+            notes.add(f"black in its pass, as one of more than {_MOST_GROUPS}", group, "light groups")
+        else:
             node["name"] = found.setdefault(group, f"light group {len(found)}")
     return found
 
@@ -156,6 +160,6 @@ def patch(path, groups, notes):
     used = {name for m in root.get("materials", []) for name in m.get("extensions", {})}
     if used:
         root["extensionsUsed"] = sorted({*root.get("extensionsUsed", []), *used})
-    found = _patch_nodes(root, groups)
+    found = _patch_nodes(root, groups, notes)
     _write(path, root, rest)
     return found
