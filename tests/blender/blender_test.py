@@ -46,9 +46,9 @@ class AddOn(unittest.TestCase):
         os.makedirs(user / "scripts/addons")
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
-        for frame, names in (1, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur"]), (11, ["skin"]):
-            what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": 4 * SPP,
-                    "frame": frame}
+        for frame, spp, names in ((1, 4 * SPP, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur"]),
+                                  (11, 4 * SPP, ["skin"]), (1, 0, ["doubtful"])):
+            what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": spp, "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
                         json.dumps(what))
 
@@ -132,6 +132,9 @@ class AddOn(unittest.TestCase):
     def test_glass_under_an_image(self):
         passes, said = self.render("glass")
         self.assert_close("glass", passes, 0.01, 0.02)
+        cycles = self.read("glass.cycles", None)
+        behind = (cycles["Depth.Z"] > 1e9) & (passes["Depth.Z"] > 1e9)
+        self.assertLess(np.percentile(abs(rgb(passes) - rgb(cycles))[behind], 95), 0.01)  # the world, as sharp as there
         self.assertNotIn("Warning", said)
 
     def test_alpha_portals_and_a_sun(self):
@@ -171,6 +174,14 @@ class AddOn(unittest.TestCase):
             got, wanted = (rgb(p, "Combined_" + group).mean() for p in (passes, cycles))
             self.assertAlmostEqual(got / wanted, 1, delta=0.02, msg=group)
         self.assertEqual(rgb(passes, "Combined_none").max(), 0)
+
+    def test_passes_by_the_names_that_composites_link(self):
+        passes, said = self.render("passes", SAMPLES + "c = scene.view_layers[0].cycles; c.denoising_store_passes = True; "
+                                   "c.pass_debug_sample_count = c.use_pass_volume_direct = True")
+        for theirs, ours in (("Denoising Normal.X", "Normal.X"), ("Denoising Albedo.G", "Albedo.G"), ("Denoising Depth.Z", "Depth.Z"),
+                             ("Noisy Image.R", "Combined.R"), ("Debug Sample Count.X", "Samples.X")):
+            self.assertTrue((passes[theirs] == passes[ours]).all(), theirs)
+        self.assertIn("passes that lull lacks are missing: uv, volume direct", said)
 
     def test_brightens_as_the_film_and_the_view_do(self):
         once, _ = self.render("lamps")
@@ -298,6 +309,31 @@ bpy.data.lights['Light'].use_shadow = False""")
         for text in ("1 object is shown as surfaces, not as shadow catchers or holdouts: 'Cube'", "1 material is without subsurface: 'Material'",
                      "1 light is casting shadows all the same: 'Light'"):
             self.assertEqual(said.count(text), 1, said)
+
+
+    def test_warns_of_all_that_differs(self):
+        passes, said = self.render("doubtful", SAMPLES + "s.texture = 64")
+        for text in (
+                "1 material is the same from all sides and for all rays: 'one-sided'",
+                "1 material is with the normals of the first of mixed surfaces that has any: 'bumped'",
+                "1 material is displaced as finely as meshes are, without bump: 'moved'",
+                "1 material is letting light through where transparent: 'veiled'",
+                "1 material is with the normals of the surface on its clear coat: 'coated'",
+                "1 material is in part in the viewport colour, as one of its surfaces is unknown: 'half known'",
+                "1 material is of the same transmission everywhere: 'patchy'",
+                "1 material is occluded by the same object alone: 'shaded'",
+                "1 material is without anisotropic: 'brushed'",
+                "blurred, by images of 64 pixels over whole meshes (Texture Size): 'fine'",
+                "1 material is the same on all copies: 'random'",
+                "1 light group is black in its pass, as one of more than 16: 'group",
+                "1 light is left out, taking light away: 'dark'",
+                "1 light is seen by the camera: 'edge'",
+                "1 object is shown although Cycles culls by the camera or the distance: 'edge'",
+                "glass is opaque before a transparent background",
+                "differs: all bounces are traced, without Cycles' fast approximation",
+                "noise is judged without the look 'High Contrast'"):
+            self.assertEqual(said.count(text), 1, text + "\n" + said)
+        self.assertGreater(rgb(passes).mean(), 0)
 
 
 if __name__ == "__main__":

@@ -324,6 +324,70 @@ def fur(folder):
     camera((0, -7, 2), (1.35, 0, 0), lens=35, clip_start=2)
 
 
+def doubtful(folder):
+    """What differs, with a warning: a material each, lamps and copies."""
+    scene = bpy.context.scene
+
+    def shader(made, kind, **inputs):
+        node = made.node_tree.nodes.new('ShaderNode' + kind)
+        for key, value in inputs.items():
+            node.inputs[key].default_value = value
+        return node
+
+    def mixed(name, first, second, kind=None, output=0):
+        made = material(name, first)
+        tree = made.node_tree
+        front, mix = tree.nodes[-1], shader(made, 'MixShader')
+        tree.links.new(front.outputs[0], mix.inputs[1])
+        if second:
+            tree.links.new(shader(made, second).outputs[0], mix.inputs[2])
+        if kind:
+            tree.links.new(shader(made, kind).outputs[output], mix.inputs[0])
+        tree.links.new(mix.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])
+        return made, front
+
+    def fed(name, socket, kind, output=0, **inputs):
+        made = material(name, 'BsdfPrincipled')
+        made.node_tree.links.new(shader(made, kind, **inputs).outputs[output], made.node_tree.nodes["Principled BSDF"].inputs[socket])
+        return made
+
+    bumped, front = mixed("bumped", 'BsdfDiffuse', 'BsdfGlossy')
+    bumped.node_tree.links.new(shader(bumped, 'Bump').outputs[0], front.inputs['Normal'])
+    moved = matte("moved")
+    moved.node_tree.links.new(shader(moved, 'Displacement').outputs[0], moved.node_tree.get_output_node('CYCLES').inputs['Displacement'])
+    moved.cycles.displacement_method = 'BOTH'
+    veiled, _ = mixed("veiled", 'BsdfDiffuse', 'BsdfTransparent')
+    veiled.cycles.use_transparent_shadow = False
+    coated = fed("coated", 'Clearcoat Normal', 'Bump')
+    coated.node_tree.nodes["Principled BSDF"].inputs['Clearcoat'].default_value = 1
+    shown = [mixed("one-sided", 'BsdfDiffuse', 'BsdfTransparent', 'NewGeometry', 'Backfacing')[0], bumped, moved, veiled, coated,
+             mixed("half known", 'BsdfDiffuse', 'BsdfHairPrincipled')[0], fed("patchy", 'Transmission', 'TexChecker'),
+             fed("shaded", 'Base Color', 'AmbientOcclusion'), material("brushed", 'BsdfAnisotropic', Anisotropy=0.5)]
+    for i, made in enumerate(shown):
+        sphere(made, (i - 4, 0, 0.4), 0.4)
+    floor(fed("fine", 'Base Color', 'TexNoise', 1, Scale=500)).scale = (10, 10, 1)
+
+    parts = bpy.data.collections.new("parts")
+    bpy.ops.mesh.primitive_cube_add(size=0.3)
+    parts.objects.link(dress(fed("random", 'Roughness', 'ObjectInfo', 'Random')))
+    scene.collection.objects.unlink(bpy.context.object)
+    for x in -1, 1:
+        copy = bpy.data.objects.new("copy", None)
+        copy.location, copy.instance_type, copy.instance_collection = (x, -1, 0.3), 'COLLECTION', parts
+        scene.collection.objects.link(copy)
+
+    for i in range(17):
+        name = scene.view_layers[0].lightgroups.add().name = f"group {i}"
+        lamp('POINT', 10, (i - 8, 0, 3)).lightgroup = name
+    lamp('POINT', -10, (0, 0, 4)).name = "dark"
+    edge = lamp('AREA', 10, (-5, 0, 1.5), (0, -math.pi / 4, 0), size=5)
+    edge.name, edge.visible_camera = "edge", False
+    scene.render.film_transparent = scene.cycles.film_transparent_glass = True
+    scene.render.use_simplify = scene.cycles.use_camera_cull = edge.cycles.use_camera_cull = True
+    scene.cycles.use_fast_gi, scene.view_settings.look = True, 'High Contrast'
+    camera((0, -7, 3.2), (1.2, 0, 0), lens=35)
+
+
 def factory(folder):
     """Blender's own scene."""
     bpy.ops.wm.read_factory_settings()
@@ -339,6 +403,7 @@ def main():
         r.resolution_x, r.resolution_y = o["size"]
         c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
         c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = 12
+        c.pixel_filter_type, c.filter_width = 'BOX', 1
         path = os.path.join(o["folder"], name)
         bpy.ops.wm.save_as_mainfile(filepath=path + ".blend", check_existing=False)
         if not o["spp"]:
@@ -347,7 +412,6 @@ def main():
         r.image_settings.file_format, r.image_settings.color_depth = 'OPEN_EXR_MULTILAYER', '32'
         r.image_settings.exr_codec = 'ZIP'
         c.samples, c.use_denoising, c.use_adaptive_sampling = o["spp"], False, False
-        c.pixel_filter_type, c.filter_width = 'BOX', 1
         for used in scene.view_layers:
             used.use_pass_z = used.use_pass_normal = True
         scene.frame_set(o.get("frame", 1))

@@ -268,6 +268,11 @@ def area_unseen(scene):
     lamp('AREA', 50, (-1.5, 1, 1.5), (math.pi / 2, 0, 0), size=1).visible_camera = False
 
 
+@case("edge of an area lamp that the camera does not see")
+def area_unseen_edge(scene):
+    lamp('AREA', 200, (-4, 0, 1.5), (0, -math.pi / 4, 0), size=3).visible_camera = False
+
+
 @case("area lamp as a portal")
 def portal(scene):
     lamp('AREA', 100, (0, 2, 1.5), (-1.57, 0, 0), size=2).data.cycles.is_portal = True
@@ -326,6 +331,11 @@ def spot_penumbra(scene):
     only('SPOT', 800, (0, 0, 4), shadow_soft_size=0.25, spot_size=1.2)
     wall(matte("card", (0, 0, 0, 1)), x=2).matrix_world = Matrix.LocRotScale((-2, 1, 2), Euler((math.pi / 2, 0, 0)), (1, 1, 1))
     camera((0, 0, 1.5), (0, 0, 0), type='ORTHO', ortho_scale=3)
+
+
+@case("lamp of negative strength")
+def negative_lamp(scene):
+    lamp('POINT', -20, (0, -2, 2))
 
 
 @case("lamp without shadows")
@@ -470,6 +480,18 @@ def override(scene):
     scene.view_layers[0].material_override = matte("clay", (0.8, 0.8, 0.8, 1))
 
 
+@case("view layer without the sky and strands")
+def layer_without(scene):
+    hair(scene)
+    scene.view_layers[0].use_sky = scene.view_layers[0].use_strand = False
+
+
+@case("view layer without surfaces")
+def layer_of_strands(scene):
+    hair(scene)
+    scene.view_layers[0].use_solid = False
+
+
 @case("sheared object")
 def sheared(scene):
     without("ball")
@@ -478,6 +500,60 @@ def sheared(scene):
     parent.scale = (3, 1, 1)
     o = cube(matte("box", (0.6, 0.2, 0.1, 1)), rotation=(0, 0, 0.7))
     o.parent = parent
+
+
+@case("empty slot of a material")
+def empty_slot(scene):
+    the("ball").data.materials.append(None)
+    made, shown, _, tree = textured()
+    tree.links.new(node(tree, 'ShaderNodeUVMap', uv_map="UVMap").outputs[0], shown.inputs[0])
+    wall(made).location.y = 1
+    ball(matte("red", (0.6, 0.2, 0.1, 1))).data.materials.append(None)
+    the("ball").data.polygons[0].material_index = 1
+
+
+@case("instanced collection outside the scene, with an object hidden from renders")
+def instanced_collection(scene):
+    without("ball")
+    parts = bpy.data.collections.new("parts")
+    shown = cube(matte("shown", (0.6, 0.2, 0.1, 1)))
+    shown.modifiers.new("round", 'SUBSURF').render_levels = 3
+    cutter = cube(matte("cutter", (0.1, 0.8, 0.1, 1)), 0.6, (0.4, -0.4, 0.8))
+    cutter.hide_render = True
+    cut = shown.modifiers.new("cut", 'BOOLEAN')
+    cut.object = cutter
+    unseen = cube(matte("unseen", (0.1, 0.8, 0.1, 1)), 0.6, (1.5, 0, 0.3))
+    unseen.hide_viewport = True
+    for o in shown, cutter, unseen:
+        parts.objects.link(o)
+        scene.collection.objects.unlink(o)
+    copy = bpy.data.objects.new("copy", None)
+    copy.instance_type, copy.instance_collection = 'COLLECTION', parts
+    scene.collection.objects.link(copy)
+
+
+@case("other values in the viewport: particles, curves, Screw, metaballs, geometry nodes")
+def viewport_values(scene):
+    particle_objects(scene)
+    bpy.data.particles[0].display_method = 'PATH'
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.7, location=(1.5, -1, 0.8))
+    bpy.context.object.data.bevel_depth, bpy.context.object.data.resolution_u = 0.2, 1
+    bpy.context.object.data.render_resolution_u = 12
+    bpy.ops.object.metaball_add(location=(-2, 0, 0.8), radius=1)
+    bpy.context.object.data.resolution = 1
+    rod = cube(matte("rod", (0.6, 0.2, 0.1, 1)), 0.3, (0, -1.5, 1))
+    screw = rod.modifiers.new("screw", 'SCREW')
+    screw.angle, screw.screw_offset, screw.steps, screw.render_steps = 0.1, 1, 2, 16
+    group = bpy.data.node_groups.new("late", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, switch, asks = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeSwitch', 'GeometryNodeIsViewport'))
+    switch.input_type = 'GEOMETRY'
+    geometry = [s for s in switch.inputs if s.type == 'GEOMETRY']
+    group.links.new(inlet.outputs[0], geometry[0])
+    group.links.new(next(s for s in switch.outputs if s.type == 'GEOMETRY'), outlet.inputs[0])
+    group.links.new(asks.outputs[0], switch.inputs[1])
+    cube(matte("late", (0.1, 0.2, 0.6, 1)), 0.6, (-1, -1.5, 0.4)).modifiers.new("late", 'NODES').node_group = group
 
 
 @case("negative scale")
@@ -772,6 +848,32 @@ def glass_by_rays(scene):
     dressed(made)
 
 
+def sheet(made):
+    """Puts a plane before the wall, in the way of the sun."""
+    wall(matte("red", (0.6, 0.2, 0.1, 1))).location.y = 1
+    only('SUN', 3, (0, 0, 9), (0.9, 0, 0), angle=0)
+    o = wall(made, x=2, z=2.2)
+    o.location.y = -1
+
+
+@case("pane: Transparent and Glossy by Fresnel")
+def pane_by_fresnel(scene):
+    made, clear, tree = surface('BsdfTransparent', Color=(0.9, 0.95, 0.9, 1))
+    shine, fresnel, mix = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfGlossy', 'Fresnel', 'MixShader'))
+    shine.inputs['Roughness'].default_value, shine.inputs['Color'].default_value = 0, (1, 1, 1, 1)
+    for a, b in ((fresnel.outputs[0], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2])):
+        tree.links.new(a, b)
+    cover(mix, tree)
+    sheet(made)
+
+
+@case("pane: plane of Glass without a shadow by Light Path")
+def pane_by_rays(scene):
+    glass_by_rays(scene)
+    made = the("ball").data.materials[0]
+    sheet(made)
+
+
 @case("Mix by Fresnel: Diffuse and Glossy")
 def coated(scene):
     made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
@@ -836,6 +938,16 @@ def repeated(scene):
     dressed(made)
 
 
+@case("image texture: data read as colours, and colours as data")
+def colour_spaces(scene):
+    made, shown, bsdf, tree = textured()
+    shown.image.colorspace_settings.name = 'Non-Color'
+    rough = node(tree, 'ShaderNodeTexImage', image=image(np.ones((64, 64, 3)) * 0.5, "rough", 'sRGB'))
+    tree.links.new(rough.outputs[0], bsdf.inputs['Roughness'])
+    bsdf.inputs['Specular'].default_value = 1
+    wall(made)
+
+
 @case("image texture: Clip")
 def clip(scene):
     made, shown, _, tree = textured(np.ones((8, 8, 3)) * (0.8, 0.1, 0.1), extension='CLIP')
@@ -868,6 +980,18 @@ def no_uvs(scene):
     dressed(textured()[0])
     layers = the("ball").data.uv_layers
     layers.remove(layers[0])
+
+
+@case("image texture over the second of two sets of UVs, and bump")
+def two_uvs(scene):
+    made, shown, bsdf, tree = textured()
+    tree.links.new(node(tree, 'ShaderNodeUVMap', uv_map="small").outputs[0], shown.inputs[0])
+    bumped = node(tree, 'ShaderNodeBump', Strength=0.2)
+    tree.links.new(node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[0], bumped.inputs['Height'])
+    tree.links.new(bumped.outputs[0], bsdf.inputs['Normal'])
+    layer = wall(made).data.uv_layers.new(name="small")
+    for loop in layer.data:
+        loop.uv *= 0.5
 
 
 @case("image texture times a colour")

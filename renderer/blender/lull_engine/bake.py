@@ -3,14 +3,15 @@ import bpy
 import numpy as np
 
 _UV = "lull"  # the layer of meshes whose own UVs do not fit
+_USED = 0.6  # of an image, by the faces of an unwrapped mesh
 _PLAIN = 4  # pixels across, of a value that is the same everywhere
 
 
 class Baker:
-    """Bakes in a scene of its own. `size` is that of images that have no size of their own, in pixels."""
+    """Bakes in a scene of its own, for the view of another. `size` is that of images that have no size of their own, in pixels."""
 
-    def __init__(self, size):
-        self.size = size
+    def __init__(self, size, view):
+        self.size, self.view = size, view
         self.scene = bpy.data.scenes.new('lull bake')
         self.scene.render.engine = 'CYCLES'
         self.scene.cycles.samples = 1
@@ -35,7 +36,26 @@ class Baker:
         o.data = o.data.copy()
         o.data.uv_layers.active = o.data.uv_layers[_UV]
         others = [i for i, m in enumerate(o.data.materials) if m != slot]
-        return self._bake(material, socket, o, self.size, others, kind)
+        pixels = self._bake(material, socket, o, self.size, others, kind)
+        baked = pixels[:, :, 3] > 0
+        if baked.any():  # others do not count in averages
+            pixels[~baked] = pixels[baked].mean(0)
+        return pixels
+
+    def is_coarse(self, o):
+        """Returns whether pixels over the mesh of an object are wider than two pixels of the view, where it is nearest."""
+        camera, matrix = self.view.camera, np.array(o.matrix_world)
+        eye = np.array(o.matrix_world.inverted() @ camera.matrix_world.translation)
+        corners = np.array(o.bound_box)
+        near = matrix[:3, :3] @ (np.clip(eye, corners.min(0), corners.max(0)) - eye)
+        areas = np.empty(len(o.data.polygons))
+        o.data.polygons.foreach_get("area", areas)
+        area = areas.sum() * abs(np.linalg.det(matrix[:3, :3])) ** (2 / 3)
+        r, lens = self.view.render, camera.data
+        sides = {'HORIZONTAL': r.resolution_x, 'VERTICAL': r.resolution_y}
+        side = sides.get(lens.sensor_fit, max(sides.values())) * r.resolution_percentage / 100
+        width = lens.ortho_scale if lens.type == 'ORTHO' else 2 * np.tan(lens.angle / 2) * np.linalg.norm(near)
+        return np.sqrt(area / _USED) / self.size > 2 * width / side
 
     def end(self):
         bpy.data.scenes.remove(self.scene)

@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import tempfile
 import time
 
@@ -55,8 +56,9 @@ class LullEngine(bpy.types.RenderEngine):
             self.report({'ERROR'}, str(e))  # and in the terminal
 
 
-def export(scene, layer, folder, stopped, name="scene", suffix=".gltf"):
-    """Writes a view layer as NAME.gltf or NAME.glb, in another Blender, which leaves the scene unchanged.
+def export(scene, layer, folder, stopped, name="scene", suffix=".gltf", is_sharp=False, heard=lambda said: None):
+    """Writes a view layer as NAME.gltf or NAME.glb, in another Blender, which leaves the scene unchanged; with the world behind it
+    as a picture of its own if that `is_sharp`. `heard` is called with what that Blender has printed so far.
 
     Returns: the result of export.py; None if `stopped` has returned true. Raises: Failure.
     """
@@ -65,13 +67,14 @@ def export(scene, layer, folder, stopped, name="scene", suffix=".gltf"):
     bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
     what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
             "folder": folder, "name": name, "suffix": suffix, "frame": scene.frame_current, "subframe": scene.frame_subframe,
-            "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "said": said}
+            "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "sharp": is_sharp,
+            "said": said}
     scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
     try:
         code, output, ended = run(
             [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",
              "--enable-autoexec" if scripts else "--disable-autoexec", "--python-exit-code", "1",
-             "--python", _EXPORT, "--", json.dumps(what)], stopped)
+             "--python", _EXPORT, "--", json.dumps(what)], stopped, heard)
         if ended:
             return None
         if code != 0 or not os.path.exists(said):
@@ -97,7 +100,17 @@ def arguments(scene, exported, size):
         said += ["--exposure", "%.9g" % math.log2(scene.cycles.film_exposure)]
     if scene.view_settings.exposure:
         said += ["--view-exposure", "%.9g" % scene.view_settings.exposure]
-    return said
+    return said + _view(scene)
+
+
+def _view(scene):
+    """Returns the arguments for the view transform, which lull has by Blender's own configuration."""
+    name = scene.view_settings.view_transform
+    folder = bpy.utils.system_resource('DATAFILES', path="colormanagement")
+    config = os.environ.get("OCIO") or os.path.join(folder, "config.ocio")
+    if name == 'Standard' or scene.display_settings.display_device != 'sRGB' or not os.path.exists(config):
+        return []
+    return ["--ocio", config, "--view", name]
 
 
 class _Job:
@@ -111,6 +124,7 @@ class _Job:
         self.layer = depsgraph.view_layer.name
         self.view_layer = self.scene.view_layers[self.layer]
         self.passes = passes.wanted(self.scene, self.view_layer)
+        self.shown = time.monotonic()  # the progress of the export
         self.eye = depsgraph.scene.camera.matrix_world.translation.copy() if depsgraph.scene.camera else None
         self._measure(depsgraph.scene.render)
 
@@ -133,7 +147,7 @@ class _Job:
     def run(self):
         lull, engine = find_lull(), self.engine
         engine.update_stats("", "Exporting")
-        exported = export(self.scene, self.layer, self.folder, engine.test_break)
+        exported = export(self.scene, self.layer, self.folder, engine.test_break, is_sharp=True, heard=self._show_export)
         if exported is None:
             return
         for warning in exported["warnings"]:
@@ -161,6 +175,13 @@ class _Job:
                                           "ended with exit code %d" % render.code))
         finally:
             engine.end_result(result)
+
+    def _show_export(self, said):
+        if time.monotonic() - self.shown < (_SECONDS_BETWEEN_LINES if bpy.app.background else _SECONDS_BETWEEN_VIEWS):
+            return
+        self.shown = time.monotonic()
+        if found := re.findall(r"^lull: (material \d+ of \d+)$", said, re.M):
+            self.engine.update_stats("", "Exporting " + found[-1])
 
     def _watch(self, render, result):
         """Shows the progress of the render until it ends."""
@@ -194,14 +215,16 @@ class _Job:
             raise Failure(str(e)) from e
         for made in self.passes:
             self.engine.add_pass(made.name, len(made.channels), made.channels, layer=self.layer)
+        if exported["backdrop"] and not self.is_transparent:
+            behind = (1 - channels["A"][..., None]) * self._backdrop(exported["backdrop"])
+            for name in channels.keys() & {prefix + c for prefix in ("", "noisy.", "light.environment.") for c in "RGB"}:
+                channels[name] = channels[name] + behind[..., "RGB".index(name[-1])]
         targets = result.layers[0].passes
         combined = np.ones((self.size[1], self.size[0], 4), np.float32)
         for i, name in enumerate("RGB"):
             combined[:, :, i] = channels[name]
         if self.is_transparent:  # colours are multiplied by it, as Blender wants them
             combined[:, :, 3] = channels["A"]
-        elif exported["backdrop"]:
-            combined[:, :, :3] += (1 - channels["A"][..., None]) * self._backdrop(exported["backdrop"])
         _set(targets["Combined"], combined)
         picture = passes.Picture(channels, attributes, exported, self.scene, self.eye)
         for made in self.passes:

@@ -1,7 +1,8 @@
 """Writes a scene as glTF, in a Blender of its own, whose data may be changed (see engine.py).
 
 The last argument is a JSON object: the file, the names of scene, view layer and its material override (or
-null), the frame, the size of baked images, whether slabs of glass become sheets, the number of bounces, the output folder, the
+null), the frame, the size of baked images, whether slabs of glass become sheets and whether
+the world is photographed where one image of all directions is less sharp, the number of bounces, the output folder, the
 name of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
 of the background of a world that has another light, or null), `groups` (light groups by the names that lull takes),
 `objects` and `materials` (pass indices by name), `warnings`, and `remarks` on Cycles' usual settings.
@@ -53,29 +54,44 @@ def rendered_objects(layer_collection):
 
 
 def show_as_rendered(scene, layer):
-    """Sets the visibility of the viewport, which the exporter uses, to that of a render."""
+    """Sets what the viewport shows, which can be read, to what a render does, also in collections that have copies alone."""
     wanted = rendered_objects(layer.layer_collection)
-    collections = [layer.layer_collection]
-    for collection in collections:
-        collections += collection.children
+    for collection in _collections(layer.layer_collection):
         collection.hide_viewport = False
-        collection.collection.hide_viewport = False
-    for o in scene.objects:
-        o.hide_render = o not in wanted
-        o.hide_viewport = False  # dependencies are evaluated, too
+    for collection in bpy.data.collections:
+        collection.hide_viewport = collection.hide_render
+    for o in bpy.data.objects:
+        o.hide_viewport = o.hide_render
         if o.name in layer.objects:
-            o.hide_set(o.hide_render)
+            o.hide_set(o not in wanted)
         o.show_instancer_for_viewport = o.show_instancer_for_render
-        for system in o.particle_systems:
-            system.settings.display_percentage = 100
         for modifier in o.modifiers:
             modifier.show_viewport = modifier.show_render
-            if hasattr(modifier, "render_levels"):
-                modifier.levels = modifier.render_levels
-    strands.prepare(scene)
+            for shown, rendered in (("levels", "render_levels"), ("steps", "render_steps"), ("viewport_resolution", "resolution")):
+                if hasattr(modifier, shown) and hasattr(modifier, rendered):
+                    setattr(modifier, shown, getattr(modifier, rendered))
+    for settings in bpy.data.particles:
+        settings.display_percentage, settings.display_method = 100, 'RENDER'
+    for curve in bpy.data.curves:
+        curve.resolution_u = curve.render_resolution_u or curve.resolution_u
+        curve.resolution_v = curve.render_resolution_v or curve.resolution_v
+    for ball in bpy.data.metaballs:
+        ball.resolution = ball.render_resolution
+    for tree in bpy.data.node_groups:
+        _deny_viewport(tree)
+    strands.prepare()
     r = scene.render
     r.simplify_subdivision, r.simplify_child_particles = r.simplify_subdivision_render, r.simplify_child_particles_render
     return wanted
+
+
+def _deny_viewport(tree):
+    """Lets geometry nodes that ask for the viewport know that there is none."""
+    for node in [n for n in tree.nodes if n.type == 'IS_VIEWPORT']:
+        answer = tree.nodes.new('FunctionNodeInputBool')
+        answer.boolean = False
+        for link in list(node.outputs[0].links):
+            tree.links.new(answer.outputs[0], link.to_socket)
 
 
 def note_film(scene, notes):
@@ -83,13 +99,21 @@ def note_film(scene, notes):
         notes.say("there is no motion blur")
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
         notes.say("pixels are square, whatever their aspect")
+    if scene.render.film_transparent and scene.cycles.film_transparent_glass:
+        notes.say("glass is opaque before a transparent background")
+    if scene.render.use_simplify and (scene.cycles.use_camera_cull or scene.cycles.use_distance_cull):
+        for o in scene.objects:
+            if o.cycles.use_camera_cull or o.cycles.use_distance_cull:
+                notes.add("shown although Cycles culls by the camera or the distance", o.name)
     if any(c.indirect_only or c.holdout for c in _collections(bpy.context.view_layer.layer_collection)):
         notes.say("collections that are indirect only or holdouts are shown as any others")
 
 
 def limits(scene, depth):
-    """Returns a sentence about the limits of Cycles that lull has not; none where Cycles has none."""
-    c, found = scene.cycles, []
+    """Returns sentences about what Cycles has and lull has not: none about the usual settings that change nothing."""
+    c, r, found = scene.cycles, scene.render, []
+    if c.max_bounces < depth:
+        found.append(f"{c.max_bounces} bounces")
     for name in "diffuse", "glossy", "transmission":
         if getattr(c, name + "_bounces") < min(depth, c.max_bounces):
             found.append(f"{getattr(c, name + '_bounces')} {name} bounces")
@@ -97,7 +121,27 @@ def limits(scene, depth):
         found.append("clamping")
     if not (c.caustics_reflective and c.caustics_refractive):
         found.append("no caustics")
-    return ["differs: limits of Cycles do not hold, and rooms are brighter: " + ", ".join(found)] if found else []
+    said = ["differs: limits of Cycles do not hold, and rooms are brighter: " + ", ".join(found)] if found else []
+    if c.use_fast_gi:
+        said.append("differs: all bounces are traced, without Cycles' fast approximation")
+    if c.blur_glossy > 0:
+        said.append("differs: caustics of rough surfaces are sharper, without Cycles' Filter Glossy")
+    if c.transparent_max_bounces < 8:
+        said.append(f"differs: rays pass any number of transparent surfaces, not {c.transparent_max_bounces}")
+    if r.use_simplify and c.texture_limit_render != 'OFF':
+        said.append("differs: textures have their full size")
+    if c.pixel_filter_type != 'BOX' or c.filter_width != 1:
+        said.append("differs: edges are sharper: a pixel is the mean over its square, whatever Cycles' filter")
+    return said + _unjudged(scene)
+
+
+def _unjudged(scene):
+    """Returns a sentence about what changes the colours of a picture and is unknown to lull, which only judges noise by them."""
+    view = scene.view_settings
+    found = [f"the look '{view.look}'"] * (view.look != 'None') + ["gamma"] * (view.gamma != 1) + \
+        ["curves"] * view.use_curve_mapping + [f"a display of {scene.display_settings.display_device}"] * \
+        (scene.display_settings.display_device != 'sRGB')
+    return ["noise is judged without " + ", ".join(found)] if found else []
 
 
 def _collections(collection):
@@ -169,7 +213,7 @@ def main():
     made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], notes)
     lamps = lights.find(scene, wanted)
     add_camera(scene, flat, notes)
-    baker = bake.Baker(what["texture"])
+    baker = bake.Baker(what["texture"], flat)
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])
         flat.collection.objects.unlink(o)
@@ -178,12 +222,13 @@ def main():
         panes.prepare(made, notes)
     lights.add(lamps, scene, flat, notes)
     flatten.leave_copies(flat)
+    flatten.undress_others(flat)
     base = os.path.join(what["folder"], what["name"])
-    environment, backdrop = world.write(scene, flat.camera, base, notes)
+    environment, backdrop = world.write(scene, layer, flat.camera, base, what["sharp"], notes)
     bpy.context.window.scene = flat
     path = base + what["suffix"]
     export(path)
-    groups = gltf.patch(path, [g.name for g in layer.lightgroups])
+    groups = gltf.patch(path, [g.name for g in layer.lightgroups], notes)
     if environment and scene.world.lightgroup in layer.lightgroups:
         groups[scene.world.lightgroup] = "environment"
     with open(what["said"], "w", encoding="utf-8") as f:

@@ -16,8 +16,8 @@ def flatten(flat, wanted, override, notes):
 
     Returns: its objects. Lights and cameras are left to others.
     """
-    made, meshes, shown = [], {}, set()
-    graph = bpy.context.evaluated_depsgraph_get()
+    made, meshes, shown, copied = [], {}, set(), {}
+    graph, layer = bpy.context.evaluated_depsgraph_get(), bpy.context.view_layer
     # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
     listed = {i.parent.original for i in graph.object_instances if i.is_instance}
     for instance in graph.object_instances:
@@ -25,8 +25,10 @@ def flatten(flat, wanted, override, notes):
         source = instance.parent.original if instance.is_instance else o.original
         if source not in wanted or not (instance.is_instance or _shows_itself(instance, listed)):
             continue
-        if o.original.particle_systems:
+        if o.original.particle_systems and layer.use_strand:
             _place_hair(flat, instance, graph, override, meshes, made)
+        if o.type == 'CURVES' and not layer.use_strand or o.type in _MESHES and not layer.use_solid:
+            continue
         if o.type == 'CURVES' and (mesh := strands.of_curves(o)):
             if override:
                 mesh.materials[0] = override
@@ -40,8 +42,12 @@ def flatten(flat, wanted, override, notes):
         if key not in meshes:
             meshes[key] = _mesh(o, instance.is_instance, graph, override)
         if meshes[key] is not None:
+            if instance.is_instance:
+                copied[key] = copied.get(key, 0) + 1
             made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
             shown.add(o.original)
+    if override is None:
+        _note_copies({name for key, n in copied.items() if n > 1 for name in key[2] if name}, notes)
     for original in shown:
         _note_of(original, notes)
     return made
@@ -124,6 +130,33 @@ def leave_copies(flat):
         place["lull_mesh"] = first[o.data].name
         flat.collection.objects.unlink(o)
         flat.collection.objects.link(place)
+
+
+def undress_others(flat):
+    """Removes the materials of all meshes but those of a scene: where a material uses a UV map by its name, Blender's exporter
+    asks all meshes for their materials, and fails at an empty slot."""
+    used = {o.data for o in flat.collection.objects}
+    for mesh in bpy.data.meshes:
+        if mesh not in used:
+            mesh.materials.clear()
+
+
+def _note_copies(names, notes):
+    """Notes those of the materials of copies that ask which copy they are on."""
+    for name in names:
+        material = bpy.data.materials[name]
+        if material.use_nodes and _asks_for_copy(material.node_tree):
+            notes.add("the same on all copies", name, "materials")
+
+
+def _asks_for_copy(tree):
+    for node in tree.nodes:
+        used = {o.name for o in node.outputs if o.links}
+        if node.type == 'GROUP' and node.node_tree and _asks_for_copy(node.node_tree) or node.type == 'PARTICLE_INFO' and used or \
+                node.type == 'OBJECT_INFO' and used & {'Location', 'Random'} or \
+                node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER':
+            return True
+    return False
 
 
 def _note_of(original, notes):

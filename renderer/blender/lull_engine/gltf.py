@@ -53,7 +53,7 @@ def _scatter_through(material, share, red, green, blue, is_image):
     made = {"diffuseTransmissionFactor": share, "diffuseTransmissionColorFactor": [red, green, blue]}
     base = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
     if is_image and base:
-        made["diffuseTransmissionColorTexture"] = base
+        made["diffuseTransmissionColorTexture"] = dict(base)
     material.setdefault("extensions", {})["KHR_materials_diffuse_transmission"] = made
 
 
@@ -88,6 +88,36 @@ def _patch_material(material):
         specular["specularFactor"] = 0
 
 
+def _textures(part):
+    """Yields the references to textures of a material or a part of it."""
+    for key, value in part.items():
+        if key.endswith("Texture"):
+            yield value
+        elif isinstance(value, dict):
+            yield from _textures(value)
+
+
+def _renumber_uvs(root, notes):
+    """Gives the primitives the two sets of UVs that their materials use: lull reads TEXCOORD_0 and 1 alone."""
+    kept = {}
+    for number, material in enumerate(root.get("materials", [])):
+        textures = list(_textures(material))
+        sets = sorted({t.get("texCoord", 0) for t in textures})
+        if not sets or sets[-1] < 2:
+            continue
+        if len(sets) > 2:
+            notes.add("without the third of its sets of UVs", material["name"], "materials")
+        kept[number] = sets[:2]
+        for texture in textures:
+            texture["texCoord"] = min(sets.index(texture.get("texCoord", 0)), 1)
+    for primitive in (p for mesh in root.get("meshes", []) for p in mesh["primitives"]):
+        if sets := kept.get(primitive.get("material")):
+            attributes = primitive["attributes"]
+            uvs = [attributes.get(f"TEXCOORD_{s}") for s in sets]
+            primitive["attributes"] = {n: a for n, a in attributes.items() if not n.startswith("TEXCOORD_")} | {
+                f"TEXCOORD_{i}": accessor for i, accessor in enumerate(uvs) if accessor is not None}
+
+
 def _shines(root, node):
     if "KHR_lights_punctual" in node.get("extensions", {}):
         return True
@@ -96,7 +126,7 @@ def _shines(root, node):
     return any(max(m.get("emissiveFactor", [0])) > 0 for m in materials)
 
 
-def _patch_nodes(root, groups):
+def _patch_nodes(root, groups, notes):
     """Gives nodes the meshes that they share with others, and the names of Blender's objects, or that of their light group.
 
     Returns: the names of groups that shine.
@@ -109,12 +139,16 @@ def _patch_nodes(root, groups):
             node["mesh"] = meshes[mesh]
         node["name"] = extras.pop("lull_source", node.get("name", ""))
         group = extras.pop("lull_group", None)
-        if group in groups and _shines(root, node) and (group in found or len(found) < _MOST_GROUPS):
+        if group not in groups or not _shines(root, node):
+            continue
+        if group not in found and len(found) == _MOST_GROUPS:
+            notes.add(f"black in its pass, as one of more than {_MOST_GROUPS}", group, "light groups")
+        else:
             node["name"] = found.setdefault(group, f"light group {len(found)}")
     return found
 
 
-def patch(path, groups):
+def patch(path, groups, notes):
     """Corrects a file; `groups` are the names of the light groups that a view layer has.
 
     Returns: the names that `lull render --light-groups` takes for those that shine.
@@ -122,9 +156,10 @@ def patch(path, groups):
     root, rest = _read(path)
     for material in root.get("materials", []):
         _patch_material(material)
+    _renumber_uvs(root, notes)
     used = {name for m in root.get("materials", []) for name in m.get("extensions", {})}
     if used:
         root["extensionsUsed"] = sorted({*root.get("extensionsUsed", []), *used})
-    found = _patch_nodes(root, groups)
+    found = _patch_nodes(root, groups, notes)
     _write(path, root, rest)
     return found

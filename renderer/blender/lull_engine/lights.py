@@ -3,6 +3,7 @@ import math
 
 import bpy
 from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
 
 import surfaces
 from versions import principled_input
@@ -24,7 +25,10 @@ def add(lamps, scene, flat, notes):
         light = folded.get(o.data)
         if light is None:
             light = folded[o.data] = _folded(o.data.copy(), notes)
-        if not o.visible_camera and _is_in_view(scene, matrix.translation):
+        if min(light.energy * c for c in light.color) < 0:
+            notes.add("left out, taking light away", o.name, "lights")
+            continue
+        if not o.visible_camera and any(_is_in_view(scene, p) for p in _points(scene, light, matrix)):
             if light.type == 'AREA' or "lull" in light:
                 notes.add("seen by the camera", o.name, "lights")
         if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
@@ -122,6 +126,24 @@ def _blackbody(kelvin):
                                 0.0557 * x - 0.2040 * y + 1.0570 * z)]
 
 
+def _points(scene, light, matrix):
+    """Yields points of a light that the camera might see."""
+    steps = [(x / 4, y / 4) for x in range(-4, 5) for y in range(-4, 5)]
+    if light.type == 'AREA':
+        width, height = _size(light)
+        yield from (matrix @ Vector((x * width / 2, y * height / 2, 0)) for x, y in steps)
+    elif light.type == 'SUN':
+        axes, wide, eye = matrix.to_3x3().normalized(), math.tan(min(light.angle, 3) / 2), scene.camera.matrix_world.translation
+        yield from (eye + 1e4 * (axes @ Vector((wide * x, wide * y, 1))) for x, y in steps if x * x + y * y <= 1)
+    else:
+        across, radius = scene.camera.matrix_world.to_3x3().normalized(), light.shadow_soft_size
+        yield from (matrix.translation + radius * (across @ Vector((x, y, 0))) for x, y in steps if x * x + y * y <= 1)
+
+
+def _size(light):
+    return light.size, light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else light.size
+
+
 def _is_in_view(scene, point):
     x, y, depth = world_to_camera_view(scene, scene.camera, point)
     return depth > 0 and 0 < x < 1 and 0 < y < 1
@@ -129,8 +151,7 @@ def _is_in_view(scene, point):
 
 def _add_area(flat, o, light, matrix):
     """Adds a mesh that emits downwards, like the light."""
-    width = light.size
-    height = light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else width
+    width, height = _size(light)
     if light.shape in ('SQUARE', 'RECTANGLE'):
         corners, shrunk = [(-1, -1), (-1, 1), (1, 1), (1, -1)], 1
     else:

@@ -2,10 +2,10 @@
 import bpy
 import numpy as np
 
+import solids
 import surfaces
 from versions import principled_input
 
-_LEAST_WIDTHS = 20  # of the thickness, that a pane has both ways
 _SMOOTH = 0.03  # roughness
 
 
@@ -45,10 +45,10 @@ def _sheet(o):
     axis = int(np.argmin(sides))
     others = np.delete(sides, axis)
     thick = high[axis] - low[axis]
-    is_slab = thick > 0 and others.min() >= _LEAST_WIDTHS * sides[axis]
+    is_slab = thick > 0 and others.min() >= solids.LEAST_WIDTHS * sides[axis]
     top = points[:, axis] > high[axis] - 0.01 * thick
     bottom = points[:, axis] < low[axis] + 0.01 * thick
-    if not is_slab or not (top | bottom).all() or not _is_closed(mesh):
+    if not is_slab or not (top | bottom).all() or not solids.is_closed(mesh.polygons):
         return None
     middle = points.copy()
     middle[:, axis] = (low[axis] + high[axis]) / 2
@@ -59,14 +59,6 @@ def _sheet(o):
     sheet.from_pydata([tuple(middle[v]) for v in used], [], [tuple(place[v] for v in f) for f in faces])
     sheet.materials.append(_thin(mesh.materials[0]))
     return sheet
-
-
-def _is_closed(mesh):
-    counts = {}
-    for polygon in mesh.polygons:
-        for key in polygon.edge_keys:
-            counts[key] = counts.get(key, 0) + 1
-    return all(n == 2 for n in counts.values())
 
 
 def _thin(material):

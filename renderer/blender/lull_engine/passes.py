@@ -71,6 +71,12 @@ def _mist(picture):
     return (1 - covered + covered * share)[..., None]
 
 
+def _noisy(picture):
+    of = "noisy." if "noisy.R" in picture.channels else ""
+    alpha = picture.channels["A"] if picture.scene.render.film_transparent else np.ones_like(picture.channels["R"])
+    return np.stack([*(picture.channels[of + c] for c in "RGB"), alpha], -1)
+
+
 def _of_group(name):
     def fill(picture):
         layer = picture.exported["groups"].get(name)
@@ -89,11 +95,25 @@ _ALWAYS = (
 )
 
 
+_FOR_DENOISERS = [
+    Pass("Denoising Normal", "XYZ", "normal", _turned("N.X", "N.Y", "N.Z")),
+    Pass("Denoising Albedo", "RGB", "albedo", _channels("albedo.R", "albedo.G", "albedo.B")),
+    Pass("Denoising Depth", "Z", "depth", _channels("Z")),
+]
+
+
 def wanted(scene, layer):
     """Returns the passes of a view layer, besides Combined."""
     found = list(_ALWAYS)
     if scene.lull.denoise:
         found.append(Pass("Noisy", "RGB", "", _channels("noisy.R", "noisy.G", "noisy.B")))
+    # By Cycles' names, which composites link.
+    if layer.cycles.denoising_store_passes:
+        found += _FOR_DENOISERS
+    if layer.cycles.denoising_store_passes or scene.cycles.use_denoising and layer.cycles.use_denoising:
+        found.append(Pass("Noisy Image", "RGBA", "", _noisy))
+    if layer.cycles.pass_debug_sample_count:
+        found.append(Pass("Debug Sample Count", "X", "", _channels("spp")))
     if layer.use_pass_position:
         found.append(Pass("Position", "XYZ", "position", _turned("P.X", "P.Y", "P.Z")))
     if layer.use_pass_mist and scene.world:
@@ -113,6 +133,9 @@ def wanted(scene, layer):
 def lacked(layer):
     """Returns the names of passes that a view layer asks for and lull lacks."""
     found = [name.replace("_", " ") for name in _LACKED if getattr(layer, "use_pass_" + name, False)]
+    found += [name for name, wanted in (
+        ("volume direct", layer.cycles.use_pass_volume_direct), ("volume indirect", layer.cycles.use_pass_volume_indirect),
+        ("shadow catcher", layer.cycles.use_pass_shadow_catcher)) if wanted]
     return found + ["cryptomatte of assets"] * layer.use_pass_cryptomatte_asset + [aov.name for aov in layer.aovs]
 
 

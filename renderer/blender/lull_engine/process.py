@@ -13,8 +13,8 @@ class Failure(Exception):
     """An error to show to the user."""
 
 
-def run(command, stopped):
-    """Runs a command. Returns its exit code, its output, and whether `stopped` returned true."""
+def run(command, stopped, heard):
+    """Runs a command, and calls `heard` with what it prints. Returns its exit code, its output, and whether `stopped` returned true."""
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, errors="replace",
                           start_new_session=True) as process:
@@ -30,6 +30,7 @@ def run(command, stopped):
                     if not line:
                         break
                     said += line.decode(errors="replace")
+                    heard(said)
         return process.wait(), said, False
 
 

@@ -6,13 +6,11 @@ _SIDES = 3
 _RADIUS = 0.005  # of curves that have none, as in Cycles
 
 
-def prepare(scene):
+def prepare():
     """Lets the hair of the viewport, which can be read, be that of a render."""
-    for o in scene.objects:
-        for system in o.particle_systems:
-            settings = system.settings
-            settings.display_step = settings.render_step
-            settings.child_nbr = settings.rendered_child_count
+    for settings in bpy.data.particles:
+        settings.display_step = settings.render_step
+        settings.child_nbr = settings.rendered_child_count
 
 
 def of_particles(o, graph):

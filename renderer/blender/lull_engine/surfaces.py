@@ -8,12 +8,14 @@ import numpy as np
 
 import displacement
 import groups
-from versions import HAS_ADDED_INTERFACE, principled_input
+import solids
+from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 
 # Nodes that the exporter follows from an input of a Principled BSDF to an image.
 _KNOWN = {'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP', 'SEPRGB', 'SEPARATE_COLOR', 'VERTEX_COLOR', 'REROUTE', 'TEX_COORD'}
 # What depends on the direction from which a surface is seen, or on who asks.
 _BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA'}
+_OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': ('Backfacing', 'Incoming'), 'TEX_COORD': ('Camera', 'Window', 'Reflection')}
 _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT_INFO', 'TANGENT', 'AMBIENT_OCCLUSION', 'BEVEL',
              'WIREFRAME', 'VERTEX_COLOR', 'ATTRIBUTE', 'TEX_NOISE', 'TEX_MUSGRAVE', 'TEX_VORONOI', 'TEX_WAVE', 'TEX_MAGIC',
              'TEX_CHECKER', 'TEX_BRICK', 'TEX_GRADIENT', 'TEX_WHITE_NOISE', 'TEX_ENVIRONMENT', 'TEX_SKY', 'TEX_POINTDENSITY',
@@ -26,6 +28,7 @@ _DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Spec
              'Tint': (1, 1, 1)}
 # Values of Specular, and the differences of albedos.
 _MORE_THAN_SCHLICK = (0, 0.1, 0.25, 0.5, 0.75, 1), (0, -0.0116, -0.0008, 0.0061, 0.0084, 0.0087)
+_FINE = 0.005  # difference of neighbouring pixels, on average, from which an image has details of their size
 # Of one number for a whole material.
 _EVEN = ('IOR', 'Specular', 'Clearcoat', 'Clearcoat Roughness', 'Transmission')
 # Plain values of these are left out by glTF, or by its exporter.
@@ -40,7 +43,8 @@ def prepare(made, baker, notes):
         for i, material in enumerate(o.data.materials):
             users.setdefault(material, {}).setdefault(o.data, (o, i))
     converted = {}
-    for material, meshes in users.items():
+    for i, (material, meshes) in enumerate(users.items()):
+        print(f"lull: material {i + 1} of {len(users)}", flush=True)
         converted[material] = _convert(material, meshes, baker, notes)
     done = set()
     for o in made:
@@ -72,12 +76,12 @@ def _convert(material, meshes, baker, notes):
         return _of_viewport(material)
     if _is_empty(material):
         return material
-    surface = _Surface(material, notes)
+    surface = _Surface(material, meshes, notes)
     if surface.parameters is None:
         return _of_viewport(material)
-    if not surface.needs_mesh:
+    if not surface.needs_mesh and not surface.differs_by_mesh():
         return surface.write(baker, None)
-    return {mesh: _Surface(material, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
+    return {mesh: _Surface(material, meshes, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
 
 
 def principled(material):
@@ -130,6 +134,12 @@ def _upstream(socket):
     return found
 
 
+def _is_by_view(socket):
+    """Returns whether an output depends on the direction from which a surface is seen, or on who asks."""
+    return any(n.type in _BY_VIEW or any(o.links for o in n.outputs if o.name in _OUTPUTS_BY_VIEW.get(n.type, ()))
+               for n in _upstream(socket))
+
+
 def _is_whole(value):
     return abs(value - round(value)) < 1e-6
 
@@ -145,7 +155,7 @@ def _place_of(socket):
             if used != ['UV']:
                 return 'mesh'
         if node.type == 'TEX_IMAGE':
-            if node.projection != 'FLAT' or node.extension != 'REPEAT':
+            if node.projection != 'FLAT' or node.extension != 'REPEAT' or node.image and node.image.source == 'TILED':
                 return 'mesh'
             place = 'uv'
         if node.type == 'MAPPING':
@@ -161,8 +171,9 @@ def _place_of(socket):
 class _Surface:
     """A material as parameters: plain values, or outputs of nodes of a copy of its tree."""
 
-    def __init__(self, material, notes):
-        self.name, self.original, self.notes = material.name, material, notes
+    def __init__(self, material, meshes, notes):
+        """`meshes` has an object and a slot for each mesh with the material."""
+        self.name, self.original, self.meshes, self.notes = material.name, material, meshes, notes
         self.copy = material.copy()
         self.copy["lull_name"] = material.name
         self.tree = self.copy.node_tree
@@ -177,11 +188,27 @@ class _Surface:
         self._mark(_source(output.inputs['Surface']).node)
         if _source(output.inputs['Displacement']) and not displacement.moves(material):
             self.parameters['Normal'] = _source(output.inputs['Displacement'])  # with which the normals are baked
+        self._note_what_holds_of_the_whole(output)
         for name, value in self.parameters.items():
             if name == 'Normal':
                 self.needs_mesh |= not self._is_known_normal(value)
             elif self._is_output(value) and not self._is_known(name, value):
                 self.needs_mesh |= _place_of(value) == 'mesh'
+
+    def differs_by_mesh(self):
+        """Returns whether meshes have UV maps that it names in other places: materials of glTF have their numbers."""
+        names = {n.uv_map for v in self.parameters.values() if self._is_output(v) for n in _upstream(v)
+                 if n.type in ('UVMAP', 'NORMAL_MAP') and n.uv_map}
+        return len({tuple(mesh.uv_layers.find(n) for n in sorted(names)) for mesh in self.meshes}) > 1
+
+    def _note_what_holds_of_the_whole(self, output):
+        p, notes = self.parameters, self.notes
+        if _source(output.inputs['Displacement']) and displacement_method(self.original) == 'BOTH':
+            notes.add("displaced as finely as meshes are, without bump", self.name, "materials")
+        if not getattr(self.original.cycles, "use_transparent_shadow", True) and (p['Alpha'] != 1 or self.copy.get("lull_thin")):
+            notes.add("letting light through where transparent", self.name, "materials")
+        if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for v in p.values() if self._is_output(v) for n in _upstream(v)):
+            notes.add("occluded by the same object alone", self.name, "materials")
 
     def _mark(self, node):
         """Leaves to the written file the values that the exporter cannot write."""
@@ -234,6 +261,8 @@ class _Surface:
         if HAS_ADDED_INTERFACE:
             found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
             self.copy["lull_adds"] = True
+        if found['Clearcoat'] != 0 and principled_input(node, 'Clearcoat Normal').links:
+            self.notes.add("with the normals of the surface on its clear coat", self.name, "materials")
         emission = principled_input(node, 'Emission')
         found['Radiance'] = self._times(self._value(emission), self._value(node.inputs['Emission Strength']))
         for name in _UNSAID:
@@ -257,7 +286,10 @@ class _Surface:
     def _bsdf_glossy(self, node):
         return self._made(node, Base_Color=self._value(node.inputs['Color']), Metallic=1, Roughness=self._roughness(node))
 
-    _bsdf_anisotropic = _bsdf_glossy
+    def _bsdf_anisotropic(self, node):
+        if node.inputs['Anisotropy'].links or node.inputs['Anisotropy'].default_value != 0:
+            self.notes.add("without anisotropic", self.name, "materials")
+        return self._bsdf_glossy(node)
 
     def _bsdf_glass(self, node):
         return self._made(node, Base_Color=self._value(node.inputs['Color']), Transmission=1, Specular=0.5,
@@ -280,9 +312,10 @@ class _Surface:
     def _mix_shader(self, node):
         a, b = self._closure(node.inputs[1]), self._closure(node.inputs[2])
         factor = self._value(node.inputs[0])
-        if a is None or b is None:
-            return a or b
-        if self._is_output(factor) and any(n.type in _BY_VIEW for n in _upstream(factor)):
+        if a is None and b is None:
+            return None
+        a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[1]), (b, node.inputs[2])))
+        if self._is_output(factor) and _is_by_view(factor):
             return self._mix_by_view(a, b, factor)
         if not self._is_output(factor) and factor in (0, 1):
             return b if factor else a
@@ -293,21 +326,67 @@ class _Surface:
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
         if 'Normal' in a or 'Normal' in b:
+            if a.get('Normal') != b.get('Normal'):
+                self.notes.add("with the normals of the first of mixed surfaces that has any", self.name, "materials")
             mixed['Normal'] = a.get('Normal', b.get('Normal'))
         return mixed
 
+    def _half(self, found, socket):
+        """Returns the parameters of a half of a mixture: black where nothing is linked, as in Cycles."""
+        if found is not None:
+            return found
+        if _source(socket) is None:
+            return dict(_DEFAULTS, **{'Base Color': (0, 0, 0)})
+        self.notes.add("in part in the viewport colour, as one of its surfaces is unknown", self.name, "materials")
+        return dict(_DEFAULTS, **{'Base Color': tuple(self.original.diffuse_color)[:3]})
+
     def _mix_by_view(self, a, b, factor):
-        """A coat that a Fresnel factor adds is glTF's own; of tricks with kinds of rays the first holds."""
-        is_ray = any(n.type == 'LIGHT_PATH' for n in _upstream(factor))
-        if not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
+        """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what the
+        camera sees holds."""
+        kinds = {n.type for n in _upstream(factor)}
+        is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
+        if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
             return dict(a, Specular=0.5, Roughness=b['Roughness'])
+        clear, other = (a, b) if a['Alpha'] == 0 else (b, a)
+        is_glass = clear['Alpha'] == 0 and other['Alpha'] == 1 and (other['Metallic'] == 1 or other['Transmission'] == 1)
+        if is_glass and is_by_angle and not is_ray:
+            return self._pane(clear, other, factor if clear is a else None)
+        if is_glass and is_ray and other['Transmission'] == 1:
+            return self._lit_through(other)
         self.notes.add("the same from all sides and for all rays", self.name, "materials")
-        return a if a['Alpha'] != 0 or is_ray else b
+        if is_ray:
+            return b if factor.name == 'Is Camera Ray' else a
+        return other if clear['Alpha'] == 0 else a
+
+    def _pane(self, clear, shine, factor):
+        """Returns a sheet of glass, for a clear surface that shines as a factor says, None for one that is not known."""
+        ior = _ior_of(factor) if factor is not None else None
+        if ior is None:
+            self.notes.add("reflecting as clear glass does", self.name, "materials")
+        if self._is_output(shine['Roughness']) or shine['Roughness'] > 0.1 or shine['Base Color'] != (1, 1, 1) and \
+                (self._is_output(shine['Base Color']) or min(shine['Base Color']) < 0.75):
+            self.notes.add("reflecting white light, and sharply", self.name, "materials")
+        self.notes.add("made a sheet of glass, the same from both sides", self.name, "materials")
+        self.copy["lull_thin"] = True
+        return dict(_DEFAULTS, **{'Base Color': clear['Tint'], 'Transmission': 1, 'Specular': 0.5, 'Roughness': 0,
+                                  'IOR': ior or 1.45})
+
+    def _lit_through(self, glass):
+        """Returns glass which light passes that other glass refracts."""
+        if self.copy.get("lull_thin"):
+            return glass
+        if any(solids.has_solid(o, slot) for o, slot in self.meshes.values()):
+            self.notes.add("solid glass, which lamps do not shine through", self.name, "materials")
+            return glass
+        self.notes.add("made a sheet of glass, the same from both sides", self.name, "materials")
+        self.copy["lull_thin"] = True
+        return glass
 
     def _add_shader(self, node):
         a, b = self._closure(node.inputs[0]), self._closure(node.inputs[1])
-        if a is None or b is None:
-            return a or b
+        if a is None and b is None:
+            return None
+        a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[0]), (b, node.inputs[1])))
         shines = a['Base Color'] == (0, 0, 0) and a['Radiance'] != (0, 0, 0)
         first, other = (b, a) if shines else (a, b)
         if other['Base Color'] != (0, 0, 0):
@@ -389,7 +468,9 @@ class _Surface:
             return name == 'Base Color' and value.node.type == 'VERTEX_COLOR'
         if len(images) > 1 or any(not _is_plain(n) for n in images):
             return False
-        if name == 'Radiance' and images[0].image.is_float or name in _EVEN:
+        if name in _EVEN or images[0].image.is_float:
+            return False
+        if name != 'Alpha' and not _is_encoded(images[0].image, name in ('Base Color', 'Radiance')):
             return False
         if name == 'Alpha':
             return value.node.type == 'TEX_IMAGE' and value.name == 'Alpha'
@@ -417,6 +498,7 @@ class _Surface:
     def write(self, baker, o):
         """Returns the new material. `o` is the object on whose mesh is baked what depends on it."""
         self.baker, self.object = baker, o
+        self.copy.use_backface_culling = False  # which Cycles ignores, and glTF does not
         self._divide_base()
         new = self.tree.nodes.new('ShaderNodeBsdfPrincipled')
         self._write_normal(new)
@@ -486,7 +568,7 @@ class _Surface:
             return value
         if not self._is_output(value):
             return np.array(_triple(value), np.float32)
-        if any(n.type in _BY_VIEW for n in _upstream(value)):
+        if _is_by_view(value):
             self.notes.add("the same from all sides and for all rays", self.name, "materials")
         place = _place_of(value)
         if place == 'all':
@@ -496,11 +578,16 @@ class _Surface:
         return self._over_mesh(value)
 
     def _over_mesh(self, value, kind='EMIT'):
-        return self.baker.over_mesh(self.copy, value, self.object, self.original, kind)[:, :, :3]
+        pixels = self.baker.over_mesh(self.copy, value, self.object, self.original, kind)[:, :, :3]
+        if abs(np.diff(pixels, axis=1)).mean() > _FINE and self.baker.is_coarse(self.object):
+            self.notes.add(f"blurred, by images of {self.baker.size} pixels over whole meshes (Texture Size)", self.name, "materials")
+        return pixels
 
     def _even(self, name):
-        pixels = self._pixels(name)
-        return float(pixels.reshape(-1, 3)[:, 0].mean())
+        values = self._pixels(name).reshape(-1, 3)[:, 0]
+        if np.ptp(values) > 0.05:
+            self.notes.add(f"of the same {name.lower()} everywhere", self.name, "materials")
+        return float(values.mean())
 
     @staticmethod
     def _layers(value):
@@ -578,7 +665,7 @@ class _Surface:
             return
         pixels = self._pixels('Radiance')
         most = float(pixels.max())
-        new.inputs['Emission Strength'].default_value = most
+        new.inputs['Emission Strength'].default_value = max(most, 0)
         if most <= 0:
             self._set(emission, (0, 0, 0))
         elif pixels.ndim == 1:
@@ -601,6 +688,18 @@ class _Surface:
         self.tree.links.new(node.outputs[0], new.inputs['Normal'])
 
 
+def _ior_of(factor):
+    """Returns the index of refraction by which a factor grows with the angle; None where it does not as glass has it."""
+    value = factor.node.inputs[0]
+    if value.links:
+        return None
+    if factor.node.type == 'FRESNEL':
+        return value.default_value
+    if factor.node.type == 'LAYER_WEIGHT' and factor.name == 'Fresnel':
+        return 1 / max(1 - value.default_value, 1e-5)
+    return None
+
+
 def _is_neutral(socket):
     """Returns whether an input without links changes nothing: a weight of 0, or a white tint."""
     return socket.default_value == 0 if socket.type == 'VALUE' else min(socket.default_value[:3]) >= 1
@@ -614,6 +713,12 @@ def _is_plain(node):
     """Returns whether glTF's samplers read an image as its node does."""
     return (node.image is not None and node.image.size[0] > 0 and node.projection == 'FLAT' and
             node.extension in ('REPEAT', 'EXTEND') and node.image.source in ('FILE', 'GENERATED'))
+
+
+def _is_encoded(image, is_colour):
+    """Returns whether the numbers of a file are what glTF takes them for: encoded colours, or data."""
+    space = image.colorspace_settings
+    return space.name == 'sRGB' if is_colour else space.is_data
 
 
 def _is_known_mapping(node):

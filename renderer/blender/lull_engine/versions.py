@@ -7,6 +7,7 @@ _PRINCIPLED = {
     'Transmission': ('Transmission', 'Transmission Weight'),
     'Clearcoat': ('Clearcoat', 'Coat Weight'),
     'Clearcoat Roughness': ('Clearcoat Roughness', 'Coat Roughness'),
+    'Clearcoat Normal': ('Clearcoat Normal', 'Coat Normal'),
     'Emission': ('Emission', 'Emission Color'),
     'Subsurface': ('Subsurface', 'Subsurface Weight'),
     'Sheen': ('Sheen', 'Sheen Weight'),

@@ -9,16 +9,17 @@ from versions import panorama
 _RAYS = "diffuse", "glossy", "transmission"
 _SMALLEST, _LARGEST = 16, 4096  # pixels across: of a plain colour, and of any world
 _USUAL = 1024
-_SPP = 4  # over a pixel each, so that no light is lost between pixels
+_SPP, _BLURRED_SPP = 4, 64  # over a pixel each, so that no light is lost between pixels; with depth of field
 
 
-def write(scene, camera, base, notes):
-    """Renders the world with Cycles, as it lights the scene from all directions, to BASE.world.exr.
+def write(scene, layer, camera, base, is_sharp, notes):
+    """Renders the world with Cycles, as it lights the scene of a view layer from all directions, to BASE.world.exr.
 
-    Returns: that path, None for a black world; and BASE.backdrop.exr, where the camera sees another world, else None.
+    Returns: that path, None for a black world; and BASE.backdrop.exr, where the camera sees another world, or one that `is_sharp`
+    wants finer than all directions, else None.
     """
     world = scene.world
-    if world is None or _is_black(world):
+    if world is None or _is_black(world) or not layer.use_sky:
         return None, None
     if world.use_nodes and any(link.to_socket.name == 'Volume' for link in world.node_tree.links
                                if link.to_node.type == 'OUTPUT_WORLD'):
@@ -29,7 +30,8 @@ def write(scene, camera, base, notes):
     if unseen:
         notes.say(f"the world '{world.name}' lights all rays but those of the camera, whatever its visibility")
     backdrop = None
-    if not scene.render.film_transparent and (asks or not world.cycles_visibility.camera):
+    is_sharp = is_sharp and world.use_nodes and not _background(world)
+    if not scene.render.film_transparent and (asks or not world.cycles_visibility.camera or is_sharp):
         backdrop = _photograph(scene, world, camera, base + ".backdrop.exr")
     return _surround(light, base + ".world.exr"), backdrop
 
@@ -59,7 +61,7 @@ def _photograph(scene, world, camera, path):
     room.collection.objects.link(room.camera)
     for name in "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y":
         setattr(room.render, name, getattr(scene.render, name))
-    return _render(room, world, path)
+    return _render(room, world, path, _BLURRED_SPP if room.camera.data.dof.use_dof else _SPP)
 
 
 def _surround(world, path):
@@ -75,10 +77,10 @@ def _surround(world, path):
     r = room.render
     r.resolution_x, r.resolution_y, r.resolution_percentage = width, width // 2, 100
     world.cycles_visibility.camera = True
-    return _render(room, world, path)
+    return _render(room, world, path, _SPP)
 
 
-def _render(room, world, path):
+def _render(room, world, path, spp):
     room.world = world
     r, c = room.render, room.cycles
     r.engine = 'CYCLES'
@@ -86,7 +88,7 @@ def _render(room, world, path):
     r.image_settings.exr_codec = 'ZIP'
     r.filepath, r.use_file_extension = path, False
     r.film_transparent = False
-    c.samples, c.use_denoising, c.use_adaptive_sampling = _SPP, False, False
+    c.samples, c.use_denoising, c.use_adaptive_sampling = spp, False, False
     c.pixel_filter_type, c.filter_width = 'BOX', 1
     bpy.ops.render.render(write_still=True, scene=room.name)
     bpy.data.scenes.remove(room)
