@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/say.h"
 #include "renderer/base/clocks.h"
+#include "renderer/base/say.h"
 
 namespace lull {
 
