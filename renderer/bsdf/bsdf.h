@@ -20,9 +20,9 @@ struct BsdfSample {
     bool isSpecular, isTransmission;
 };
 
-// A shading normal that a map has tilted may send a mirror's light below the surface. Light to such
-// a direction wo is scattered in a turned frame: its normal lies between both normals, where the
-// mirror direction just stays above. (Cycles does so for maps.) Glossy light that is still
+// A shading normal that is tilted may send a mirror's light below the surface. Light to such a
+// direction wo is scattered in a turned frame, if that is wanted: its normal lies between both
+// normals, where the mirror direction just stays above, as in Cycles. Glossy light that is still
 // scattered below is reflected at the surface once more, so that none is lost. Diffuse lobes alone
 // are pbrt-v3's.
 
@@ -33,15 +33,20 @@ class Bsdf {
     // Takes the orthonormal shading frame, the geometric normal (both world) and the relative
     // index of refraction across the surface (1 for opaque surfaces), which only the radiance
     // scale of paths through it needs.
-    // `isTilted` says whether a map has tilted the shading normal: interpolated ones are pbrt-v3's.
-    Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1, bool isTilted = false)
-        : shading(shading), ng(ng), eta(eta), alongNg(shading.n.dot(ng)), isTilted(isTilted) {}
+    // `turnsNormal` says whether the shading normal is turned where it would reflect into the
+    // surface.
+    Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1, bool turnsNormal = false)
+        : shading(shading),
+          ng(ng),
+          eta(eta),
+          alongNg(shading.n.dot(ng)),
+          turnsNormal(turnsNormal) {}
 
     // Adds a lobe, at most kMaxLobes of them.
     void Add(const Lobe& lobe) {
         assert(lobeCount < kMaxLobes && lobe.index() != 0);
         specularCount += IsSpecular(lobe);
-        if (isTilted && alongNg < kUntilted) mayTurn |= Mirrors(lobe);
+        if (turnsNormal && alongNg < kUntilted) mayTurn |= Mirrors(lobe);
         std::construct_at(&lobes[lobeCount++], lobe);
     }
     // Multiplies f of lobes begin to end - 1.
@@ -125,8 +130,9 @@ class Bsdf {
     Vec3f ng;
     float eta;
     float alongNg;  // shading.n . ng
-    bool isTilted;
-    bool mayTurn = false;  // isTilted, the normals differ, and a lobe favours the mirror direction
+    bool turnsNormal;
+    bool mayTurn =
+        false;  // turnsNormal, the normals differ, and a lobe favours the mirror direction
     int lobeCount = 0, specularCount = 0;
     bool hasShares = false;
     std::array<float, kMaxLobes> shares;  // probabilities of lobes, where hasShares

@@ -178,8 +178,9 @@ std::string FirstDifference(const std::string& text, const std::string& other) {
 // render.
 bool IsFinished(const PreparedRender& p) {
     const RenderFiles& files = p.files;
-    for (const std::string& file :
-         {files.exr, files.png, files.sppMap, files.thresholds, files.report})
+    const bool hasRanges = !p.render.provenance.logRatios.empty();
+    for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds,
+                                    hasRanges ? files.ranges : "", files.report})
         if (!file.empty() && !IsThere(file)) return false;
     std::string found;
     try {

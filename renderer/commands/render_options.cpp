@@ -136,12 +136,13 @@ void CheckRequest(const RenderRequest& request) {
         throw UsageError("--pixel: guided paths depend on all earlier samples; leave --guide out");
     // Where all samples belong to one half, nothing says how large their noise is.
     const int cap = request.render.cap.value_or(int(kLeastDenoisedSpp));
-    const bool isSpp = request.spp > 0 && request.spp <= cap;
-    if (const int spp = isSpp ? request.spp : cap;
+    const int fixed = FixedSpp(request.Rule());
+    const bool isFixed = fixed > 0 && fixed <= cap;
+    if (const int spp = isFixed ? fixed : cap;
         request.denoiseLayers && spp < int(kLeastDenoisedSpp))
-        throw UsageError(
-            fmt::format("--{} {}: --denoise-layers needs at least {}, to estimate the noise",
-                        isSpp ? "spp" : "cap", spp, kLeastDenoisedSpp));
+        throw UsageError(fmt::format(
+            "--{}{}: --denoise-layers needs at least {}, to estimate the noise",
+            isFixed ? (request.spp > 0 ? "spp " : "stop fixed:") : "cap ", spp, kLeastDenoisedSpp));
 }
 
 }  // namespace lull::render

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "stopping/base/input_file.h"
+#include "stopping/base/text_lines.h"
 
 namespace lull {
 
@@ -28,9 +29,6 @@ ThresholdsRow ParseRow(const std::string& line) {
     const std::vector<std::string> fields = Split(line);
     if (fields.empty() || fields[0].empty())
         throw std::invalid_argument("the name of the viewpoint is missing");
-    if (fields[0].find('\r') != std::string::npos)
-        throw std::invalid_argument(
-            "a carriage return in the name of the viewpoint; lines have to end with a line feed");
     ThresholdsRow row{fields[0], {}};
     for (size_t i = 1; i < fields.size(); ++i) {
         const char *begin = fields[i].data(), *end = begin + fields[i].size();
@@ -53,20 +51,18 @@ ThresholdsRow ParseRow(const std::string& line) {
 std::vector<ThresholdsRow> ReadThresholds(std::istream& in, const std::string& fileName) {
     std::vector<ThresholdsRow> rows;
     std::set<std::string> names;
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number) {
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        if (line.empty()) continue;
+    for (TextLines lines(in, fileName); lines.Next();) {
+        if (lines.Line().empty()) continue;
         try {
-            rows.push_back(ParseRow(line));
+            rows.push_back(ParseRow(lines.Line()));
             if (!names.insert(rows.back().name).second)
                 throw std::invalid_argument("'" + Printable(rows.back().name) +
                                             "' has a row already");
         } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(fileName + ":" + std::to_string(number) + ": " + error.what());
+            throw std::runtime_error(fileName + ":" + std::to_string(lines.Number()) + ": " +
+                                     error.what());
         }
     }
-    if (in.bad()) throw std::runtime_error(fileName + ": cannot be read");
     return rows;
 }
 

@@ -378,6 +378,17 @@ def ies(scene):
     tree.links.new(node(tree, 'ShaderNodeTexIES', ies=profile).outputs[0], emission.inputs[1])
 
 
+@case("IES profile, of a lamp that is turned")
+def ies_turned(scene):
+    lamp = only('POINT', 30, (0, -1, 3), shadow_soft_size=0)
+    lamp.rotation_euler = (0.3, 0.2, 0.5)
+    tree, emission = noded(lamp.data)
+    profile = bpy.data.texts.new("lamp.ies")
+    profile.write("IESNA:LM-63-2002\nTILT=NONE\n1 1000 2 3 5 1 2 0 0 0\n1 1 10\n0 40 90\n0 90 180 270 360\n"
+                  "900 700 0\n900 100 0\n900 400 0\n900 10 0\n900 700 0\n")
+    tree.links.new(node(tree, 'ShaderNodeTexIES', ies=profile).outputs[0], emission.inputs[1])
+
+
 @case("texture of a lamp")
 def lamp_texture(scene):
     tree, emission = noded(the("key").data)

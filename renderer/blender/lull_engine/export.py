@@ -220,10 +220,10 @@ def main():
     baker.end()
     if what["panes"]:
         panes.prepare(made, notes)
-    lights.add(lamps, scene, flat, notes)
+    base = os.path.join(what["folder"], what["name"])
+    lights.add(lamps, scene, flat, base, notes)
     flatten.leave_copies(flat)
     flatten.undress_others(flat)
-    base = os.path.join(what["folder"], what["name"])
     environment, backdrop = world.write(scene, layer, flat.camera, base, what["sharp"], notes)
     bpy.context.window.scene = flat
     path = base + what["suffix"]

@@ -1,10 +1,12 @@
 """Converts lights to those of glTF and lull."""
 import math
+import os
 
 import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
+import ies
 import surfaces
 from versions import principled_input
 
@@ -17,19 +19,19 @@ def find(scene, wanted):
             and (i.parent.original if i.is_instance else i.object.original) in wanted]
 
 
-def add(lamps, scene, flat, notes):
+def add(lamps, scene, flat, base, notes):
     """Adds lights to a scene, point and spot lights with a radius, suns with an angle, and meshes for area lights, which glTF
-    lacks."""
+    lacks. `base` begins the names of files beside that of the scene."""
     folded = {}
     for o, matrix in lamps:
         light = folded.get(o.data)
         if light is None:
-            light = folded[o.data] = _folded(o.data.copy(), notes)
+            light = folded[o.data] = _folded(o.data.copy(), "%s-profile%d.exr" % (base, len(folded)), notes)
         if min(light.energy * c for c in light.color) < 0:
             notes.add("left out, taking light away", o.name, "lights")
             continue
         if not o.visible_camera and any(_is_in_view(scene, p) for p in _points(scene, light, matrix)):
-            if light.type == 'AREA' or "lull" in light:
+            if light.type == 'AREA' or "lull" in light and "profile" not in light["lull"]:
                 notes.add("seen by the camera", o.name, "lights")
         if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
             notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
@@ -50,10 +52,10 @@ def _place(flat, o, data, matrix):
     flat.collection.objects.link(made)
 
 
-def _folded(light, notes):
+def _folded(light, profile, notes):
     if light.use_nodes:
-        _fold_nodes(light, notes)
-    if light.type in ('POINT', 'SPOT') and light.shadow_soft_size > 0:
+        _fold_nodes(light, profile, notes)
+    if light.type in ('POINT', 'SPOT') and light.shadow_soft_size > 0 and "lull" not in light:
         light["lull"] = {"radius": light.shadow_soft_size}
     if light.type == 'SUN' and light.angle > 0:
         light["lull"] = {"angle": light.angle}
@@ -81,7 +83,7 @@ def _blend_of(light):
     return 1 - math.acos(min(1, edge + way)) / half
 
 
-def _fold_nodes(light, notes):
+def _fold_nodes(light, profile, notes):
     """Applies strength and colour of simple nodes to the light."""
     output = next((n for n in light.node_tree.nodes if n.type == 'OUTPUT_LIGHT'), None)
     links = output.inputs['Surface'].links if output else ()
@@ -101,11 +103,27 @@ def _fold_nodes(light, notes):
             notes.add("shining in the plain colour, without nodes", light.name, "lights")
     if strength.links and strength.links[0].from_node.type == 'VALUE':
         light.energy *= strength.links[0].from_socket.default_value
+    elif strength.links and _fold_profile(light, strength.links[0].from_node, profile):
+        if light.shadow_soft_size > 0:
+            notes.add("casting hard shadows, having an IES profile", light.name, "lights")
     elif strength.links:
         notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
     else:
         light.energy *= strength.default_value
     light.color = [a * b for a, b in zip(light.color, shown)]
+
+
+def _fold_profile(light, node, path):
+    """Gives a point light the profile of an IES node; returns whether it can have one."""
+    if light.type != 'POINT' or node.type != 'TEX_IES' or node.inputs['Vector'].links or node.inputs['Strength'].links:
+        return False
+    try:
+        strengths = ies.strengths(ies.text_of(node))
+    except ies.Unreadable:
+        return False
+    ies.paint(strengths * node.inputs['Strength'].default_value, path)
+    light["lull"] = {"profile": os.path.basename(path)}
+    return True
 
 
 def _blackbody(kelvin):

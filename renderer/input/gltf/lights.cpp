@@ -54,21 +54,43 @@ void AddSphere(const tinygltf::Light& source, const Rgb& intensity, double radiu
     description->shapes.push_back(std::move(sphere));
 }
 
-// Returns a number that is lull's own to know, 0 for none.
-double Extra(const tinygltf::Light& light, const std::string& name) {
-    if (!light.extras.Has("lull") || !light.extras.Get("lull").Has(name)) return 0;
-    return light.extras.Get("lull").Get(name).GetNumberAsDouble();
+// Returns a value that is lull's own to know; null for none.
+tinygltf::Value Extra(const tinygltf::Light& light, const std::string& name) {
+    const bool has = light.extras.Has("lull") && light.extras.Get("lull").Has(name);
+    return has ? light.extras.Get("lull").Get(name) : tinygltf::Value();
 }
 
 double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
-    const double radius = Extra(light, "radius");
+    const double radius = Extra(light, "radius").GetNumberAsDouble();
     if (!(radius >= 0)) throw Error(loc, "its radius is negative");
     return radius;
 }
 
+// Returns the name of an image of the light's directions; empty: it shines evenly.
+std::string ProfileOf(const tinygltf::Light& light, const FileLoc& loc) {
+    const tinygltf::Value profile = Extra(light, "profile");
+    if (profile.Type() == tinygltf::NULL_TYPE) return "";
+    if (!profile.IsString() || profile.Get<std::string>().empty())
+        throw Error(loc, "its profile has to be the name of an image file");
+    if (light.type != "point" || RadiusOf(light, loc) > 0)
+        throw Error(loc, "it has a profile; only point lights without a radius can");
+    return profile.Get<std::string>();
+}
+
+// Makes a goniometric light of the image: its first row is the -z axis of the node, where spots
+// shine to, and its columns begin at the x axis, in the direction of y.
+void AddProfile(const std::string& profile, LightEntity* light) {
+    Mat4d nodeFromLight = Mat4d::Zero();
+    nodeFromLight(0, 0) = nodeFromLight(1, 2) = nodeFromLight(3, 3) = 1;
+    nodeFromLight(2, 1) = -1;
+    light->name = "goniometric";
+    light->worldFromLight = light->worldFromLight * nodeFromLight;
+    ParameterWriter(&light->parameters, light->loc).String("mapname", profile);
+}
+
 // Returns the angle across a directional light, degrees.
 double AngleOf(const tinygltf::Light& light, const FileLoc& loc) {
-    const double angle = Extra(light, "angle");
+    const double angle = Extra(light, "angle").GetNumberAsDouble();
     const auto across = InRange(angle, 0, std::numbers::pi);
     if (!across)
         throw Error(loc, fmt::format("its angle is {:g}; it has to be from 0 to pi", angle));
@@ -110,6 +132,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     if (light.color.size() == 3)
         color = Eigen::Array3d(light.color[0], light.color[1], light.color[2]).cast<float>();
     const Rgb strength = color.max(0.f) * float(light.intensity / kLumensPerWatt);
+    const std::string profile = ProfileOf(light, loc);
     if (const double radius = RadiusOf(light, loc); radius > 0 && light.type != "directional")
         return AddSphere(light, strength, radius, entity, description);
     if (light.type == "directional") {
@@ -122,6 +145,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
         write.Spectrum("I", strength);
         entity.name = light.type == "spot" ? "spot-squared" : "point";
         if (light.type == "spot") WriteCone(light.spot, loc, write);
+        if (!profile.empty()) AddProfile(profile, &entity);
     }
     description->lights.push_back(std::move(entity));
 }

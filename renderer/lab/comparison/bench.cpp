@@ -11,6 +11,7 @@
 #include "renderer/base/error.h"
 #include "renderer/files/file_contents.h"
 #include "stopping/base/parallel.h"
+#include "stopping/base/text_lines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -113,8 +114,9 @@ std::string BenchCsv(const std::vector<BenchPoint>& points) {
 std::vector<ExternalImage> ReadExternalImages(const std::string& csv) {
     std::istringstream in{std::string(ReadFile(csv).View())};
     std::vector<ExternalImage> images;
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number) {
+    for (TextLines lines(in, csv); lines.Next();) {
+        const std::string& line = lines.Line();
+        const int number = lines.Number();
         if (Trim(line).empty()) continue;
         const size_t first = line.find(','), second = line.find(',', first + 1);
         ExternalImage image;

@@ -9,6 +9,7 @@
 #include "renderer/base/error.h"
 #include "renderer/files/file_contents.h"
 #include "renderer/pages/embedded.h"
+#include "stopping/base/text_lines.h"
 
 namespace lull {
 
@@ -36,23 +37,22 @@ std::string Trimmed(const std::string& text) {
                : text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
 }
 
-// Returns the sections of a text; the first has no key.
-std::vector<Section> SectionsOf(const std::string& text) {
+// Returns the sections of a text of this name; the first has no key.
+std::vector<Section> SectionsOf(const std::string& text, const std::string& name) {
     std::vector<Section> sections(1);
     std::istringstream in(text);
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number)
-        if (const std::string key = KeyIn(line); !key.empty())
-            sections.push_back({key, "", number});
+    for (TextLines lines(in, name); lines.Next();)
+        if (const std::string key = KeyIn(lines.Line()); !key.empty())
+            sections.push_back({key, "", lines.Number()});
         else
-            sections.back().text += line + "\n";
+            sections.back().text += lines.Line() + "\n";
     for (Section& section : sections) section.text = Trimmed(section.text);
     return sections;
 }
 
 StudyTexts TextsOfThePage() {
     StudyTexts texts;
-    for (Section& section : SectionsOf(DefaultStudyTexts()))
+    for (Section& section : SectionsOf(DefaultStudyTexts(), "the texts of the page"))
         if (!section.key.empty()) texts[section.key] = std::move(section.text);
     return texts;
 }
@@ -93,7 +93,7 @@ StudyTexts ReadStudyTexts(const std::string& path) {
                                 text.size(), kLongestText));
     const StudyTexts page = TextsOfThePage();
     StudyTexts texts;
-    for (const Section& section : SectionsOf(text))
+    for (const Section& section : SectionsOf(text, path))
         if (section.key.empty()) {
             if (!section.text.empty()) texts["own"] = section.text;
         } else {

@@ -54,7 +54,8 @@ struct Material {
     MaterialKind kind;
     MaterialTraits traits;  // of the lobes
     SurfaceTilt tilt;
-    bool isTilted = false;
+    bool isTilted = false;               // by a map
+    bool turnsNormal = false;            // of the Bsdf
     SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of bump maps
 
     // The lobes where they are constant, so that a hit costs no more than their copy.
@@ -126,6 +127,8 @@ void FoldConstants(const MaterialReader& in, Material* m) {
 Material Complete(const MaterialKind& kind, const MaterialReader& in) {
     Material m{.kind = kind, .traits = TraitsOf(kind, in), .tilt = TiltOf(kind, in)};
     m.isTilted = m.tilt.bump || m.tilt.normalMap;
+    // Interpolated normals of pbrt-v3's materials are as they are there.
+    m.turnsNormal = m.isTilted || std::holds_alternative<MetallicRoughness>(kind);
     m.needs = m.traits.needs | NeedsOf(m.tilt, in.textures);
     FoldConstants(in, &m);
     return m;
@@ -219,7 +222,7 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
         frame.n = hit->ns;
         CoordinateSystem(frame.n, &frame.s, &frame.t);
     }
-    Bsdf bsdf(frame, hit->n, 1, material.isTilted);
+    Bsdf bsdf(frame, hit->n, 1, material.turnsNormal);
     AddLobes(material,
              MaterialInputs{textures,
                             {hit->p, hit->uv, hit->dpdx, hit->dpdy, hit->duvdx, hit->duvdy},

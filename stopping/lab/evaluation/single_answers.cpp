@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "stopping/base/input_file.h"
+#include "stopping/base/text_lines.h"
 
 namespace lull {
 
@@ -86,9 +87,9 @@ SingleAnswer ParseAnswer(std::string_view line, bool hasTrack) {
 std::vector<SingleAnswer> ReadSingleAnswers(std::istream& in, const std::string& fileName) {
     std::vector<SingleAnswer> answers;
     bool hasHead = false, hasTrack = false;
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number) {
-        if (!line.empty() && line.back() == '\r') line.pop_back();
+    for (TextLines lines(in, fileName); lines.Next();) {
+        const std::string& line = lines.Line();
+        const int number = lines.Number();
         if (line.empty()) continue;
         try {
             if (!hasHead && line != kHead && line != kTrackHead)
@@ -104,7 +105,6 @@ std::vector<SingleAnswer> ReadSingleAnswers(std::istream& in, const std::string&
             throw std::runtime_error(fileName + ":" + std::to_string(number) + ": " + error.what());
         }
     }
-    if (in.bad()) throw std::runtime_error(fileName + ": cannot be read");
     if (answers.empty())
         throw std::runtime_error(fileName + ": has no answers; lines of " + kHead + " are needed");
     return answers;

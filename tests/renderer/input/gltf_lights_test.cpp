@@ -102,6 +102,43 @@ TEST(GltfLights, AreSpheresThatShineAsSpots) {
     EXPECT_NEAR(light.GetFloat("conedeltaangle", 0), 90 / kPi, 1e-4f);
 }
 
+TEST(GltfLights, HaveAProfileOfOurOwn) {
+    const auto fileWith = [](const json& light) {
+        GltfFile file;
+        file.Node({{"mesh", file.Triangle()}});
+        file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+        file.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {light}}}}};
+        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
+                   {"translation", {1, 2, 3}},
+                   {"scale", {3, 3, 3}}});
+        return file;
+    };
+    const json profile = {{"lull", {{"profile", "lamp.exr"}}}};
+    const Description d =
+        kFolder.Parse(fileWith({{"type", "point"}, {"intensity", 683}, {"extras", profile}}));
+    ASSERT_EQ(d.lights.size(), 1u);
+    const LightEntity& light = d.lights[0];
+    EXPECT_EQ(light.name, "goniometric");
+    EXPECT_EQ(light.parameters.GetString("mapname", ""), "lamp.exr");
+    EXPECT_TRUE(light.parameters.GetSpectrum("I", Rgb::Zero()).isApprox(Rgb::Ones()));
+    // The pole of the image is where spots shine to; a quarter of a turn leads from x to y.
+    const auto direction = [&](const Vec3f& w) {
+        return Vec3f(TransformPoint(light.worldFromLight, w) - Vec3f(1, 2, 3));
+    };
+    EXPECT_TRUE(direction({0, 1, 0}).isApprox(Vec3f(0, 0, -1)));
+    EXPECT_TRUE(direction({1, 0, 0}).isApprox(Vec3f(1, 0, 0)));
+    EXPECT_TRUE(direction({0, 0, 1}).isApprox(Vec3f(0, 1, 0)));
+
+    const json bad[] = {
+        {{"type", "directional"}, {"extras", profile}},
+        {{"type", "spot"}, {"extras", profile}, {"spot", json::object()}},
+        {{"type", "point"}, {"extras", {{"lull", {{"profile", "a.exr"}, {"radius", 1}}}}}},
+        {{"type", "point"}, {"extras", {{"lull", {{"profile", 3}}}}}},
+        {{"type", "point"}, {"extras", {{"lull", {{"profile", ""}}}}}}};
+    for (const json& each : bad)
+        EXPECT_NE(kFolder.ErrorOf(fileWith(each)).find("profile"), std::string::npos) << each;
+}
+
 TEST(GltfLights, HaveAnAngleOfOurOwn) {
     GltfFile file;
     file.Node({{"mesh", file.Triangle()}});

@@ -273,7 +273,7 @@ TEST(Learning, Ends) {
     render.Run();
     EXPECT_TRUE(render.learner.IsDone());
     EXPECT_EQ(render.learner.Figures().samples, 508);
-    EXPECT_EQ(render.learner.Paths().record, nullptr);
+    EXPECT_EQ(render.learner.Records().directions, nullptr);
     LearningRender brief(*scene, RenderFor(700), {.isShort = true});
     brief.Run();
     EXPECT_TRUE(brief.learner.IsDone());

@@ -53,7 +53,7 @@ inline Shared RenderShared(int ranks, const Change& change = {}, const Shared* b
         if (change) change(&options, rank);
         auto film = std::make_unique<Film>(
             kImage, FilmOptions{.grid = GridOf(options.schedule),
-                                .withSpreads = options.light != nullptr,
+                                .withSpreads = options.lightRounds != nullptr,
                                 .layers = {.aovs = {.depth = withLayers, .object = withLayers}}});
         if (before && rank == 0) {
             *film = *before->film;

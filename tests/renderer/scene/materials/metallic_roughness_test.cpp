@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/bsdf/sheen_albedo.h"
+#include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/materials/material_scene.h"
 
 namespace lull::test {
@@ -127,6 +128,27 @@ TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
     EXPECT_FLOAT_EQ(glass.Eta(), 1.5f);
     EXPECT_TRUE(
         std::holds_alternative<MicrofacetTransmission>(lastOf(SceneWith(rough, true).MakeBsdf(0))));
+}
+
+// By interpolated normals, too, no light comes from behind.
+TEST(MetallicRoughness, ReflectsNothingIntoTheSurface) {
+    for (const float roughness : {0.f, 0.05f, 0.2f}) {
+        const SceneWith b({{"roughnessfactor", roughness}});
+        const MaterialTable table = b.Make();
+        SurfaceInteraction hit = MaterialScene::Hit(0);
+        hit.ns = Vec3f(-0.766f, 0, 0.643f).normalized();
+        hit.wo = Vec3f(0.94f, 0, 0.342f).normalized();
+        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+        Random random(7);
+        int count = 0;
+        for (int i = 0; i < 500; ++i) {
+            const auto sample = bsdf.Sample(hit.wo, random.Point(), LobeSet::All);
+            if (!sample) continue;
+            EXPECT_GT(sample->wi.dot(hit.n), 0) << roughness;
+            ++count;
+        }
+        EXPECT_GT(count, 490) << roughness;
+    }
 }
 
 // What the sheen reflects at the angle of view is taken from what is below; the coat is above both.

@@ -1,0 +1,83 @@
+"""Reads photometric profiles of lamps (IESNA LM-63, type C), and paints them as images of all directions."""
+import math
+import re
+
+import bpy
+import numpy as np
+
+# By which Cycles makes the strength of a lamp of candela: 4 pi over 177.83 lm/W.
+_STRENGTH_PER_CANDELA = 4 * math.pi / 177.83
+_ROWS = 720
+
+
+class Unreadable(Exception):
+    """A profile that is no LM-63 file of type C."""
+
+
+def parse(text):
+    """Returns vertical angles, horizontal angles that end at 360, in degrees, and the candela at (horizontal, vertical)."""
+    head = re.search(r"^TILT *= *(\S+)[^\n]*\n", text, re.M)
+    if head is None or head.group(1).upper() != "NONE":
+        raise Unreadable
+    try:
+        numbers = [float(n) for n in re.split(r"[\s,]+", text[head.end():].strip())]
+        rows, columns, kind = (int(n) for n in numbers[3:6])
+        scale = numbers[2] * numbers[10] * numbers[11]
+        vertical, rest = np.array(numbers[13:13 + rows]), numbers[13 + rows:]
+        horizontal = np.array(rest[:columns])
+        candela = np.array(rest[columns:columns + rows * columns]).reshape(columns, rows) * scale
+    except (ValueError, IndexError) as e:
+        raise Unreadable from e
+    if kind != 1 or rows < 2 or columns < 1 or not np.isfinite(candela).all() or (np.diff(vertical) <= 0).any() \
+            or (np.diff(horizontal) <= 0).any():
+        raise Unreadable
+    return vertical, *_all_around(horizontal - horizontal[0], candela)
+
+
+def _all_around(horizontal, candela):
+    """Completes a quarter or a half of the horizontal angles by its mirror image, and a single one to all."""
+    if len(horizontal) == 1:
+        return np.array([0., 360]), np.concatenate([candela, candela])
+    while horizontal[-1] in (90, 180):
+        horizontal = np.concatenate([horizontal, 2 * horizontal[-1] - horizontal[-2::-1]])
+        candela = np.concatenate([candela, candela[-2::-1]])
+    if horizontal[-1] != 360:
+        raise Unreadable
+    return horizontal, candela
+
+
+def strengths(text):
+    """Returns the strength of Cycles' lamp by direction: rows from its -z axis to z, columns from x by y."""
+    vertical, horizontal, candela = parse(text)
+    down = (np.arange(_ROWS) + .5) * 180 / _ROWS
+    columns = 2 if len(horizontal) == 2 else 2 * _ROWS
+    around = (np.arange(columns) + .5) * 360 / columns
+    turned = (270 - around) % 360  # the profile begins at -y, and turns to -x
+    by_row = np.array([np.interp(down, vertical, c, left=0, right=0) for c in candela])
+    made = np.array([np.interp(turned, horizontal, row) for row in by_row.T])
+    return np.maximum(made, 0) * _STRENGTH_PER_CANDELA
+
+
+def text_of(node):
+    """Returns the file of an IES node."""
+    if node.mode == 'INTERNAL':
+        if node.ies is None:
+            raise Unreadable
+        return node.ies.as_string()
+    try:
+        with open(bpy.path.abspath(node.filepath), encoding="latin-1") as f:
+            return f.read()
+    except OSError as e:
+        raise Unreadable from e
+
+
+def paint(values, path):
+    """Writes an EXR of grey values, the first row at the top."""
+    rows, columns = values.shape
+    image = bpy.data.images.new("profile", columns, rows, float_buffer=True, is_data=True)
+    pixels = np.ones((rows, columns, 4), np.float32)
+    pixels[:, :, :3] = values[::-1, :, None]
+    image.pixels.foreach_set(pixels.ravel())
+    image.file_format, image.filepath_raw = 'OPEN_EXR', path
+    image.save()
+    bpy.data.images.remove(image)
