@@ -23,4 +23,11 @@ inline std::optional<double> InRange(double x, double least, double most) {
     return std::clamp(x, least, most);
 }
 
+// Returns x, and 0 for what rounding a 0 could leave below it; nothing for negative numbers and
+// NaN.
+inline std::optional<double> NotNegative(double x) {
+    if (!(x >= -kRounding)) return {};
+    return std::max(x, 0.0);
+}
+
 }  // namespace lull

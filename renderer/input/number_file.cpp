@@ -33,8 +33,9 @@ std::vector<float> ReadNumberFile(const std::string& path, const std::string& ki
             const char* const stop =
                 std::find_if(pos, end, [](char c) { return IsSeparator(c) || c == '#'; });
             const char* const begin = *pos == '+' ? pos + 1 : pos;
-            float value = 0;
-            const auto [parsed, status] = std::from_chars(begin, stop, value);
+            double exact = 0;  // of which a float may be too small for more than 0
+            const auto [parsed, status] = std::from_chars(begin, stop, exact);
+            const auto value = float(exact);
             if (status != std::errc() || parsed != stop || !std::isfinite(value))
                 throw Error(place, "'" + Printable({pos, size_t(stop - pos)}) + "' in a " + kind +
                                        " file is not a number");

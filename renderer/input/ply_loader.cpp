@@ -1,4 +1,5 @@
 #include "renderer/input/ply_loader.h"
+#include "renderer/base/rounding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -149,9 +150,10 @@ int64_t ReadTrianglesInBulk(const PlyElement& element, int64_t most, PlyCursor& 
 }
 
 uint32_t ReadIndex(PlyType type, PlyCursor& cursor) {
-    const double index = cursor.Read(type);
-    if (!(index >= 0 && index <= double(kMostElements)) || index != std::floor(index))
-        throw Error(cursor.loc, "a face has the vertex index " + std::to_string(index));
+    const double written = cursor.Read(type), index = std::round(written);
+    if (!(index >= 0 && index <= double(kMostElements)) ||
+        !(std::abs(written - index) <= kRounding))
+        throw Error(cursor.loc, "a face has the vertex index " + std::to_string(written));
     return uint32_t(index);
 }
 

@@ -61,9 +61,9 @@ tinygltf::Value Extra(const tinygltf::Light& light, const std::string& name) {
 }
 
 double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
-    const double radius = Extra(light, "radius").GetNumberAsDouble();
-    if (!(radius >= 0)) throw Error(loc, "its radius is negative");
-    return radius;
+    const auto radius = NotNegative(Extra(light, "radius").GetNumberAsDouble());
+    if (!radius) throw Error(loc, "its radius is negative");
+    return *radius;
 }
 
 // Returns the name of an image of the light's directions; empty: it shines evenly.
@@ -116,7 +116,8 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     const tinygltf::Light& light = document.model.lights[index];
     const FileLoc loc =
         document.At(fmt::format("/extensions/KHR_lights_punctual/lights/{}", index));
-    if (!(light.intensity >= 0)) throw Error(loc, "its intensity is negative");
+    const auto intensity = NotNegative(light.intensity);
+    if (!intensity) throw Error(loc, "its intensity is negative");
     if (node.atClose) warnings.Add(loc, "lights are not blurred by their motion");
     if (light.range > 0)
         warnings.Add(loc, "a light's range is ignored: it falls off with the distance squared");
@@ -131,7 +132,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     Rgb color = Rgb::Ones();
     if (light.color.size() == 3)
         color = Eigen::Array3d(light.color[0], light.color[1], light.color[2]).cast<float>();
-    const Rgb strength = color.max(0.f) * float(light.intensity / kLumensPerWatt);
+    const Rgb strength = color.max(0.f) * float(*intensity / kLumensPerWatt);
     const std::string profile = ProfileOf(light, loc);
     if (const double radius = RadiusOf(light, loc); radius > 0 && light.type != "directional")
         return AddSphere(light, strength, radius, entity, description);

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kDeepest = 100;
-constexpr double kLargest = 3e38;
+constexpr double kLargest = 3.40282355e38;  // the largest float, as it is printed, is allowed
 constexpr uint64_t kLargestSize = kLargestJsonSize;
 
 void CheckUri(const JsonAt& owner) {
@@ -234,7 +234,7 @@ void CheckMaterial(const JsonAt& o) {
     o.Extension("KHR_materials_volume", [](const JsonAt& e) {
         e.NumbersWithin("attenuationColor", 3, 0, 1);
         e.Number("thicknessFactor");
-        if (e.Has("thicknessFactor") && e.value.at("thicknessFactor") < 0)
+        if (e.Has("thicknessFactor") && !NotNegative(e.value.at("thicknessFactor")))
             e.Member("thicknessFactor").Fail("is negative");
         e.Number("attenuationDistance");
         if (e.Has("attenuationDistance") && !(e.value.at("attenuationDistance") > 0))
@@ -290,7 +290,7 @@ void CheckNumbers(const JsonAt& o) {
         o.Fail("is too large a number");
     if (!o.value.is_structured()) return;
     for (const auto& [key, v] : o.value.items())
-        if (v.is_structured() || v.is_number())
+        if ((v.is_structured() || v.is_number()) && key != "extras")
             CheckNumbers({o.root, o.file, v, o.path + "/" + Printable(key)});
 }
 
@@ -312,7 +312,10 @@ void CheckLights(const JsonAt& root) {
             light.Numbers("color", 3);
             light.Number("intensity");
             light.Number("range");
-            light.Extras([](const JsonAt& e) { e.Number("radius"); });
+            light.Extras([](const JsonAt& e) {
+                for (const char* name : {"radius", "angle"}) e.Number(name);
+                e.String("profile");
+            });
             if (light.value.at("type") == "spot" && light.Has("spot")) {
                 light.Member("spot").Object();
                 light.Member("spot").Number("innerConeAngle");

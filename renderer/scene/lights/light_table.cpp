@@ -114,13 +114,14 @@ std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
     if (entity.name == kAreaSpot)
         return std::make_unique<const EmissionProfile>(
             SpotCone::Make(entity, worldFromShape, true));
-    const float degrees = entity.parameters.GetFloat("spread", 180);
-    if (!(degrees > 0 && degrees <= 180))
+    const float given = entity.parameters.GetFloat("spread", 180);
+    const auto degrees = InRange(double(given), 0, 180);
+    if (!degrees || !(*degrees > 0))
         throw Error(entity.loc, fmt::format("the area light's \"spread\" is {:g}; it has to be "
                                             "above 0 and at most 180 degrees",
-                                            degrees));
-    if (degrees == 180) return {};
-    return std::make_unique<const EmissionProfile>(Spread::Make(double(degrees)));
+                                            given));
+    if (*degrees == 180) return {};
+    return std::make_unique<const EmissionProfile>(Spread::Make(*degrees));
 }
 
 AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warnings) {

@@ -305,6 +305,7 @@ TEST_F(Ply, BadValues) {
     EXPECT_EQ(errorOf("0 1 0", "3 0 1 3"), "a.ply: triangle 0 refers to vertex 3, but there are 3");
     EXPECT_EQ(errorOf("0 1 0", "3 0 1 -1"), "a.ply:13: a face has the vertex index -1.000000");
     EXPECT_EQ(errorOf("0 1 0", "3 0 1 .5"), "a.ply:13: a face has the vertex index 0.500000");
+    EXPECT_EQ(errorOf("0 1 0", "3 0 .9999999 -1e-9"), "");
     EXPECT_EQ(errorOf("0 1 0", "0"), "a.ply:13: a face has no vertices");
     EXPECT_EQ(errorOf("0 1 0", "-3 0 1 2"),
               "a.ply:13: a list of property 'vertex_indices' has a "

@@ -218,10 +218,14 @@ std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeE
 // "openbehind" rays from behind pass. Nothing is returned where all of it is there.
 std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
-    Coverage coverage{
-        textures.GetFloat(entity, "coverage", 1), params.GetFloat("coveragefactor", 1),
-        params.GetFloat("alphacutoff", -1),       params.GetInt("coverageuv", 0) == 1,
-        params.GetBool("coveragecolors", false),  params.GetBool("openbehind", false)};
+    // An alpha that was rounded to just below the cutoff is not below it.
+    const float cutoff = params.GetFloat("alphacutoff", -1) * float(1 - kRounding);
+    Coverage coverage{textures.GetFloat(entity, "coverage", 1),
+                      params.GetFloat("coveragefactor", 1),
+                      cutoff,
+                      params.GetInt("coverageuv", 0) == 1,
+                      params.GetBool("coveragecolors", false),
+                      params.GetBool("openbehind", false)};
     if (!coverage.IsWhole()) return coverage;
     if (!coverage.openBehind) return {};
     coverage.factor = 1;
