@@ -18,7 +18,7 @@ WALL = ["pavilion/night-view2.pbrt", "--substitute", "--crop", "0.75,0.9375,0.75
 
 # The stop is by a model trained without staircase2, the threshold the mean of the observers. In stopping/data:
 #   lull train *.h5 --human human.csv --leave-out p3d_staircase2-view0_part6 --threads 1 -o out.h5
-#   lull evaluate staircase2.h5 --human human.csv --stop learned:out.h5 --blocks stops.csv
+#   lull evaluate staircase2-view0.h5 --human human.csv --stop learned:out.h5 --blocks stops.csv
 STAIRS_COUNTS = {20: "", 2380: "stop", 2886: "human threshold", 10000: "reference"}
 WALL_COUNTS = {300: "the stop", 2333: "the human threshold"}
 

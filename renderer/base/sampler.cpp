@@ -1,7 +1,5 @@
 #include "renderer/base/sampler.h"
 
-#include "renderer/base/half.h"
-
 namespace lull {
 namespace {
 

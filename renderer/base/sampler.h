@@ -1,13 +1,26 @@
 // Gives every sample of every pixel its own numbers: addressable by (seed, pixel, sample index,
-// dimension), so that any thread can take any sample at any time.
+// dimension), so that any thread can take any sample at any time; and divides the samples of a
+// pixel into two halves, by which noise is estimated.
 #pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
 
 #include "renderer/base/enum_names.h"
 #include "renderer/base/math.h"
 
 namespace lull {
 
-// The samples of one Sobol sequence complement each other, so that its halves (half.h) differ by
+// Returns whether sample `index` belongs to the half on which noise is estimated: the bits at its
+// odd places have odd parity. Any multiple of four samples, from 0 on, has exactly half in it,
+// and both halves of a Sobol sequence stay well distributed (Cycles chooses the same way).
+inline bool InHalf(uint32_t index) { return std::popcount(index & 0xaaaaaaaau) & 1; }
+
+// Returns the place of sample `index` among those of its half: of four, either has one pair.
+inline uint32_t PlaceInHalf(uint32_t index) { return ((index >> 2) << 1) | (index & 1); }
+
+// The samples of one Sobol sequence complement each other, so that its halves (InHalf()) differ by
 // more than the noise of each. SobolHalves has a sequence for either, independent of the other,
 // from whose difference noise can be estimated.
 enum class SamplerKind { Random, Sobol, SobolHalves };

@@ -41,9 +41,10 @@ inline Vec2f SampleConcentricDisk(const Vec2f& u) {
     return r * (isWide ? Vec2f(c, s) : Vec2f(s, c));
 }
 
-// Maps the unit square to the hemisphere around +z with density cos(theta) / pi.
-inline Vec3f SampleCosineHemisphere(const Vec2f& u) {
-    const Vec2f d = SampleConcentricDisk(u);
+// Maps the unit square to the hemisphere around +z, up to the angle to it of this sine, with
+// density cos(theta) / (pi sine^2).
+inline Vec3f SampleCosineHemisphere(const Vec2f& u, float sine = 1) {
+    const Vec2f d = sine * SampleConcentricDisk(u);
     return {d.x(), d.y(), SafeSqrt(1 - d.squaredNorm())};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/base/math.h"
+#include "renderer/base/visit.h"
 
 namespace lull {
 
@@ -72,15 +73,15 @@ class SubsurfaceProfile {
 
     // Returns the light that leaves at distance r from where it entered, 1/area.
     Rgb operator()(float r) const {
-        return std::visit([&](const auto& k) { return k(r); }, kind);
+        return Visit(kind, [&](const auto& k) { return k(r); });
     }
     // Chooses a distance for a channel; nothing where it scatters nothing.
     std::optional<float> Sample(int channel, float u) const {
-        return std::visit([&](const auto& k) { return k.Sample(channel, u); }, kind);
+        return Visit(kind, [&](const auto& k) { return k.Sample(channel, u); });
     }
     // Returns the density over area, for all directions together, with which Sample chooses r.
     float Pdf(int channel, float r) const {
-        return std::visit([&](const auto& k) { return k.Pdf(channel, r); }, kind);
+        return Visit(kind, [&](const auto& k) { return k.Pdf(channel, r); });
     }
 
     float eta;  // index of the solid

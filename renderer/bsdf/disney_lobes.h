@@ -95,8 +95,8 @@ struct DisneyClearcoat {
         return (alpha2 - 1) / (kPi * std::log(alpha2) * (1 + (alpha2 - 1) * Sqr(cosine)));
     }
     static float Masking(float cosine) {
-        constexpr float alpha2 = Sqr(0.25f);
-        return 1 / (cosine + std::sqrt(alpha2 + (1 - alpha2) * Sqr(cosine)));
+        constexpr float kAlpha2 = Sqr(0.25f);
+        return 1 / (cosine + std::sqrt(kAlpha2 + (1 - kAlpha2) * Sqr(cosine)));
     }
 };
 

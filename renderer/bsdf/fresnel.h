@@ -38,8 +38,8 @@ inline Rgb FresnelConductor(float cosI, const RgbLanes& n, const RgbLanes& k) {
     const RgbLanes t3 = cos2 * a2b2 + Sqr(sin2), t4 = t2 * sin2;
     // Rs = (t1 - t2) / (t1 + t2) and Rp = Rs (t3 - t4) / (t3 + t4); their mean is one quotient.
     // The denominator vanishes only for eta = k = 0 seen head-on or edge-on.
-    constexpr float tiny = std::numeric_limits<float>::min();
-    const RgbLanes r = ((t1 - t2) * t3).max(0.f) / ((t1 + t2) * (t3 + t4)).max(tiny);
+    constexpr float kTiny = std::numeric_limits<float>::min();
+    const RgbLanes r = ((t1 - t2) * t3).max(0.f) / ((t1 + t2) * (t3 + t4)).max(kTiny);
     return r.head<3>();
 }
 

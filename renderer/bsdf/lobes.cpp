@@ -20,7 +20,7 @@ void Scale(std::monostate*, const Rgb&) {}
 
 Lobe Scaled(const Lobe& lobe, const Rgb& scale) {
     Lobe scaled = lobe;
-    std::visit([&](auto& l) { Scale(&l, scale); }, scaled);
+    Visit(scaled, [&](auto& l) { Scale(&l, scale); });
     return scaled;
 }
 

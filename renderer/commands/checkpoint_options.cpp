@@ -55,7 +55,7 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval) {
     return {.file = file, .interval = interval, .resume = IsThere(file), .isImplied = true};
 }
 
-FileLock LockCheckpoint(const std::string& file) {
+FileLock LockCheckpointFile(const std::string& file) {
     std::optional<FileLock> lock = FileLock::Try(file);
     if (!lock)
         throw Error(

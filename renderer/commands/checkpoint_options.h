@@ -19,7 +19,7 @@ CheckpointOptions ResumeIfThere(const std::string& file, double interval);
 
 // Returns exclusive access to a checkpoint, for as long as work may write it. Throws Error if
 // another process has it.
-FileLock LockCheckpoint(const std::string& file);
+FileLock LockCheckpointFile(const std::string& file);
 
 // Throws Error if the file could not be written, or if it is there and not to be resumed from, as
 // the render would replace it.

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/command.h"
 #include "renderer/progress/time_limit.h"
 
@@ -64,8 +64,8 @@ std::function<double()> StartClock(const ClockOptions& options) {
 ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk& talk, ProgressListener listener) {
     return [=, hasWarned = false](const RenderProgress& p) mutable {
         listener(p);
-        constexpr int64_t share = 20;  // of the samples, from which their speed is taken
-        if (hasWarned || !p.secondsLeft || p.samples >= pixels || p.samples < pixels / share)
+        constexpr int64_t kShare = 20;  // of the samples, from which their speed is taken
+        if (hasWarned || !p.secondsLeft || p.samples >= pixels || p.samples < pixels / kShare)
             return;
         const double needed = p.seconds / double(p.samples) * double(pixels - p.samples);
         const double left = std::max(*p.secondsLeft, 0.);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
-#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/option_values.h"
@@ -115,7 +115,8 @@ ExitCode RunDenoise(Options options) {
     // The next steps need the memory.
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     const auto start = std::chrono::steady_clock::now();
-    const DenoisedImage denoised = DenoiseImage(std::move(picture), region, blocks);
+    const DenoisedImage denoised = DenoiseWithReports(std::move(picture), region, blocks,
+                                                      StyleOfReports(false, options.quiet));
     PrintDenoised(denoised, SecondsSince(start), options.quiet);
 
     std::ranges::move(ColourChannels("", denoised.image.values), std::back_inserter(exr.channels));

@@ -2,10 +2,21 @@
 #pragma once
 
 #include "renderer/commands/talk.h"
+#include "renderer/progress/step_printer.h"
 #include "renderer/render/render.h"
 #include "renderer/results/denoised_image.h"
 
 namespace lull {
+
+// DenoiseImage() that reports on stderr how far it is.
+template <typename Picture>
+DenoisedImage DenoiseWithReports(Picture picture, const PixelRect& region,
+                                 const std::vector<Block>& blocks, ProgressStyle style,
+                                 DenoiserOptions options = {}) {
+    StepPrinter printer("denoising", style, stderr);
+    options.onShare = [&](double share) { printer.Print(share); };
+    return DenoiseImage(std::move(picture), region, blocks, options);
+}
 
 // Sets the visible error of blocks that the rule `denoised` has stopped to that by which it did.
 // Theirs are still the same samples, which the picture in the end filters more carefully: its own

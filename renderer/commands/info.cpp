@@ -5,7 +5,7 @@
 #include <chrono>
 #include <map>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/scene_options.h"

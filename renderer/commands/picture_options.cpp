@@ -8,15 +8,9 @@
 #include "renderer/base/memory.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/option_values.h"
-#include "renderer/image/color_view.h"
+#include "renderer/image/grade.h"
 
 namespace lull {
-
-template <>
-struct EnumNames<ToneMap> {
-    static constexpr std::pair<ToneMap, const char*> all[] = {{ToneMap::None, "none"},
-                                                              {ToneMap::Filmic, "filmic"}};
-};
 
 void AddPictureOptions(CLI::App& app, PictureOptions* options) {
     AddChoiceOption(app, "--tone-map", &options->format.grade.toneMap,

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/grading.h"
 #include "renderer/commands/guide_options.h"
@@ -59,7 +59,7 @@ int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule)
 }
 
 // Reads the rule, lets the schedule suit it, and cuts the blocks.
-void ReadRule(PreparedRender* p) {
+void PrepareRule(PreparedRender* p) {
     RenderSettings& settings = p->render.settings;
     ScheduleOptions& schedule = settings.schedule;
     const std::string rule = p->request.Rule();
@@ -211,7 +211,7 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     auto p = std::make_unique<PreparedRender>(request, ranks);
     RenderJob& render = p->render;
     const PixelRect& region = render.input.region;
-    ReadRule(p.get());
+    PrepareRule(p.get());
     CheckBlocks(p->blocks, render.settings.schedule.smallestSide, render.input.warnings);
     p->film = FilmOf(*p);
     CheckFilmFits(region, p->film, BytesBeside(request));
@@ -232,16 +232,16 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     return p;
 }
 
-// Makes the criteria; for a page, they also keep the curves of each block.
-CriterionMaker MakeCriteria(const Rule& rule, const std::vector<Grade>& grades, bool withCurves,
-                            std::vector<BlockHistory>* histories) {
+// Returns the maker of the criteria; for a page, they also keep the curves of each block.
+CriterionMaker MakeCriterionMaker(const Rule& rule, const std::vector<Grade>& grades,
+                                  bool withCurves, std::vector<BlockHistory>* histories) {
     CriterionMaker criteriaOf = MakeGradedCriteria(rule, grades);
     if (!withCurves) return criteriaOf;
     return [criteriaOf, histories](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;
         rules.push_back(criteriaOf(info));
-        return std::make_unique<BlockObserver>(std::move(rules), ObserverOptions{.curves = true},
-                                               &(*histories)[size_t(info.index)]);
+        return std::make_unique<BlockMonitor>(std::move(rules), MonitorOptions{.curves = true},
+                                              &(*histories)[size_t(info.index)]);
     };
 }
 
@@ -263,7 +263,7 @@ SessionOptions MakeOptions(PreparedRender* p) {
     const RenderJob& render = p->render;
     SessionOptions how = render.MakeSessionOptions(FixedSpp(p->request.Rule()) == 0);
     how.render.makeCriterion =
-        MakeCriteria(p->rule, p->grades, p->request.HasPage(), &p->histories);
+        MakeCriterionMaker(p->rule, p->grades, p->request.HasPage(), &p->histories);
     how.render.trend = p->rule.trend;
     how.render.display = p->display.get();
     AddListeners(*p, &how.render.events);
@@ -282,7 +282,7 @@ SessionOptions MakeOptions(PreparedRender* p) {
 
 // A preview that cannot be written is a warning: the files may be written in the end.
 void WritePreview(const PreparedRender& p, Session* session, const RenderResult& result) try {
-    const Film& film = session->TheFilm();
+    const Film& film = session->GetFilm();
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
         denoised = DenoisePreview(film);
@@ -324,7 +324,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
                              Session* session) {
     const RenderSettings& settings = p.render.settings;
     const PixelRect& region = p.render.input.region;
-    Film& film = session->TheFilm();
+    Film& film = session->GetFilm();
     DenoiserResults made;
     NoisyPicture picture;
     GroupedPicture lights;
@@ -340,8 +340,9 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const Talk talk = TalkOf(settings);
     const auto start = std::chrono::steady_clock::now();
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
-    made.image = hasGroups ? DenoiseImage(std::move(lights), region, p.blocks, how)
-                           : DenoiseImage(std::move(picture), region, p.blocks, how);
+    const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
+    made.image = hasGroups ? DenoiseWithReports(std::move(lights), region, p.blocks, style, how)
+                           : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
         talk.Warn(fmt::format(
@@ -357,14 +358,14 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
     const RenderSettings& settings = p.render.settings;
     const Talk talk = TalkOf(settings);
-    const int64_t rejected = session->TheFilm().RejectedCount();
+    const int64_t rejected = session->GetFilm().RejectedCount();
     PrintResult(settings, p.render.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
     const bool isFrame = p.request.frameNumber > 0 && !settings.checkpoint.file.empty();
     const ResultFiles written =
         WriteFiles(p.files, {{*p.render.scene, p.render.provenance},
-                             session->TheFilm(),
+                             session->GetFilm(),
                              result,
                              p.histories,
                              p.render.input.warnings,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/files/outputs.h"
-#include "renderer/results/block_observer.h"
+#include "renderer/render/block_monitor.h"
 #include "renderer/results/image_files.h"
 
 namespace lull {

@@ -19,7 +19,7 @@ namespace {
 // Lets all ranks share a render, of which a warning says so if one does not answer.
 void ShareAmongRanks(MpiJob* ranks, SessionOptions* options) {
     options->agree = [ranks](const std::string& what) { ranks->Begin(what); };
-    options->render.peers = ranks->ThePeers();
+    options->render.peers = ranks->GetPeers();
     options->render.events.onSilence = [ranks](const std::vector<int>& silent) {
         ranks->Warn(
             fmt::format("rank {} does not respond; if it has died, --resume continues from the "
@@ -59,7 +59,7 @@ void RenderJob::CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile
 void RenderJob::LockCheckpoint() {
     checkpointLock.reset();
     if (const std::string& file = settings.checkpoint.file; Leads() && !file.empty())
-        checkpointLock.emplace(lull::LockCheckpoint(file));
+        checkpointLock.emplace(LockCheckpointFile(file));
 }
 
 void RenderJob::LockResults(const std::string& output) {
@@ -82,7 +82,7 @@ void RenderJob::CheckSampler(SamplerKind sampler) const {
 Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) const {
     std::map<std::string, SignalMeasure> measures;
     if (denoiser) measures[kDenoisedRuleName] = MeasureOf(denoiser);
-    return lull::ReadRule(option, rule, settings, input.region, std::move(measures));
+    return ReadRuleOption(option, rule, settings, input.region, std::move(measures));
 }
 
 void RenderJob::Compile() {
@@ -107,7 +107,7 @@ SessionOptions RenderJob::MakeSessionOptions(bool adaptive) const {
 }
 
 RenderResult RenderJob::Run(Session* session, const RenderFunction& render) const {
-    if (denoiser) denoiser->Show(&session->TheFilm());
+    if (denoiser) denoiser->Show(&session->GetFilm());
     session->Resume();
     CatchInterrupts();
     return session->Run(render);

@@ -24,8 +24,8 @@ constexpr const char* kFooter =
   OUT.png             the same image for displays, 8-bit sRGB
   OUT.spp.png         samples per pixel of each block in false colours
   OUT.thresholds.csv  samples per pixel at which each block stopped, row by row
-  OUT.ranges.csv      range of samples per pixel of each block that contains the human threshold in
-                      80 of 100 cases, if the model provides it; also in the report
+  OUT.ranges.csv      range of samples per pixel of each block intended to contain the human
+                      threshold in 80 of 100 cases, if the model provides it; also in the report
 
 Examples:
   lull render scene.pbrt -o image.exr
@@ -34,7 +34,7 @@ Examples:
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
   lull render scene.pbrt --checkpoint c.h5 --resume --keep-checkpoint --cap 20000    # and more
   lull render scene.pbrt --preview 60                  # writes the current image every minute
-  lull render scene.pbrt --until 09:00                 # best quality until then
+  lull render scene.pbrt --until 09:00                 # ends then, noisiest blocks first
   mpirun -n 4 lull render scene.pbrt                   # on several machines, if built with MPI
 
 With --time or --until, the noisiest blocks are sampled first. Every pixel gets one sample, even past

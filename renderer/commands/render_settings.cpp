@@ -1,7 +1,5 @@
 #include "renderer/commands/render_settings.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
@@ -92,8 +90,9 @@ std::string ModelFolder() {
     return (program.parent_path().parent_path() / "share/lull/models").string();
 }
 
-Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
-              const PixelRect& region, std::map<std::string, SignalMeasure> measures) try {
+Rule ReadRuleOption(const std::string& option, const std::string& rule,
+                    const RenderSettings& settings, const PixelRect& region,
+                    std::map<std::string, SignalMeasure> measures) try {
     if (IsRule(rule, kDenoisedRuleName) && measures.empty())
         throw Error(option + " " + rule +
                     ": needs --denoise of lull render; lull compare and lull bench add a denoised "
@@ -135,11 +134,7 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
 }
 
 ProgressPrinter MakePrinter(const RenderSettings& settings, bool adaptive) {
-    const ProgressStyle style = settings.jsonProgress   ? ProgressStyle::Json
-                                : settings.quiet        ? ProgressStyle::Silent
-                                : isatty(STDERR_FILENO) ? ProgressStyle::Line
-                                                        : ProgressStyle::Plain;
-    return ProgressPrinter(style, adaptive, stderr);
+    return ProgressPrinter(StyleOfReports(settings.jsonProgress, settings.quiet), adaptive, stderr);
 }
 
 }  // namespace lull

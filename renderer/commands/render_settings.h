@@ -44,8 +44,9 @@ std::string ModelFolder();
 
 // Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
 // Error that a bad rule is; `measures` are RuleContext's.
-Rule ReadRule(const std::string& option, const std::string& rule, const RenderSettings& settings,
-              const PixelRect& region, std::map<std::string, SignalMeasure> measures = {});
+Rule ReadRuleOption(const std::string& option, const std::string& rule,
+                    const RenderSettings& settings, const PixelRect& region,
+                    std::map<std::string, SignalMeasure> measures = {});
 
 // Returns the provenance of an image, without the rule.
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);

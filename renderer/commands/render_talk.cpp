@@ -7,8 +7,8 @@
 
 #include "renderer/base/say.h"
 #include "renderer/progress/progress.h"
+#include "renderer/render/shortfall.h"
 #include "renderer/results/report.h"
-#include "renderer/results/shortfall.h"
 
 namespace lull {
 
@@ -28,11 +28,11 @@ std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
 
 // Returns the savings, unless there are none.
 std::string SavingsOf(const Savings& savings, int cap) {
-    constexpr double least = 0.0005;  // is shown as 0.1 %
-    if (savings.SampleShare() < least) return "";
+    constexpr double kLeast = 0.0005;  // is shown as 0.1 %
+    if (savings.SampleShare() < kLeast) return "";
     std::string text = fmt::format("; against {} spp everywhere {:.1f}% fewer samples", cap,
                                    100 * savings.SampleShare());
-    if (savings.SecondShare() >= least)
+    if (savings.SecondShare() >= kLeast)
         text += fmt::format(", {:.1f}% less time", 100 * savings.SecondShare());
     return text;
 }
@@ -67,13 +67,13 @@ std::string SharesOf(const std::vector<double>& shares) {
 
 // Returns the blocks at the cap, their rule's value there, and a sufficient cap.
 std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
-    constexpr size_t shown = 8;
+    constexpr size_t kShown = 8;
     const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
     if (capped.empty()) return "";
     const bool isOdds = provenance.trend.kind == RuleTrend::Probability;
     std::string text = fmt::format("blocks at the cap, with their {}:\n",
                                    isOdds ? "probability of visible noise" : "value of the rule");
-    for (size_t i = 0; i < std::min(shown, capped.size()); ++i) {
+    for (size_t i = 0; i < std::min(kShown, capped.size()); ++i) {
         const CappedBlock& c = capped[i];
         const PixelRect& pixels = result.blocks[size_t(c.block)].block.pixels;
         text +=
@@ -81,7 +81,7 @@ std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
                         pixels.min.x(), pixels.min.y(), c.value, c.threshold,
                         c.neededSpp > 0 ? fmt::format("; estimated stop {} spp", c.neededSpp) : "");
     }
-    if (capped.size() > shown) text += fmt::format("  and {} more\n", capped.size() - shown);
+    if (capped.size() > kShown) text += fmt::format("  and {} more\n", capped.size() - kShown);
     const int cap = CapFor(capped, provenance.schedule.cap);
     return text + (cap > 0 ? fmt::format("estimated sufficient --cap: {}\n", cap)
                            : fmt::format("cannot estimate a sufficient --cap yet; try --cap {}\n",
@@ -91,7 +91,7 @@ std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
 // Returns the shortfall at the deadline. The noise of blocks is not known within their first pass,
 // nor before the next one after a render was resumed.
 std::string ShortfallOf(const Provenance& provenance, const RenderResult& result) {
-    constexpr size_t shown = 8;
+    constexpr size_t kShown = 8;
     std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
     const auto unknown =
         std::erase_if(noisy, [](const NoisyBlock& block) { return !std::isfinite(block.noise); });
@@ -102,16 +102,16 @@ std::string ShortfallOf(const Provenance& provenance, const RenderResult& result
             unknown == 1 ? "" : "s", provenance.schedule.passLength);
     if (noisy.empty()) return text;
     text += "blocks not stopped, with their masked noise in L*:\n";
-    for (size_t i = 0; i < std::min(shown, noisy.size()); ++i) {
+    for (size_t i = 0; i < std::min(kShown, noisy.size()); ++i) {
         const Block& block = result.blocks[size_t(noisy[i].block)].block;
         text += fmt::format(
             "  block {} at {},{}: {:.2f} at {} spp; estimated stop {} spp, after {}\n",
             noisy[i].block, block.pixels.min.x(), block.pixels.min.y(), noisy[i].noise, block.spp,
             noisy[i].neededSpp, FormatDuration(NeededSeconds({noisy[i]}, result)));
     }
-    if (noisy.size() > shown)
-        text += fmt::format("  and {} more, at most {:.2f}\n", noisy.size() - shown,
-                            noisy[shown].noise);
+    if (noisy.size() > kShown)
+        text += fmt::format("  and {} more, at most {:.2f}\n", noisy.size() - kShown,
+                            noisy[kShown].noise);
     if (unknown == 0)
         text += fmt::format("estimated missing time: {}\n",
                             FormatDuration(NeededSeconds(noisy, result)));

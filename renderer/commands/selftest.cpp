@@ -5,9 +5,9 @@
 #include <chrono>
 #include <memory>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
-#include "renderer/base/seconds_since.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/option_values.h"
 #include "renderer/commands/render_settings.h"

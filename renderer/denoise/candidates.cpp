@@ -39,16 +39,16 @@ ErrorScale MakeErrorScale(const Halves& smooth, const Planes& variance) {
 }
 
 // Estimates the squared error of the mean of both halves by that of `made`, of which `other` is the
-// other half, against `judge`, whose noise squared is estimated by `noise`.
-Planes ErrorOf(const Planes& made, const Planes& other, const Planes& judge, const Planes& noise,
-               const ErrorScale& scale) {
+// other half, against `reference`, whose noise squared is estimated by `noise`.
+Planes ErrorOf(const Planes& made, const Planes& other, const Planes& reference,
+               const Planes& noise, const ErrorScale& scale) {
     const auto square = [](float x) { return x * x; };
     Planes error(made.width, made.height, 1);
     for (size_t i = 0; i < error.Area(); ++i) {
         float sum = 0;
         for (int c = 0; c < kColours; ++c) {
             const float x = made.Plane(c)[i];
-            sum += square(x - judge.Plane(c)[i]) - noise.Plane(c)[i] -
+            sum += square(x - reference.Plane(c)[i]) - noise.Plane(c)[i] -
                    square(x - other.Plane(c)[i]) / 4;
         }
         error.values[i] = sum * scale.ofSquares.values[i] * scale.weight.values[i];

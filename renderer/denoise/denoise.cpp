@@ -134,7 +134,7 @@ void ForgetFireflies(const std::vector<Firefly>& fireflies, const Halves& withou
     }
 }
 
-DenoisedPicture Denoise(NoisyPicture in, Effort effort) {
+DenoisedPicture Denoise(NoisyPicture in, Effort effort, const ShareListener& onShare) {
     const bool hasEmission = in.emission.a.count > 0;
     if (hasEmission) TakeEmission(&in);
     MakeSane(&in.colour);
@@ -144,7 +144,8 @@ DenoisedPicture Denoise(NoisyPicture in, Effort effort) {
     ForgetFireflies(result.fireflies, result.noisy, &in.variance);
     result.variance = EstimateVariance(result.noisy, in.variance);
     in.variance = {};  // a large picture needs the memory, here and below
-    result.halves = FilterColours(result.noisy, std::move(in.features), result.variance, effort);
+    result.halves =
+        FilterColours(result.noisy, std::move(in.features), result.variance, effort, onShare);
     RestoreStructure(result.noisy, result.variance, &result.halves);
     if (hasEmission) AddEmission(in.emission, &result);
     in.emission = {};

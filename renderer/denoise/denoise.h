@@ -45,6 +45,6 @@ void ForgetFireflies(const std::vector<Firefly>&, const Halves& without, Planes*
 // Denoises a picture of at least one pixel, whose memory it uses. Values that are not finite or
 // negative count as 0. The same bits for any number of threads. Takes some 7.5 us of
 // CPU time a pixel, or 5.5 if it is quick.
-DenoisedPicture Denoise(NoisyPicture, Effort = Effort::Full);
+DenoisedPicture Denoise(NoisyPicture, Effort = Effort::Full, const ShareListener& = {});
 
 }  // namespace lull

@@ -136,7 +136,7 @@ DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> pla
 
 DenoiserResult RunDenoiser(NoisyPicture picture, std::span<const PixelRect> blocks,
                            const DenoiserOptions& options) {
-    return Measured(Denoise(std::move(picture), options.effort), blocks, options);
+    return Measured(Denoise(std::move(picture), options.effort, options.onShare), blocks, options);
 }
 
 GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blocks,
@@ -148,7 +148,10 @@ GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blo
         NoisyPicture light = picture.light(i);
         const bool isLast = i + 1 == picture.groups;
         light.features = isLast ? std::move(picture.features) : picture.features;
-        DenoisedPicture denoised = Denoise(std::move(light), options.effort);
+        const auto onShare = [&](double share) {
+            if (options.onShare) options.onShare((i + share) / picture.groups);
+        };
+        DenoisedPicture denoised = Denoise(std::move(light), options.effort, onShare);
         Add(denoised.picture, &sum.picture);
         Add(denoised.halves, &sum.halves);
         Add(denoised.noisy, &sum.noisy);

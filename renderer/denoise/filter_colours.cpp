@@ -21,6 +21,28 @@ constexpr int kMargin = 2 * kChoiceReach + 4;
 static_assert(kMargin % 2 == 0);
 constexpr int kFitReach = 2 * kPatches.radius;  // pixels from which a fit depends on features
 
+// Returns whether a picture is large enough to be looked at in half of its size.
+bool HasCoarse(int width, int height) { return std::min(width, height) >= 2 * kLeastSide; }
+
+// The share of the pixels of all scales that have been filtered.
+class Meter {
+  public:
+    Meter(int width, int height, const ShareListener& onShare) : onShare(onShare) {
+        for (int i = 0; i < kScales; ++i, width = (width + 1) / 2, height = (height + 1) / 2) {
+            all += double(width) * height;
+            if (!HasCoarse(width, height)) break;
+        }
+    }
+    void Add(double pixels) {
+        done += pixels;
+        if (onShare) onShare(std::min(done / all, 1.0));
+    }
+
+  private:
+    const ShareListener& onShare;
+    double all = 0, done = 0;
+};
+
 // Inputs of one scale.
 struct Level {
     const Halves& noisy;
@@ -93,7 +115,7 @@ struct CandidateRows {
 };
 
 // Frees the features, which are large, as far as they are of no use any more.
-Halves FilterLevel(const Level& level, Planes* features) {
+Halves FilterLevel(const Level& level, Planes* features, Meter* meter) {
     const int width = level.Width(), height = level.Height();
     Halves result{Planes(width, height, kColours), Planes(width, height, kColours)};
     CandidateRows rows(width, std::min(height, BandRows(height) + 2 * kMargin));
@@ -112,37 +134,40 @@ Halves FilterLevel(const Level& level, Planes* features) {
             Paste(chosen.b, part, tile.x0, tile.y0, &result.b);
         });
         done = ready;
+        meter->Add(double(width) * (y1 - y0));
         rows.MoveTo(std::max(0, done - kMargin));
     }
     return result;
 }
 
 Halves FilterLevels(const Halves& noisy, Planes features, const Planes& variance, int scales,
-                    int rowsPerFit);
+                    int rowsPerFit, Meter* meter);
 
 // Filters a picture at half of its size, and at less. Returns nothing where it is too small for
 // that, or where no scale is left.
 Halves FilterCoarse(const Halves& noisy, const Planes& features, const Planes& variance, int scales,
-                    int rowsPerFit) {
-    if (scales == 0 || std::min(variance.width, variance.height) < 2 * kLeastSide) return {};
+                    int rowsPerFit, Meter* meter) {
+    if (scales == 0 || !HasCoarse(variance.width, variance.height)) return {};
     Planes ofMeans = Halved(variance);
     for (float& v : ofMeans.values) v /= 4;
     return FilterLevels({Halved(noisy.a), Halved(noisy.b)}, Halved(features), ofMeans, scales,
-                        rowsPerFit);
+                        rowsPerFit, meter);
 }
 
 Halves FilterLevels(const Halves& noisy, Planes features, const Planes& variance, int scales,
-                    int rowsPerFit) {
+                    int rowsPerFit, Meter* meter) {
     // First, as nothing of this scale is there yet.
-    const Halves coarse = FilterCoarse(noisy, features, variance, scales - 1, rowsPerFit);
-    return FilterLevel({noisy, features, variance, coarse, rowsPerFit}, &features);
+    const Halves coarse = FilterCoarse(noisy, features, variance, scales - 1, rowsPerFit, meter);
+    return FilterLevel({noisy, features, variance, coarse, rowsPerFit}, &features, meter);
 }
 
 }  // namespace
 
-Halves FilterColours(const Halves& noisy, Planes features, const Planes& variance, Effort effort) {
+Halves FilterColours(const Halves& noisy, Planes features, const Planes& variance, Effort effort,
+                     const ShareListener& onShare) {
     const int rowsPerFit = effort == Effort::Full ? 1 : 2;
-    return FilterLevels(noisy, std::move(features), variance, kScales, rowsPerFit);
+    Meter meter(variance.width, variance.height, onShare);
+    return FilterLevels(noisy, std::move(features), variance, kScales, rowsPerFit, &meter);
 }
 
 }  // namespace lull

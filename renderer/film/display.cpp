@@ -8,8 +8,8 @@
 #include <condition_variable>
 #include <thread>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
-#include "renderer/base/thread_clock.h"
 #include "renderer/film/display/connection.h"
 #include "renderer/film/display/snapshot.h"
 #include "renderer/film/display/tev_messages.h"

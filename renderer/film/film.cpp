@@ -56,11 +56,12 @@ Film::Film(const PixelRect& region, const FilmOptions& options)
 }
 
 int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {
-    constexpr int64_t sum = sizeof(std::array<double, 3>);
+    constexpr int64_t kSumBytes = sizeof(std::array<double, 3>);
     const auto tilesAlong = [&](int size) {
         return int64_t(CountOf(TilesAlong(size, options.grid)));
     };
-    return region.Area() * ((options.withHalf ? 2 * sum : sum) + Layers::Bytes(options.layers)) +
+    return region.Area() *
+               ((options.withHalf ? 2 * kSumBytes : kSumBytes) + Layers::Bytes(options.layers)) +
            tilesAlong(region.Width()) * tilesAlong(region.Height()) * int64_t(sizeof(TileSamples));
 }
 

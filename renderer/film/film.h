@@ -8,9 +8,18 @@
 
 #include "renderer/film/film_pixel.h"
 #include "renderer/film/layers.h"
-#include "renderer/film/sample_spread.h"
 
 namespace lull {
+
+// Sums up samples of a tile: how noisy they are, and how long their paths.
+struct SampleSpread {
+    double squares = 0;    // of luminance, about the means of its pixels
+    int64_t freedom = 0;   // how many of these are independent
+    int64_t vertices = 0;  // of paths, without the camera
+    int64_t samples = 0;
+    double connected = 0;  // squares of the luminance that connections have found
+    double light = 0;      // of that of light paths, one by one, in the round
+};
 
 // A coarse picture of a region: one colour for each square of spacing x spacing pixels, row by row,
 // finite.

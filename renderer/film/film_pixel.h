@@ -4,17 +4,19 @@
 #include <array>
 #include <cstdint>
 
-#include "renderer/base/half.h"
 #include "renderer/base/math.h"
+#include "renderer/base/sampler.h"
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 
 // Returns how many of the samples 0 .. count - 1 are in the half.
 uint32_t HalfCount(uint32_t count);
 
-// Returns the luminance of a sum of colours, with the weights of base/color.h.
+// Returns the luminance of a sum of colours.
 inline double Luminance(const std::array<double, 3>& sum) {
-    return 0.212671 * sum[0] + 0.715160 * sum[1] + 0.072169 * sum[2];
+    const auto& [r, g, b] = kLuminanceWeights;
+    return r * sum[0] + g * sum[1] + b * sum[2];
 }
 
 // The sums of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and are

@@ -56,6 +56,8 @@ class LightGroupLayer {
     double SquaresAt(int group, const Vec2i& p) const {
         return planes[size_t(group)].noise->At(p).squares;
     }
+    // Returns whether the group has the film's first look, where a pixel has no samples: the last.
+    bool HasFirstLook(int group) const { return group + 1 == Count(); }
     // Returns the sum of the light of samples that hit nothing; it is kept.
     const std::array<double, 3>& BackgroundAt(int group, const Vec2i& p) const {
         return planes[size_t(group)].backgrounds->At(p);

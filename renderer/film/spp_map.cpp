@@ -121,14 +121,14 @@ void DrawLegend(Canvas& canvas, int top, int barHeight, int dot, int lowest, int
 
 Rgb Viridis(float t) {
     // Nine points of the map, evenly spaced; 8-bit sRGB.
-    static constexpr int table[9][3] = {{68, 1, 84},    {71, 44, 122},  {59, 81, 139},
-                                        {44, 113, 142}, {33, 144, 141}, {39, 173, 129},
-                                        {92, 200, 99},  {170, 220, 50}, {253, 231, 37}};
+    static constexpr int kTable[9][3] = {{68, 1, 84},    {71, 44, 122},  {59, 81, 139},
+                                         {44, 113, 142}, {33, 144, 141}, {39, 173, 129},
+                                         {92, 200, 99},  {170, 220, 50}, {253, 231, 37}};
     const float x = std::clamp(t, 0.f, 1.f) * 8;
     const int i = std::min(int(x), 7);
     Rgb color;
     for (int c = 0; c < 3; ++c)
-        color[c] = Lerp(x - float(i), float(table[i][c]), float(table[i + 1][c])) / 255;
+        color[c] = Lerp(x - float(i), float(kTable[i][c]), float(kTable[i + 1][c])) / 255;
     return color;
 }
 

@@ -6,12 +6,19 @@
 #include <span>
 #include <string>
 
+#include "renderer/base/enum_names.h"
 #include "renderer/formats/view_transform.h"
 
 namespace lull {
 
 // How radiance is fitted to the range of a display.
 enum class ToneMap { None, Filmic };
+
+template <>
+struct EnumNames<ToneMap> {
+    static constexpr std::pair<ToneMap, const char*> all[] = {{ToneMap::None, "none"},
+                                                              {ToneMap::Filmic, "filmic"}};
+};
 
 // Applies the curve of J. Hable ("Filmic Tonemapping Operators", 2010; from Uncharted 2) to a
 // linear component: toe and shoulder of film, with his constants, an exposure bias of 2 and a
@@ -48,5 +55,9 @@ bool MapColors(const Grade&, std::span<float> rgb);
 // Replaces linear R, G, B of each pixel by those that an sRGB display shows in the graded picture:
 // finite, at least 0, above 1 only without tone map and view, and not rounded.
 void ApplyGrade(const Grade&, std::span<float> rgb);
+
+// Returns a view of the configuration file `config`, empty: $OCIO, for its default display; the
+// default view if `view` is empty. Throws Error, with the names of the views if there is no such.
+std::shared_ptr<const ViewTransform> LoadView(const std::string& config, const std::string& view);
 
 }  // namespace lull

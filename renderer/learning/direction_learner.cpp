@@ -191,13 +191,13 @@ bool DirectionLearner::Finish(bool isUsed, const std::string& why) {
     return false;
 }
 
-void DirectionLearner::Apply(PathOptions* paths) {
+void DirectionLearner::Apply(PathOptions* paths, PathRecords* records) {
     if (rounds.IsDone()) {
         if (figures.isUsed) paths->guide = &guide;
     } else if (rounds.round > 0) {
         paths->guide = &state.guide;
-        paths->record = &state.record;
-        paths->usual = float(usual);
+        records->directions = &state.record;
+        records->usualForDirections = float(usual);
     }
 }
 

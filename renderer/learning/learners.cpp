@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/learning/learner_state.h"
 
 namespace lull {
@@ -65,7 +65,8 @@ void Learners::EndRound(Film* film, const lull::RoundEnd& ended) {
 
 void Learners::SetPaths() {
     paths = Estimator::Combined;
-    ForEachPresent(kinds, [&](auto& kind) { kind.Apply(&paths); });
+    records = {};
+    ForEachPresent(kinds, [&](auto& kind) { kind.Apply(&paths, &records); });
 }
 
 GuideFigures Learners::Figures() const {

@@ -20,8 +20,8 @@
 //       the counters to which samples of a tile are told in this round; null: none
 //   void EndRound(Film*, const lull::RoundEnd&)
 //       learns from the round if that is its own, and begins the next
-//   void Apply(PathOptions*)
-//       lets the paths of the round sample as was learned, and record
+//   void Apply(PathOptions*, PathRecords*)
+//       lets the paths of the round sample as was learned, and be recorded
 //   double Variance(const Film&, const PixelRect& part) const
 //       of a sample, relative to one for which nothing was learned: in (0, 1]
 //   void Describe(GuideFigures*) const
@@ -47,9 +47,10 @@ class Learners {
     Learners& operator=(const Learners&) = delete;
 
     bool IsEmpty() const { return AreAllMissing(kinds); }
-    // Return the options of this round's paths, and the spp at which it ends: no block goes beyond
-    // it before EndRound(). kNoRoundEnd: no kind asks for another round.
+    // Return the options of this round's paths, what learns from them, and the spp at which it
+    // ends: no block goes beyond it before EndRound(). kNoRoundEnd: no kind asks for another round.
     const PathOptions& Paths() const { return paths; }
+    const PathRecords& Records() const { return records; }
     int RoundEnd() const;
     bool IsDone() const { return RoundEnd() == kNoRoundEnd; }
 
@@ -77,6 +78,7 @@ class Learners {
 
     OptionalKinds<LightLearner, DirectionLearner, StrategyLearner> kinds;
     PathOptions paths = Estimator::Combined;
+    PathRecords records;
     double seconds = 0;  // elapsed, between rounds
 };
 

@@ -97,16 +97,18 @@ SampleSpread* LightLearner::SpreadOf(Film* film, const PixelRect& tile) {
     return nullptr;
 }
 
-void LightLearner::Apply(PathOptions* paths) {
+void LightLearner::Apply(PathOptions* paths, PathRecords* records) {
     LearnedLight& learned = paths->learned;
     if (!lights.IsEmpty()) {
         learned.lights = &lights;
-        if (!rounds.IsDone()) learned.lightRecord = &lightRecord;
-        learned.usual = float(usual);
+        if (!rounds.IsDone()) records->lights = &lightRecord;
+        records->usualForLights = float(usual);
     }
     if (!environment.guide.IsEmpty()) {
         learned.environment = &environment.guide;
-        if (!rounds.IsDone()) learned.environmentRecord = &environment.record;
+        if (rounds.IsDone()) return;
+        records->environment = &environment.record;
+        records->environmentGuide = &environment.guide;
     }
 }
 

@@ -29,7 +29,7 @@ class LightLearner {
     void Begin(const Schedule&) {}
     SampleSpread* SpreadOf(Film*, const PixelRect& tile);
     void EndRound(Film*, const lull::RoundEnd&);
-    void Apply(PathOptions*);
+    void Apply(PathOptions*, PathRecords*);
     double Variance(const Film& film, const PixelRect& part) const {
         return VarianceOf(trial.noise, film, part);
     }

@@ -31,7 +31,7 @@ class StrategyLearner {
     SampleSpread* SpreadOf(Film* film, const PixelRect& tile) { return film->SpreadOf(tile); }
     // Learns from every round, and lets the film forget the spreads.
     void EndRound(Film*, const lull::RoundEnd&);
-    void Apply(PathOptions* paths) const { paths->shares = ofRound; }
+    void Apply(PathOptions* paths, PathRecords*) const { paths->shares = ofRound; }
     double Variance(const Film&, const PixelRect&) const { return 1; }
     void Describe(GuideFigures*) const {}
     void Put(StateWriter* writer) const { writer->Put(shares); }

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "renderer/mpi/nap.h"
+#include "renderer/mpi/backoff.h"
 #include "stopping/base/state.h"
 
 namespace lull {
@@ -45,10 +45,10 @@ std::optional<std::pair<int, T>> Receive(Peers* peers) {
 
 Agreement Lead(Peers* peers, const Report& mine, double patience) {
     std::map<int, Report> reports = {{0, mine}};
-    for (Nap nap; int(reports.size()) < peers->Count() && nap.SecondsSinceFirst() < patience;) {
+    for (Backoff backoff; int(reports.size()) < peers->Count() && backoff.Seconds() < patience;) {
         const auto report = Receive<Report>(peers);
         if (!report)
-            nap.Take();
+            backoff.Wait();
         else if (report->second.round == mine.round)
             reports.insert(*report);
     }
@@ -67,7 +67,7 @@ Agreement Lead(Peers* peers, const Report& mine, double patience) {
 
 Agreement Follow(Peers* peers, const Report& mine) {
     peers->Send(0, Pack(mine));
-    for (Nap nap;; nap.Take()) {
+    for (Backoff backoff;; backoff.Wait()) {
         const auto reply = Receive<Reply>(peers);
         if (!reply) continue;
         Agreement all = reply->second.all;

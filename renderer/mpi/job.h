@@ -25,7 +25,7 @@ class MpiJob {
     int Rank() const { return rank; }
     int Count() const { return count; }
     // Returns the connection to the other ranks; null if there are none.
-    Peers* ThePeers() { return peers.get(); }
+    Peers* GetPeers() { return peers.get(); }
 
     // Waits until all ranks are ready to begin, and checks that all are about to render the same
     // thing, which `what` describes completely. A rank that has been silent for longer than rank 0

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "renderer/base/error.h"
-#include "renderer/mpi/nap.h"
+#include "renderer/mpi/backoff.h"
 
 #ifdef LULL_MPI
 #include <mpi.h>
@@ -24,11 +24,11 @@ constexpr int kTag = 0x6c;
 
 // Returns false if it takes longer than `patience` seconds.
 bool WaitFor(MPI_Request request, double patience = INFINITY) {
-    for (Nap nap;; nap.Take()) {
+    for (Backoff backoff;; backoff.Wait()) {
         int done = 0;
         MPI_Test(&request, &done, MPI_STATUS_IGNORE);
         if (done) return true;
-        if (nap.SecondsSinceFirst() > patience) return false;
+        if (backoff.Seconds() > patience) return false;
     }
 }
 

@@ -54,7 +54,7 @@ std::string ErrorUri(const DenoisedImage& denoised) {
 }  // namespace
 
 std::string Base64(std::span<const std::byte> bytes) {
-    constexpr const char* digits =
+    constexpr const char* kDigits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
@@ -63,7 +63,7 @@ std::string Base64(std::span<const std::byte> bytes) {
         for (size_t k = i; k < i + 3; ++k)
             group = group << 8 | (k < bytes.size() ? uint32_t(bytes[k]) : 0);
         for (int k = 0; k < 4; ++k)
-            text += i + size_t(k) > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+            text += i + size_t(k) > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
     }
     return text;
 }

@@ -1,7 +1,7 @@
 // Writes reports for people: one HTML file with everything in it, which opens from disk.
 #pragma once
 
-#include "renderer/results/block_observer.h"
+#include "renderer/render/block_monitor.h"
 #include "renderer/results/report_json.h"
 
 namespace lull {

@@ -9,6 +9,7 @@
 const data = JSON.parse(byId("data").textContent);
 
 // What a kind of page adds to them:
+//   noun?: what it is, otherwise its kind
 //   sppName(image), sppHead(image): names of sample counts, for overlays and columns
 //   layers?, overlays? [{name, label, numbers}], overlay?: the first, isDivided?: of the viewer
 //   summarise(): fills its summary
@@ -35,7 +36,7 @@ function startPage(kind, sentence, facts, parts) {
   document.title = `${data.title} \u2013 lull ${kind}`;
   byId("title").textContent = data.title;
   byId("sentence").textContent = sentence;
-  byId("subtitle").textContent = [`A ${kind === "compare" ? "comparison" : kind} by lull` + (p ? " " + p.version : ""),
+  byId("subtitle").textContent = [`A ${parts.noun || kind} by lull` + (p ? " " + p.version : ""),
     `${data.width}\u00d7${data.height} pixels`, ...facts, data.cap ? `at most ${showCount(data.cap)} samples per pixel` : "",
     p ? `sampler ${[].concat(p.sampler).join(", ")}` : ""].filter(t => t).join(" \u00b7 ");
   document.body.classList.add(kind);

@@ -21,7 +21,7 @@ class StopTrend {
 
     // Adds a decision of the criterion at `spp` > 0, which increases. `variance` is that of the
     // BlockView; a change of it discards all earlier decisions. `noise` is
-    // Criterion::NoiseTold(): for a rule that has it, a decision without it (one from a
+    // Criterion::NetworkNoise(): for a rule that has it, a decision without it (one from a
     // checkpoint) is ignored.
     void Add(int spp, const Decision& decision, double variance = 1,
              std::optional<double> noise = {});

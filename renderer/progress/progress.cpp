@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,9 +56,10 @@ std::string TextOf(const TimeLeft& left) {
 
 // Returns the columns of a terminal.
 int ColumnsOf(std::FILE* stream) {
-    constexpr int usual = 80;
+    constexpr int kUsualColumns = 80;
     winsize size = {};
-    return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+    return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col
+                                                                            : kUsualColumns;
 }
 
 }  // namespace
@@ -87,14 +89,14 @@ std::string FormatDuration(double seconds) {
 }
 
 std::string FormatCount(double count) {
-    static constexpr const char* units[] = {"", "k", "M", "G", "T"};
+    static constexpr const char* kUnits[] = {"", "k", "M", "G", "T"};
     int unit = 0;
     while (count >= 999.5 && unit < 4) {
         count /= 1000;
         ++unit;
     }
     const int decimals = unit == 0 || count >= 99.95 ? 0 : count >= 9.995 ? 1 : 2;
-    return fmt::format("{:.{}f}{}{}", count, decimals, unit > 0 ? " " : "", units[unit]);
+    return fmt::format("{:.{}f}{}{}", count, decimals, unit > 0 ? " " : "", kUnits[unit]);
 }
 
 double ShareDone(const RenderProgress& p) {
@@ -137,6 +139,23 @@ std::string ProgressJson(const ProgressState& state) {
         p.samples, state.rate, p.seconds, remaining, left ? left->IsBound() : state.adaptive);
 }
 
+ProgressStyle StyleOfReports(bool json, bool quiet) {
+    return json                    ? ProgressStyle::Json
+           : quiet                 ? ProgressStyle::Silent
+           : isatty(STDERR_FILENO) ? ProgressStyle::Line
+                                   : ProgressStyle::Plain;
+}
+
+void PrintReport(const std::string& text, ProgressStyle style, std::FILE* stream) {
+    if (style == ProgressStyle::Silent) return;
+    // Returns to the start of the line and, at its end, erases the earlier text.
+    if (style == ProgressStyle::Line)
+        SayTo(stream, "\r{}\x1b[K", text);
+    else
+        SayTo(stream, "{}\n", text);
+    std::fflush(stream);
+}
+
 void ProgressPrinter::Print(const RenderProgress& p) {
     if (style == ProgressStyle::Silent) return;
     rate.Add(p);
@@ -144,17 +163,11 @@ void ProgressPrinter::Print(const RenderProgress& p) {
     const ProgressState state{p, share, rate.SamplesPerSecond(), adaptive};
     if (style == ProgressStyle::Plain && p.seconds < nextPlainLine) return;
     last = p;
-    if (style == ProgressStyle::Json) {
-        SayTo(stream, "{}\n", ProgressJson(state));
-    } else if (style == ProgressStyle::Line) {
-        // Return to the start of the line and, at its end, erase the earlier text. A line that is
-        // full would continue in the next.
-        SayTo(stream, "\r{}\x1b[K", ProgressText(state, ColumnsOf(stream) - 1));
-    } else {
-        SayTo(stream, "{}\n", ProgressText(state));
-        nextPlainLine = p.seconds + 30;
-    }
-    std::fflush(stream);
+    if (style == ProgressStyle::Plain) nextPlainLine = p.seconds + 30;
+    // A line that is full would continue in the next.
+    const int columns = style == ProgressStyle::Line ? ColumnsOf(stream) - 1 : 0;
+    PrintReport(style == ProgressStyle::Json ? ProgressJson(state) : ProgressText(state, columns),
+                style, stream);
 }
 
 void ProgressPrinter::Finish(const RenderProgress& p) {

@@ -1,6 +1,6 @@
 #include "renderer/render/block_criteria_internal.h"
 
-#include "renderer/base/thread_clock.h"
+#include "renderer/base/clocks.h"
 #include "renderer/learning/learners.h"
 #include "renderer/render/peers.h"
 #include "stopping/rules/lnoise.h"
@@ -29,9 +29,9 @@ double NoiseOf(const BlockView& view) {
     return SubBlockStatistics(noise, view.width, view.height, 1).maskedNoise[0];
 }
 
-std::vector<std::unique_ptr<Criterion>> MakeCriteria(const RenderContext& context,
-                                                     const RenderOptions& options,
-                                                     std::span<const Block> blocks) {
+std::vector<std::unique_ptr<Criterion>> MakeBlockCriteria(const RenderContext& context,
+                                                          const RenderOptions& options,
+                                                          std::span<const Block> blocks) {
     std::vector<std::unique_ptr<Criterion>> made(blocks.size());
     const bool follows = options.peers && options.peers->Rank() > 0;
     if (!options.makeCriterion || follows) return made;
@@ -86,7 +86,7 @@ BlockCriteria::BlockCriteria(const RenderContext& context, const RenderOptions& 
     : context(context),
       schedule(options.schedule),
       hasClock(context.secondsLeft),
-      criteria(MakeCriteria(context, options, blocks)) {}
+      criteria(MakeBlockCriteria(context, options, blocks)) {}
 
 ViewNeed BlockCriteria::NeedAt(int block, int spp) const {
     if (!IsPassEnd(spp, schedule)) return ViewNeed::Nothing;
@@ -108,7 +108,7 @@ BlockCheck BlockCriteria::Check(int index, const Block& block, int spp, double s
     check.variance = view.variance;
     if (criterion) {
         check.decision = criterion->Observe(view);
-        check.noiseTold = criterion->NoiseTold();
+        check.networkNoise = criterion->NetworkNoise();
     }
     check.answer.stop = check.decision.stop;
     if (hasClock) check.answer.noise = NoiseOf(view);

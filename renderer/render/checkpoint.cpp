@@ -34,7 +34,7 @@ std::vector<std::byte> PackBooks(const BlockResult& result) {
     writer.Put(result.seconds);
     writer.Put(result.criterionSeconds);
     writer.Put(uint32_t(result.decisions.size()));
-    for (const DecisionRecord& record : result.decisions) {
+    for (const BlockDecision& record : result.decisions) {
         const Decision& d = record.decision;
         writer.Put(int32_t(record.spp));
         writer.Put(uint8_t(d.stop));
@@ -56,7 +56,7 @@ BlockResult UnpackBooks(std::span<const std::byte> bytes) {
     result.seconds = reader.Get<double>();
     result.criterionSeconds = reader.Get<double>();
     for (uint32_t left = reader.Get<uint32_t>(); left > 0; --left) {
-        DecisionRecord record{reader.Get<int32_t>(), {}};
+        BlockDecision record{reader.Get<int32_t>(), {}};
         record.decision.checked = true;
         record.decision.stop = reader.Get<uint8_t>();
         record.decision.value = reader.Get<double>();
@@ -133,11 +133,11 @@ int CapIn(const RenderIdentity& identity) {
 
 // Throws Error naming the first thing that is not the same.
 void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, MayDiffer what) {
-    constexpr std::array stops = {"stop", "model", "cap"};
+    constexpr std::array kStops = {"stop", "model", "cap"};
     RenderIdentity all = wanted;
     all.insert(found.begin(), found.end());
     for (const auto& [key, value] : all)
-        if (what == MayDiffer::Stops && std::ranges::find(stops, key) != stops.end())
+        if (what == MayDiffer::Stops && std::ranges::find(kStops, key) != kStops.end())
             continue;
         else if (found.contains(key) != wanted.contains(key) || ValueIn(found, key) != value)
             throw Error(fmt::format(

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/color.h"
-#include "renderer/base/thread_clock.h"
 #include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 
@@ -74,7 +74,7 @@ Executor::Executor(const RenderContext& context, const RenderOptions& options,
 
 RenderResult Executor::Run() {
     RestartIntervals();
-    if (context.light) BeginLight();
+    if (context.lightRounds) BeginLight();
     for (;;) {
         do {
             pausing = false;
@@ -100,14 +100,17 @@ bool Executor::IsPauseDue() const {
            (options.events.onPreview && ledger.Seconds() >= nextPreview);
 }
 
-void Executor::BeginLight() {
+void Executor::BeginLightRound(const std::function<void()>& writeCheckpoint) {
     context.learners->Begin(schedule.Unlocked());
-    context.light->Begin(schedule.Unlocked(), context.learners->Paths().shares);
-    // With a larger cap this round would be a longer one: whoever goes on begins it again.
-    if (context.light->IsCutShort() && !isLastRound) WriteCheckpoint();
-    isLastRound = context.light->IsCutShort();
+    context.lightRounds->Begin(schedule.Unlocked(), context.learners->Paths().shares);
+    if (context.lightRounds->IsCutShort() && !isLastRound) writeCheckpoint();
+    isLastRound = context.lightRounds->IsCutShort();
+}
+
+void Executor::BeginLight() {
+    BeginLightRound([this] { WriteCheckpoint(); });
     schedule.BeginRound(RoundEndOf(context));
-    isLit = context.light->Trace([this] { return IsCancelled(); });
+    isLightTraced = context.lightRounds->Trace([this] { return IsCancelled(); });
 }
 
 bool Executor::EndRound() {
@@ -115,7 +118,7 @@ bool Executor::EndRound() {
     const bool goesOn = !IsCancelled() && schedule.IsRoundOver();
     context.learners->EndRound(context.film, {schedule.Unlocked().Options().roundEnd, goesOn});
     if (!goesOn) return false;
-    if (context.light)
+    if (context.lightRounds)
         BeginLight();
     else
         schedule.BeginRound(RoundEndOf(context));
@@ -128,7 +131,7 @@ void Executor::Quiesce() {
 }
 
 void Executor::RunTile() {
-    if (pausing || IsCancelled() || !isLit) return;
+    if (pausing || IsCancelled() || !isLightTraced) return;
     const std::optional<Tile> tile = schedule.Next();
     if (!tile) return;
     const double tileStart = ThreadSeconds(), wallStart = ledger.Seconds();
@@ -151,8 +154,8 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     SampleSpread* spread =
         context.learners ? context.learners->SpreadOf(film, tile.pixels) : nullptr;
     const auto render = [&](const auto& take) {
-        if (!context.light) return RenderTile(take, tile, sampler, film, spread, nullptr);
-        RoundLight light(*context.light, film);
+        if (!context.lightRounds) return RenderTile(take, tile, sampler, film, spread, nullptr);
+        RoundLight light(*context.lightRounds, film);
         return RenderTile(take, tile, sampler, film, spread, &light);
     };
     if (film->layers.IsEmpty()) {

@@ -36,6 +36,10 @@ class Executor {
     void SpawnReady() { tasks.Spawn(schedule.ReadyTiles()); }
     // With no task at work: if a round is over, learns from it, begins the next and returns true.
     bool EndRound();
+    // Then, too: begins a round of light paths, none of which are traced. Calls `writeCheckpoint`
+    // before a round that the cap cuts short, after which none is written: with a larger cap it
+    // would be longer, and whoever goes on begins it again.
+    void BeginLightRound(const std::function<void()>& writeCheckpoint);
     // Lets no more tiles begin, and waits for those under way.
     void Quiesce();
     // Forgets the samples of passes that the time did not suffice for. Returns their blocks.
@@ -60,8 +64,7 @@ class Executor {
     TaskSet tasks;
     std::atomic<bool> pausing = false;  // takes no more tiles
     std::atomic<bool> peerInterrupted = false;
-    std::atomic<bool> isLit = true;  // the light of the round, if there is any, has been traced
-    bool isLastRound = false;        // the cap cuts it short: the checkpoint is of before
+    std::atomic<bool> isLightTraced = true;      // of the round, if there is any
     double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:
@@ -72,6 +75,7 @@ class Executor {
     const RenderContext& context;
     const RenderOptions& options;
     const RankHooks hooks;
+    bool isLastRound = false;  // the cap cuts it short: the checkpoint is of before
 };
 
 // Returns whether the state has the blocks that the schedule will make of the region.

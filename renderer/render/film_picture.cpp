@@ -34,7 +34,7 @@ struct WholeLight {
     Rgb Look(const Vec2i& p) const { return film.MeanAt(p); }
 };
 
-// The same of a group of lights; the first look belongs to the last one.
+// The same of a group of lights.
 struct GroupLight {
     const Film& film;
     const LightGroupLayer& lights;
@@ -43,7 +43,7 @@ struct GroupLight {
     FilmPixel At(const Vec2i& p) const { return lights.At(group, p, film.At(p).count); }
     double SquaresAt(const Vec2i& p) const { return lights.SquaresAt(group, p); }
     Rgb Look(const Vec2i& p) const {
-        return group + 1 == lights.Count() ? film.MeanAt(p) : Rgb(Rgb::Zero());
+        return lights.HasFirstLook(group) ? film.MeanAt(p) : Rgb(Rgb::Zero());
     }
 };
 

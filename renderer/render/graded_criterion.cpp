@@ -64,7 +64,7 @@ Decision GradedCriterion::Observe(const BlockView& view) {
             (farthest->stop == decision.stop && OverThreshold(decision) > OverThreshold(*farthest));
         if (isFarther) {
             farthest = decision;
-            noiseTold = judge.criterion->NoiseTold();
+            networkNoise = judge.criterion->NetworkNoise();
         }
         if (decision.stop) judge.criterion.reset();
     }

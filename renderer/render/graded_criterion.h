@@ -24,13 +24,13 @@ class GradedCriterion final : public Criterion {
 
     ViewNeed Need(int spp) const override;
     Decision Observe(const BlockView&) override;
-    std::optional<double> NoiseTold() const override { return noiseTold; }
+    std::optional<double> NetworkNoise() const override { return networkNoise; }
     std::vector<std::byte> Save() const override;
     void Restore(std::span<const std::byte> state) override;
 
   private:
     std::vector<GradedJudge> judges;  // without a criterion once it has stopped the block
-    std::optional<double> noiseTold;
+    std::optional<double> networkNoise;
 };
 
 }  // namespace lull

@@ -26,14 +26,14 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind,
 double LightRounds::FindUnit() const {
     constexpr uint32_t kMost = 1 << 16;
     constexpr int kEnough = 256;
-    constexpr BdptShares shares = StrategyLearner::kFirst;
-    if (LightPathCount(scene, shares) == 0) return 1;
+    constexpr BdptShares kShares = StrategyLearner::kFirst;
+    if (LightPathCount(scene, kShares) == 0) return 1;
     Sampler sampler(kind, seed);
     std::vector<Splat> splats;
     double sum = 0;
     int count = 0;
     for (uint32_t i = 0; i < kMost && count < kEnough; ++i) {
-        TraceLightPath(scene, shares, sampler, 0, i, &splats);
+        TraceLightPath(scene, kShares, sampler, 0, i, &splats);
         for (const Splat& splat : splats) {
             const double y = double(Luminance(splat.radiance));
             if (!(y > 0)) continue;

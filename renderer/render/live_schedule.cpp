@@ -20,7 +20,7 @@ ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& o
 
 int RoundEndOf(const RenderContext& context) {
     return std::min(context.learners ? context.learners->RoundEnd() : kNoRoundEnd,
-                    context.light ? context.light->End() : kNoRoundEnd);
+                    context.lightRounds ? context.lightRounds->End() : kNoRoundEnd);
 }
 
 LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,

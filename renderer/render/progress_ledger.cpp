@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 
 namespace lull {
 
@@ -14,8 +14,8 @@ std::vector<StopTrend> MakeTrends(const RenderOptions& options,
     if (!options.trend || !options.events.onProgress || options.peers) return {};
     std::vector<StopTrend> made(results.size(), StopTrend(*options.trend));
     for (size_t i = 0; i < results.size(); ++i)
-        for (const DecisionRecord& record : results[i].decisions)
-            made[i].Add(record.spp, record.decision, 1, record.noiseTold);
+        for (const BlockDecision& record : results[i].decisions)
+            made[i].Add(record.spp, record.decision, 1, record.networkNoise);
     return made;
 }
 
@@ -50,10 +50,10 @@ void ProgressLedger::AddCheck(int block, int spp, const BlockCheck& check) {
     BlockResult& result = results[size_t(block)];
     result.criterionSeconds += check.seconds;
     if (!check.decision.checked) return;
-    result.decisions.push_back({spp, check.decision, check.noiseTold});
+    result.decisions.push_back({spp, check.decision, check.networkNoise});
     std::lock_guard lock(mutex);
     if (!trends.empty())
-        trends[size_t(block)].Add(spp, check.decision, check.variance, check.noiseTold);
+        trends[size_t(block)].Add(spp, check.decision, check.variance, check.networkNoise);
 }
 
 TileEffort ProgressLedger::TakeEffort() {

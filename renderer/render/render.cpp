@@ -51,14 +51,16 @@ SampleSource SamplesOf(const Scene& scene, const PathOptions& options) {
     };
 }
 
-SampleSource SamplesOf(const Scene& scene, const Learners& learners, const LightRounds* light,
+SampleSource SamplesOf(const Scene& scene, const Learners& learners, const LightRounds* rounds,
                        bool throughSpecular) {
-    return [&, light, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                       const SampleDetail& detail) {
+    return [&, rounds, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                        const SampleDetail& detail) {
         PathOptions options = learners.Paths();
         options.throughSpecular = throughSpecular;
-        if (light) options.shares = light->Round().shares;
-        return RenderSample(scene, options, sampler, pixel, index, detail);
+        if (rounds) options.shares = rounds->Round().shares;
+        SampleDetail all = detail;
+        all.records = &learners.Records();
+        return RenderSample(scene, options, sampler, pixel, index, all);
     };
 }
 

@@ -5,7 +5,7 @@
 
 #include "renderer/film/display.h"
 #include "renderer/film/film.h"
-#include "renderer/render/render_events.h"
+#include "renderer/progress/progress.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/rules/criterion.h"
@@ -14,10 +14,10 @@
 namespace lull {
 
 // A decision of a criterion on a block.
-struct DecisionRecord {
+struct BlockDecision {
     int spp;
     Decision decision;
-    std::optional<double> noiseTold = {};  // Criterion::NoiseTold(), for forecasts
+    std::optional<double> networkNoise = {};  // Criterion::NetworkNoise(), for forecasts
 };
 
 struct BlockResult {
@@ -25,7 +25,7 @@ struct BlockResult {
     double seconds = 0;  // of processors, spent on its samples
     // Spent on its criterion and, with a clock, on its noise, the view of the pixels included.
     double criterionSeconds = 0;
-    std::vector<DecisionRecord> decisions;  // those for which the block was checked
+    std::vector<BlockDecision> decisions;  // those for which the block was checked
 };
 
 // With the film, all that is needed to continue a render: the pixels will be the
@@ -35,6 +35,31 @@ struct RenderState {
     // Of each block, as Criterion::Save() has it; empty: all begin again.
     std::vector<std::vector<std::byte>> criteria;
     double seconds = 0;  // since the start of the first run
+};
+
+struct RenderResult;
+
+// Callbacks of a running render. Each can be empty.
+struct RenderEvents {
+    // Progress, from one thread at a time, about every `progressInterval` seconds and at the
+    // end.
+    std::function<void(const RenderProgress&)> onProgress;
+    double progressInterval = 0.25;
+    // A block that stops, or is at the cap; from any thread, one at a time.
+    std::function<void(int index, const Block&)> onStop;
+    // The result so far, with no thread at work and all samples in the film, every
+    // `previewInterval` seconds. Empty for all ranks, or for none.
+    std::function<void(const RenderResult&)> onPreview;
+    double previewInterval = 60;
+    // Ranks that do not answer, once the render has been cancelled.
+    std::function<void(const std::vector<int>& ranks)> onSilence;
+    // A rank that was given up, and for how many seconds it was silent.
+    std::function<void(int rank, double seconds)> onGivenUp;
+
+    // Of a Session: the progress when it ended, of the first rank alone; and lines on the
+    // checkpoint resumed, on learning, and on checkpoints that could not be written.
+    std::function<void(const RenderProgress&)> onFinish;
+    std::function<void(const std::string&)> onResume, onLearning, onWarning;
 };
 
 class Learners;
@@ -103,7 +128,7 @@ struct RenderContext {
     Learners* learners = nullptr;
     // Traces light paths in rounds, with the shares that learners have found (light_rounds.h). The
     // film keeps spreads. Null: none.
-    LightRounds* light = nullptr;
+    LightRounds* lightRounds = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
     // given the next pass. Then the render ends after the tiles under way: passes that are not

@@ -72,9 +72,9 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
       film(region, FilmFor(scene, options.film)) {
     context.film = &film;
     if (IsBidirectional(scene.integrator)) {
-        light =
+        lightRounds =
             std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
-        context.light = light.get();
+        context.lightRounds = lightRounds.get();
     }
     learners = std::make_unique<Learners>(
         scene, LearningFor(scene, options.guide, options.estimator, bool(options.clock)),
@@ -154,8 +154,9 @@ void Session::SetClock() {
 void Session::SetSource() {
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.film.layers.ThroughSpecular();
-    context.source = learners ? SamplesOf(scene, *learners, light.get(), paths.throughSpecular)
-                              : SamplesOf(scene, paths);
+    context.source = learners
+                         ? SamplesOf(scene, *learners, lightRounds.get(), paths.throughSpecular)
+                         : SamplesOf(scene, paths);
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the

@@ -69,7 +69,7 @@ class Session {
 
     // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
-    Film& TheFilm() { return film; }
+    Film& GetFilm() { return film; }
     // Returns the state of learning, or the reason for none; empty without a guide.
     GuideFigures Guidance() const;
     // Return the image and its provenance.
@@ -88,7 +88,7 @@ class Session {
     Film film;
     std::optional<RenderState> interrupted;
     std::unique_ptr<Learners> learners;  // null: nothing is learned
-    std::unique_ptr<LightRounds> light;
+    std::unique_ptr<LightRounds> lightRounds;
     RenderContext context;
 };
 

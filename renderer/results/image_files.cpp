@@ -118,10 +118,7 @@ RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& 
         for (size_t x = 0; x < row.size() / 3; ++x) {
             const Vec2i p = film.Region().min + Vec2i(int(x), y);
             const AlphaPixel& matte = mattes.AlphaAt(p);
-            const FilmPixel pixel = film.At(p);
-            for (size_t c = 0; c < 3 && pixel.count > 0; ++c)
-                RemoveBackground(matte.covered, pixel.sum[c] / pixel.count,
-                                 matte.background[c] / pixel.count, isDenoised, &row[3 * x + c]);
+            RemoveBackground(film.At(p), matte.background, matte.covered, isDenoised, &row[3 * x]);
         }
     };
 }

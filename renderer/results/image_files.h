@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/files/result_files.h"
-#include "renderer/image/png_format.h"
+#include "renderer/image/image_io.h"
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
 #include "renderer/results/layer_channels.h"

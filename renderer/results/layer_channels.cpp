@@ -15,8 +15,6 @@ namespace lull {
 
 namespace {
 
-using Sum = std::array<double, 3>;
-
 // Calls visit(i, p) for every pixel p, the i-th row by row.
 template <typename Visit>
 void ForEachPixel(const PixelRect& region, const Visit& visit) {
@@ -54,13 +52,12 @@ double Noise(double squares, double mean, double count) {
     return std::min(noise, double(std::numeric_limits<float>::max()));
 }
 
-// Returns the means of a group's samples; the first look of the film, where there are none, belongs
-// to the last group.
+// Returns the means of a group's samples, or its first look where there are none.
 std::vector<float> MeansOf(const LightGroupLayer& lights, int group, const Film& film) {
     std::vector<float> rgb(size_t(film.Region().Area()) * 3);
     ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {
         const FilmPixel pixel = lights.At(group, p, film.At(p).count);
-        const bool showsLook = pixel.count == 0 && group + 1 == lights.Count();
+        const bool showsLook = pixel.count == 0 && lights.HasFirstLook(group);
         const Rgb mean = showsLook ? film.MeanAt(p) : pixel.Mean();
         std::copy_n(mean.data(), 3, &rgb[3 * i]);
     });
@@ -72,12 +69,8 @@ void LeaveOutBackground(const LightGroupLayer& lights, int group, const Finished
     const Film& film = finished.film;
     const MatteLayer& mattes = *film.layers.Find<MatteLayer>();
     ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {
-        const FilmPixel pixel = lights.At(group, p, film.At(p).count);
-        const Sum& background = lights.BackgroundAt(group, p);
-        for (size_t c = 0; c < 3 && pixel.count > 0; ++c)
-            RemoveBackground(mattes.AlphaAt(p).covered, pixel.sum[c] / pixel.count,
-                             background[c] / pixel.count, finished.denoised != nullptr,
-                             &(*rgb)[3 * i + c]);
+        RemoveBackground(lights.At(group, p, film.At(p).count), lights.BackgroundAt(group, p),
+                         mattes.AlphaAt(p).covered, finished.denoised != nullptr, &(*rgb)[3 * i]);
     });
 }
 
@@ -107,14 +100,17 @@ void LayerChannels::Append(LayerChannels more) {
     if (!more.colours.empty()) colours = std::move(more.colours);
 }
 
-void RemoveBackground(double covered, double mean, double background, bool isDenoised,
-                      float* colour) {
-    if (covered == 0)
-        *colour = 0;
-    else if (isDenoised)
-        *colour *= mean > 0 ? float(std::clamp((mean - background) / mean, 0.0, 1.0)) : 0;
-    else
-        *colour -= float(background);
+void RemoveBackground(const FilmPixel& pixel, const std::array<double, 3>& background,
+                      double covered, bool isDenoised, float* rgb) {
+    for (size_t c = 0; c < 3 && pixel.count > 0; ++c) {
+        const double mean = pixel.sum[c] / pixel.count, removed = background[c] / pixel.count;
+        if (covered == 0)
+            rgb[c] = 0;
+        else if (isDenoised)
+            rgb[c] *= mean > 0 ? float(std::clamp((mean - removed) / mean, 0.0, 1.0)) : 0;
+        else
+            rgb[c] -= float(removed);
+    }
 }
 
 LayerChannels ChannelsOf(const FirstHitLayer& hits, const FinishedFilm& finished) {

@@ -59,10 +59,10 @@ LayerChannels ChannelsOf(const LightGroupLayer&, const FinishedFilm&);
 // Returns those of all layers.
 LayerChannels ChannelsOf(const FinishedFilm&);
 
-// Removes the light of samples that hit nothing, `background`, from the colour of a pixel whose
-// samples have this mean, and `covered` those that hit something. A denoised colour, which no
-// sample has, is split as the mean is: the rest is neither negative nor more than the whole.
-void RemoveBackground(double covered, double mean, double background, bool isDenoised,
-                      float* colour);
+// Removes the light of samples that hit nothing, of which `background` is the sum, from the colour
+// R, G, B of a pixel. `covered` is the weight of those that hit something. A denoised colour, which
+// no sample has, is split as the mean is: the rest is neither negative nor more than the whole.
+void RemoveBackground(const FilmPixel& pixel, const std::array<double, 3>& background,
+                      double covered, bool isDenoised, float* rgb);
 
 }  // namespace lull

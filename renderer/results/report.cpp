@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "renderer/render/shortfall.h"
 #include "renderer/results/report_json.h"
-#include "renderer/results/shortfall.h"
 #include "stopping/network/human_range.h"
 
 namespace lull {
@@ -132,9 +132,9 @@ Json ProvenanceJson(const Provenance& p) {
     return json;
 }
 
-Json DecisionsJson(const std::vector<DecisionRecord>& decisions) {
+Json DecisionsJson(const std::vector<BlockDecision>& decisions) {
     Json spp = Json::array(), value = Json::array(), votes = Json::array();
-    for (const DecisionRecord& record : decisions) {
+    for (const BlockDecision& record : decisions) {
         spp.push_back(record.spp);
         value.push_back(record.decision.value);
         votes.push_back(record.decision.votes);

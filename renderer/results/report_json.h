@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 Json RectJson(const PixelRect&);
 Json ProvenanceJson(const Provenance&);
 // Lists decisions by column, which takes a tenth of the size of an object for each.
-Json DecisionsJson(const std::vector<DecisionRecord>&);
+Json DecisionsJson(const std::vector<BlockDecision>&);
 // Returns the report as JSON; MakeReport() writes it.
 Json ReportJson(const Provenance&, const RenderResult&, int64_t rejectedSamples,
                 const std::map<std::string, int>& warnings, const DenoisedImage*);

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 

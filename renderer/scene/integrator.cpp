@@ -32,7 +32,7 @@ std::vector<std::string> NamesOfKinds(const std::variant<Kinds...>&) {
 }
 
 bool AsksForBdpt(const std::string& name) {
-    return name == "bdpt" || name == "mlt" || name == "sppm";
+    return name == BdptIntegrator::Name(false) || name == "mlt" || name == "sppm";
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ Integrator MakeIntegrator(const Entity& entity, int maxDepth, bool isVolumetric,
                                                  BdptIntegrator::kMostBounces));
             bdpt.maxDepth = BdptIntegrator::kMostBounces;
         }
-        if (entity.name != "bdpt") {
+        if (entity.name != BdptIntegrator::Name(isVolumetric)) {
             warn(BdptIntegrator::Name(isVolumetric), "");
             return bdpt;
         }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "renderer/scene/lights/light_reader.h"
 #include "renderer/scene/scene.h"
 #include "renderer/scene/scene_names.h"
 #include "stopping/base/input_file.h"
@@ -115,10 +116,6 @@ Names FirstNamesOf(const std::vector<NamedLights>& lights) {
 }
 
 }  // namespace
-
-std::string LightGroupOf(const Entity& entity) {
-    return entity.parameters.GetString("lightgroup", "");
-}
 
 LightGroups MakeLightGroups(const std::vector<std::string>& wanted, const Description& description,
                             const Scene& scene) {

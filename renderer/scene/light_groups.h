@@ -19,10 +19,6 @@ struct LightGroups {
     int Count() const { return int(names.size()); }
 };
 
-// Returns the parameter "string lightgroup" of a LightSource or AreaLightSource, which RenderMan
-// has under this name too; empty without one.
-std::string LightGroupOf(const Entity&);
-
 // Makes the groups named. A light belongs to the group of the first of its names that is wanted:
 //   - its "lightgroup";
 //   - its own name (glTF: the node), of area lights that of the object, or its file;

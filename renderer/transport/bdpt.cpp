@@ -3,7 +3,7 @@
 #include "renderer/base/color.h"
 #include "renderer/scene/cameras/camera_view.h"
 #include "renderer/scene/cameras/footprint.h"
-#include "renderer/transport/group_recorder_internal.h"
+#include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_media.h"
 #include "renderer/transport/subpath.h"
@@ -81,72 +81,72 @@ void FollowLight(const Context& context, int mostBounces, const Place& place, co
     const Vec2f origin = sampler.Get2D(), direction = sampler.Get2D();
     const auto emitted = scene.emission->Sample(u, origin, direction);
     if (!emitted || mostBounces < 1) return;
-    Stride stride;
-    stride.ray = {OffsetRayOrigin(emitted->p, emitted->pError, emitted->n, emitted->w), emitted->w,
-                  kInfinity};
-    stride.beta = emitted->Power();
-    stride.pdf = emitted->density.onward;
-    stride.p = emitted->p;
-    stride.n = emitted->n;
-    stride.density = double(emitted->density.origin);
-    stride.sum = IsVisible(scene.lights[emitted->light]) ? 1 : 0;
-    stride.fromInfinity = emitted->isAtInfinity;
-    const float brightest = stride.beta.maxCoeff();
+    Segment segment;
+    segment.ray = {OffsetRayOrigin(emitted->p, emitted->pError, emitted->n, emitted->w), emitted->w,
+                   kInfinity};
+    segment.beta = emitted->Power();
+    segment.pdf = emitted->density.onward;
+    segment.p = emitted->p;
+    segment.n = emitted->n;
+    segment.density = double(emitted->density.origin);
+    segment.sum = IsVisible(scene.lights[emitted->light]) ? 1 : 0;
+    segment.fromInfinity = emitted->isAtInfinity;
+    const float brightest = segment.beta.maxCoeff();
     for (int bounces = 1;; ++bounces) {
         Hit found;
-        if (!scene.accelerator.Intersect(stride.ray, &found, context.time)) return;
+        if (!scene.accelerator.Intersect(segment.ray, &found, context.time)) return;
         SurfaceInteraction hit;
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
-        scene.shapes.Interact(stride.ray, found, needs, &hit, context.time);
+        scene.shapes.Interact(segment.ray, found, needs, &hit, context.time);
         if (needs & kLetsThrough) {
             SurfaceInteraction at = hit;  // which bump maps turn
             Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &at);
-            if (GoesThroughPane(hit.wo, false, sampler, &bsdf, &stride.beta)) {
-                stride.ray = hit.SpawnRay(stride.ray.d);
+            if (GoesThroughPane(hit.wo, false, sampler, &bsdf, &segment.beta)) {
+                segment.ray = hit.SpawnRay(segment.ray.d);
                 --bounces;
                 continue;
             }
         }
-        Arrival arrival = Arrive(stride, hit.p, hit.n, context.Connected(stride.connects));
+        Arrival arrival = Arrive(segment, hit.p, hit.n, context.Connected(segment.connects));
         if (!(arrival.density > 0)) return;
-        SubpathVertex& v = place(hit, stride.beta, arrival);
+        SubpathVertex& v = place(hit, segment.beta, arrival);
         if (needs & kLetsThrough) v.bsdf.BlockStraight();
         if (bounces == 1) v.arrival.own = Sqr(DirectOverEmitted(scene, v, *emitted));
         visit(v, hit, emitted->light);
         if (bounces == mostBounces) return;
         bool isSpecular, isTransmission;
-        if (!Scatter(Origin::Light, v, sampler.Get2D(), &stride, &isSpecular, &isTransmission) ||
-            !SurvivesRoulette(stride.beta.maxCoeff() / brightest, bounces,
-                              context.integrator.rrThreshold, sampler, &stride.beta))
+        if (!Scatter(Origin::Light, v, sampler.Get2D(), &segment, &isSpecular, &isTransmission) ||
+            !SurvivesRoulette(segment.beta.maxCoeff() / brightest, bounces,
+                              context.integrator.rrThreshold, sampler, &segment.beta))
             return;
     }
 }
 
 // Returns the weight of light that the ray of a camera's subpath has found, of density `origin`
 // among those of emitted light. `direct` is the density, 1/sr, of sampling it at the last vertex.
-double EmissionWeight(const Stride& stride, double density, double fewer, float direct,
+double EmissionWeight(const Segment& segment, double density, double fewer, float direct,
                       const EmissionDensity& emission) {
-    const double sampled = stride.connects ? double(direct) / double(stride.pdf) : 0;
+    const double sampled = segment.connects ? double(direct) / double(segment.pdf) : 0;
     const double fromLight = double(emission.origin) * double(emission.onward) / density;
     return 1 / (1 + Sqr(sampled) + Sqr(fromLight) * fewer);
 }
 
 // Returns the light of the sky that leaves the scene, weighted; tells the recorder of each light.
 template <typename Recorder>
-Rgb LeavingLight(const Context& context, const Stride& stride, const LightChoice& choice,
+Rgb LeavingLight(const Context& context, const Segment& segment, const LightChoice& choice,
                  const Path& path, Recorder& recorder) {
     const Scene& scene = context.scene;
     Rgb sum = Rgb::Zero();
     for (const int i : scene.lights.Infinite()) {
-        const auto [L, pdf] = LeAndPdf(scene.lights[i], stride.ray.d);
+        const auto [L, pdf] = LeAndPdf(scene.lights[i], segment.ray.d);
         if (IsBlack(L)) continue;
-        const double across = std::abs(double(stride.n.dot(stride.ray.d)));
-        const double fewer = Sqr(across / stride.density) * stride.sum;
-        const float direct = stride.connects ? pdf * choice.Pmf(i) : 0;
+        const double across = std::abs(double(segment.n.dot(segment.ray.d)));
+        const double fewer = Sqr(across / segment.density) * segment.sum;
+        const float direct = segment.connects ? pdf * choice.Pmf(i) : 0;
         const Rgb weighted =
-            L * float(EmissionWeight(stride, double(stride.pdf), fewer, direct,
-                                     scene.emission->Density(i, Vec3f::Zero(), -stride.ray.d)));
+            L * float(EmissionWeight(segment, double(segment.pdf), fewer, direct,
+                                     scene.emission->Density(i, Vec3f::Zero(), -segment.ray.d)));
         sum += weighted;
         recorder.FindLight(path, i, weighted);
     }
@@ -154,15 +154,15 @@ Rgb LeavingLight(const Context& context, const Stride& stride, const LightChoice
 }
 
 // Returns the light of the surface, a light's, weighted.
-Rgb EmittedLight(const Context& context, const Stride& stride, const SurfaceInteraction& hit,
+Rgb EmittedLight(const Context& context, const Segment& segment, const SurfaceInteraction& hit,
                  const Hit& found, const Arrival& arrival, const LightChoice& choice) {
     const Scene& scene = context.scene;
     const Light& light = scene.lights[hit.areaLight];
     const Rgb L = Le(light, hit.n, hit.wo, found);
     if (IsBlack(L)) return L;
     const float direct =
-        stride.connects ? Pdf(light, stride.p, hit.p, hit.n) * choice.Pmf(hit.areaLight) : 0;
-    return L * float(EmissionWeight(stride, arrival.density, arrival.fewer, direct,
+        segment.connects ? Pdf(light, segment.p, hit.p, hit.n) * choice.Pmf(hit.areaLight) : 0;
+    return L * float(EmissionWeight(segment, arrival.density, arrival.fewer, direct,
                                     scene.emission->Density(hit.areaLight, hit.n, hit.wo)));
 }
 
@@ -178,7 +178,7 @@ Rgb SampledLight(const Context& context, const SubpathVertex& v, const LightChoi
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     const BsdfValue value = v.TowardsLight(light->wi);
     if (IsBlack(value.f)) return Rgb::Zero();
-    const auto ray = ShadowRay(SurfaceVertex{v.hit, v.bsdf, 0}, *light);
+    const auto ray = ShadowRay(v.hit, *light);
     const Rgb share = ray ? ShareAlong(scene, *ray, context.time) : Rgb(Rgb::Zero());
     if (IsBlack(share)) return Rgb::Zero();
     const Rgb L = share * (light->isOnMap ? scene.lights.Radiance(index, *light) : light->L);
@@ -249,6 +249,66 @@ class LightSubpath {
     Vertices vertices;
 };
 
+// Returns the camera's ray as a segment, where `length` is that of its direction.
+Segment SegmentFromCamera(const Context& context, const Ray& ray, float length) {
+    Segment segment;
+    segment.ray = ray;
+    if (std::abs(length - 1) > 1e-5f) segment.ray.d /= length, segment.ray.tMax *= length;
+    segment.beta = Rgb::Ones();
+    segment.p = ray.o;
+    segment.n = segment.ray.d;
+    segment.connects = false;
+    if (context.lightPaths > 0)
+        segment.pdf = PixelsPerSolidAngle(context.scene.camera, ray.d, context.time);
+    return segment;
+}
+
+// Returns whether a subpath from the camera goes straight on through the pane at vertex v, and
+// makes that segment.
+template <typename Recorder>
+[[gnu::always_inline]] inline bool PassesPane(const Context& context, bool isLast, SubpathVertex* v,
+                                              Segment* segment, Path* path, Recorder& recorder) {
+    const bool goesThrough =
+        GoesThroughPane(v->hit.wo, isLast, context.sampler, &v->bsdf, &v->beta);
+    path->beta = segment->beta = v->beta;
+    if (!goesThrough) return false;
+    path->ray = segment->ray = v->hit.SpawnRay(segment->ray.d);
+    recorder.Scatter(*path, true);
+    return true;
+}
+
+// Connects vertex v of a subpath from the camera to those of one from a light, up to `most`. Calls
+// use(light, L) with the light's number and the light L that comes to v.
+template <typename Use>
+[[gnu::always_inline]] inline void Connect(const Context& context, const SubpathVertex& v, int most,
+                                           LightSubpath* fromLight, const Use& use) {
+    const Vertices& vertices = fromLight->All(most);
+    for (int i = 0; i < std::min(most, vertices.Count()); ++i)
+        if (vertices[i].Connects())
+            use(fromLight->Light(), ConnectedLight(context, v, vertices[i]));
+}
+
+// Scatters a subpath from the camera at vertex v, and ends dim ones by Russian roulette. Returns
+// false where it ends.
+template <typename Recorder>
+[[gnu::always_inline]] inline bool GoesOn(const Context& context, const SubpathVertex& v,
+                                          int bounces, Segment* segment, Path* path,
+                                          Recorder& recorder) {
+    bool isSpecular, isTransmission;
+    if (!Scatter(Origin::Camera, v, context.sampler.Get2D(), segment, &isSpecular, &isTransmission))
+        return false;
+    path->beta = segment->beta;
+    path->ray = segment->ray;
+    path->seesLights &= isSpecular;
+    if (isSpecular && isTransmission) path->etaScale *= EtaScaleAt(v.hit, v.bsdf);
+    recorder.Scatter(*path, isTransmission);
+    if (!SurvivesRoulette(segment->beta.maxCoeff() * path->etaScale, bounces,
+                          context.integrator.rrThreshold, context.sampler, &segment->beta))
+        return false;
+    path->beta = segment->beta;
+    return true;
+}
+
 // Follows the camera's ray, and returns its radiance. `connected` receives that of connections.
 template <typename Recorder>
 [[gnu::noinline]] Rgb Follow(const Context& context, const SampleStart& start, Recorder& recorder,
@@ -258,91 +318,70 @@ template <typename Recorder>
     const bool canConnect = scene.emission->Any() && context.connections > 0;
     LightSubpath fromLight(context);
     LightChoice choice;  // at the last vertex
-    Stride stride;
-    stride.ray = start.ray;
     // Of a camera whose transform scales, rays are not of unit length; recorders know them so.
     const float length = start.ray.d.norm();
-    if (std::abs(length - 1) > 1e-5f) stride.ray.d /= length, stride.ray.tMax *= length;
-    stride.beta = Rgb::Ones();
-    stride.p = start.ray.o;
-    stride.n = stride.ray.d;
-    stride.connects = false;
-    if (context.lightPaths > 0)
-        stride.pdf = PixelsPerSolidAngle(scene.camera, start.ray.d, context.time);
-    Path path{.ray = start.ray};  // for recorders
+    Segment segment = SegmentFromCamera(context, start.ray, length);
+    Path path{.ray = start.ray};  // as recorders know it
     Rgb L = Rgb::Zero();          // without connections
     const auto find = [&](int light, const Rgb& found) {
-        L += stride.beta * found;
+        L += segment.beta * found;
         if (!IsBlack(found)) recorder.FindLight(path, light, found);
     };
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
+
+        // Find the next surface, or add the light of the sky where there is none.
         Hit found;
-        if (!scene.accelerator.Intersect(stride.ray, &found, context.time)) {
-            L += stride.beta * LeavingLight(context, stride, choice, path, recorder);
+        if (!scene.accelerator.Intersect(segment.ray, &found, context.time)) {
+            L += segment.beta * LeavingLight(context, segment, choice, path, recorder);
             recorder.LeaveScene(path);
             break;
         }
+
+        // Compute the interaction with the surface, and the densities of arriving there.
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         SurfaceInteraction hit;
-        scene.shapes.Interact(stride.ray, found, needs, &hit, context.time);
+        scene.shapes.Interact(segment.ray, found, needs, &hit, context.time);
         if (bounces == 0 && (needs & kNeedsFootprint))
             ComputeFootprint(scene.camera, start.camera, &hit);
         const Arrival arrival =
-            Arrive(stride, hit.p, hit.n,
-                   bounces == 0 ? context.SeenFromCamera() : context.Connected(stride.connects));
+            Arrive(segment, hit.p, hit.n,
+                   bounces == 0 ? context.SeenFromCamera() : context.Connected(segment.connects));
         if (!(arrival.density > 0)) break;
+
+        // Add the emission of the surface.
         if (hit.areaLight >= 0)
-            find(hit.areaLight, EmittedLight(context, stride, hit, found, arrival, choice));
-        if (bounces == 0 && stride.ray.d != start.ray.d) found.t /= length;
+            find(hit.areaLight, EmittedLight(context, segment, hit, found, arrival, choice));
+        if (bounces == 0 && segment.ray.d != start.ray.d) found.t /= length;
         recorder.ReachSurface(path, found, hit);
         if (isLast && !recorder.Wanted() && !(needs & kLetsThrough)) break;
 
-        SubpathVertex v(scene, hit, stride.beta, arrival);
+        // Make the BSDF, and go straight on through a pane, which is no vertex.
+        SubpathVertex v(scene, hit, segment.beta, arrival);
         recorder.MeetSurface(path, found, v.hit, v.bsdf);
-        if (needs & kLetsThrough) {
-            const bool goesThrough =
-                GoesThroughPane(v.hit.wo, isLast, context.sampler, &v.bsdf, &v.beta);
-            path.beta = stride.beta = v.beta;
-            if (goesThrough) {
-                path.ray = stride.ray = v.hit.SpawnRay(stride.ray.d);
-                recorder.Scatter(path, true);
-                --bounces;
-                continue;
-            }
+        if ((needs & kLetsThrough) && PassesPane(context, isLast, &v, &segment, &path, recorder)) {
+            --bounces;
+            continue;
         }
         if (isLast) break;
+
+        // Sample the light that arrives directly from lights, and connect to a subpath from one.
         if (v.Connects() && scene.lights.Count() > 0) {
             choice = scene.lights.Choice(v.hit, v.bsdf, scene.lights.PlaceOf(v.hit.p));
             int chosen;
             const Rgb sampled = SampledLight(context, v, choice, &chosen);
             find(chosen, sampled);
             const int left = maxDepth - bounces - 1;
-            if (canConnect && left > 0) {
-                const Vertices& vertices = fromLight.All(left);
-                for (int i = 0; i < std::min(left, vertices.Count()); ++i)
-                    if (vertices[i].Connects()) {
-                        const Rgb found = ConnectedLight(context, v, vertices[i]);
-                        *connected += v.beta * found;
-                        recorder.FindLight(path, fromLight.Light(), found);
-                    }
-            }
+            if (canConnect && left > 0)
+                Connect(context, v, left, &fromLight, [&](int light, const Rgb& found) {
+                    *connected += v.beta * found;
+                    recorder.FindLight(path, light, found);
+                });
         }
-        bool isSpecular, isTransmission;
-        if (!Scatter(Origin::Camera, v, context.sampler.Get2D(), &stride, &isSpecular,
-                     &isTransmission))
-            break;
-        path.beta = stride.beta;
-        path.ray = stride.ray;
-        path.seesLights &= isSpecular;
-        if (isSpecular && isTransmission)
-            path.etaScale *= SurfaceVertex{v.hit, v.bsdf, found.shape}.EtaScale();
-        recorder.Scatter(path, isTransmission);
-        if (!SurvivesRoulette(stride.beta.maxCoeff() * path.etaScale, bounces,
-                              context.integrator.rrThreshold, context.sampler, &stride.beta))
-            break;
-        path.beta = stride.beta;
+
+        // Sample the direction in which the subpath goes on, unless roulette ends it.
+        if (!GoesOn(context, v, bounces, &segment, &path, recorder)) break;
     }
     recorder.End(path);
     return L + *connected;
@@ -381,17 +420,17 @@ PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOp
 
 namespace {
 
-// Shows a vertex of a light path to the camera.
-class Onlooker {
+// Connects vertices of a light path to the camera.
+class CameraConnector {
   public:
-    Onlooker(const Context& context, std::vector<Splat>* splats)
+    CameraConnector(const Context& context, std::vector<Splat>* splats)
         : context(context),
           splats(splats),
           size(context.scene.film.resolution.cast<float>()),
           reach(context.scene.filter.Radius()) {}
 
     // The light is number `light`.
-    void Show(const SubpathVertex& v, const SurfaceInteraction& hit, int light) {
+    void Connect(const SubpathVertex& v, const SurfaceInteraction& hit, int light) {
         if (!v.Connects()) return;
         const Scene& scene = context.scene;
         CameraSample at;
@@ -450,14 +489,14 @@ void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampl
                           time,
                           LightPathCount(scene, shares),
                           double(shares.connections)};
-    Onlooker onlooker(context, splats);
+    CameraConnector connector(context, splats);
     alignas(SubpathVertex) std::byte storage[sizeof(SubpathVertex)];
     FollowLight(
         context, context.integrator.maxDepth,
         [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
             -> SubpathVertex& { return *new (storage) SubpathVertex(scene, hit, beta, arrival); },
         [&](const SubpathVertex& v, const SurfaceInteraction& hit, int light) {
-            onlooker.Show(v, hit, light);
+            connector.Connect(v, hit, light);
         });
 }
 

@@ -30,17 +30,16 @@ template <typename Media, typename Vertex>
 // Tells the records what a sample of light `index` has brought: luminance, had the light been
 // chosen for sure, at the vertex and in the image. Of the environment map it is one of `tile`, see
 // TiledSample. Takes values, which so can stay in registers.
-[[gnu::noinline]] inline void Record(const LightTable& lights, LearnedLight learned,
+[[gnu::noinline]] inline void Record(const PathRecords& records, const LightTable& lights,
                                      LearnedPlace place, int index, int tile, float powerRatio,
                                      float atVertex, float inImage) {
-    if (learned.environmentRecord && tile >= 0) {
+    if (records.environment && tile >= 0) {
         const auto& environment = std::get<InfiniteLight>(lights[index]);
-        learned.environmentRecord->Add(
-            learned.environment->NumberOf(place.tiles), tile,
-            atVertex * kPi / (powerRatio * environment.TotalLuminance()));
+        records.environment->Add(records.environmentGuide->NumberOf(place.tiles), tile,
+                                 atVertex * kPi / (powerRatio * environment.TotalLuminance()));
     }
-    if (learned.lightRecord)
-        learned.lightRecord->Add(place.lightCell + size_t(index), inImage / learned.usual);
+    if (records.lights)
+        records.lights->Add(place.lightCell + size_t(index), inImage / records.usualForLights);
 }
 
 // Samples light `index`; the environment map by its tiles there, if the path knows them.
@@ -55,9 +54,9 @@ template <typename Media>
     TiledSample sample{.index = index, .light = {}};
     const auto& environment = std::get<InfiniteLight>(lights[index]);
     sample.light = environment.Sample(*tiles, u, &sample.tile);
-    if (context.learned->environmentRecord)
-        context.learned->environmentRecord->Prefetch(context.learned->environment->NumberOf(tiles),
-                                                     sample.tile);
+    if (context.records && context.records->environment)
+        context.records->environment->Prefetch(context.records->environmentGuide->NumberOf(tiles),
+                                               sample.tile);
     sample.powerRatio =
         environment.Tiles()->Shares().Probability(sample.tile) / tiles->Probability(sample.tile);
     return sample;
@@ -99,16 +98,17 @@ template <typename Media, typename Vertex, typename Guiding>
         return light->isOnMap ? Rgb(arriving * context.scene.lights.Radiance(sample.index, *light))
                               : arriving;
     } else {
-        const auto sight = context.media.See(context, v, *light);
-        if (IsBlack(sight.share)) return Rgb::Zero();
+        const auto visibility = context.media.See(context, v, *light);
+        if (IsBlack(visibility.share)) return Rgb::Zero();
         const Rgb share =
-            light->isOnMap ? Rgb(sight.share * context.scene.lights.Radiance(sample.index, *light))
-                           : sight.share;
-        if (light->isDelta || hasOwnRay || !sight.isOutOfReach.any()) return L * share;
+            light->isOnMap
+                ? Rgb(visibility.share * context.scene.lights.Radiance(sample.index, *light))
+                : visibility.share;
+        if (light->isDelta || hasOwnRay || !visibility.isOutOfReach.any()) return L * share;
         // Light that no ray can reach keeps pbrt-v3's weight, too, whatever has been learned.
         const float evenly =
             PowerHeuristic(light->pdf * sample.powerRatio, v.EvaluateEvenly(light->wi).pdf);
-        return sight.isOutOfReach.select(
+        return visibility.isOutOfReach.select(
                    value.f * light->L * (cosine * evenly / (light->pdf * pmf)), L) *
                share;
     }
@@ -123,23 +123,23 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
     if (!IsVisible(light)) return Rgb::Zero();
     const auto sample = v.Sample(u, LobeSet::NonSpecular);
     if (!sample) return Rgb::Zero();
-    Sighting sighting;
+    LightHit lightHit;
     Rgb L;
     float lightPdf;
     if (TypeOf(light) == LightType::Infinite) {
         const Emitted found = LeAndPdf(light, sample->wi);
-        if (found.pdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &sighting))
+        if (found.pdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &lightHit))
             return Rgb::Zero();
         L = found.L;
         lightPdf = found.pdf;
     } else {
-        if (!context.media.MeetsLight(context, v, sample->wi, index, &sighting)) return Rgb::Zero();
-        const SurfaceInteraction& at = sighting.at;
-        L = Le(light, at.n, -sample->wi, sighting.found);
+        if (!context.media.MeetsLight(context, v, sample->wi, index, &lightHit)) return Rgb::Zero();
+        const SurfaceInteraction& at = lightHit.at;
+        L = Le(light, at.n, -sample->wi, lightHit.found);
         lightPdf = Pdf(light, v.Position(), at.p, at.n);
         if (lightPdf == 0) return Rgb::Zero();
     }
-    return sample->f * L * sighting.share *
+    return sample->f * L * lightHit.share *
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 
@@ -155,8 +155,8 @@ template <typename Media, typename Vertex, typename Guiding, typename Recorder>
     if (!(pmf > 0)) return Rgb::Zero();
     const TiledSample sample = SampleTiled(context, v.Position(), index, path->learned.tiles);
     Rgb L = SampleLight(context, v, guiding, sample, pmf);
-    if (context.learned) [[unlikely]]
-        Record(context.scene.lights, *context.learned, path->learned, index, sample.tile,
+    if (context.records && context.learned) [[unlikely]]
+        Record(*context.records, context.scene.lights, path->learned, index, sample.tile,
                sample.powerRatio, Luminance(L) * pmf, Luminance(path->beta * L) * pmf);
     if (context.estimator == Estimator::PbrtV3)
         L += SampleDirectionForLight(context, v, index, pmf);

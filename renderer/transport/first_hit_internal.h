@@ -1,7 +1,8 @@
-// Records the first hit of a path.
+// Records the first hit of a path, and the light of groups.
 #pragma once
 
 #include "renderer/bsdf/albedo.h"
+#include "renderer/transport/group_radiance.h"
 #include "renderer/transport/path_state.h"
 
 namespace lull {
@@ -94,6 +95,18 @@ class FirstHitRecorder : public NoRecorder {
     float distance = 0;  // of the path so far, from where its first ray begins
     bool done = false;
     bool isDirect = true;  // nothing has scattered the path
+};
+
+// Tells the light of groups apart, besides the first hit.
+class GroupRecorder : public FirstHitRecorder {
+  public:
+    GroupRecorder(const FirstHitRecorder& firstHit, GroupRadiance* groups)
+        : FirstHitRecorder(firstHit), groups(groups) {}
+
+    void FindLight(const Path& path, int index, const Rgb& L) { groups->Add(index, path.beta * L); }
+
+  private:
+    GroupRadiance* groups;
 };
 
 }  // namespace lull

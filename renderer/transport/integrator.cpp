@@ -1,5 +1,6 @@
 #include "renderer/transport/integrator_internal.h"
 
+#include "renderer/base/visit.h"
 #include "renderer/transport/group_radiance.h"
 
 namespace lull {
@@ -27,7 +28,7 @@ PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler&
     const auto li = [&](const auto& integrator) {
         return Li(integrator, scene, options, sampler, start, detail);
     };
-    const PathSample found = std::visit(li, scene.integrator);
+    const PathSample found = Visit(scene.integrator, li);
     const PathSample sample = Weighted(scene, start, found);
     if (detail.firstHit) {
         Rgb& emission = detail.firstHit->emission;

@@ -32,15 +32,12 @@ struct BdptShares {
 };
 
 // What has been learned of the light that arrives directly, for Estimator::Combined. The mean is
-// the same. The pointees of each may be null.
+// the same.
 struct LearnedLight {
     // Lets lights be chosen by what they bring to a place; null: as the scene has it.
     const LightChoiceGuide* lights = nullptr;
-    LightChoiceRecord* lightRecord = nullptr;
-    float usual = 1;  // the luminance that a path usually brings, > 0, for this record
     // Likewise the tiles of the environment map (LightTable::Environment()); null: by their power.
     const EnvironmentGuide* environment = nullptr;
-    EnvironmentRecord* environmentRecord = nullptr;
 
     bool IsEmpty() const { return !lights && !environment; }
 };
@@ -54,8 +51,6 @@ struct PathOptions {
 
     Estimator estimator = Estimator::Combined;
     const Guide* guide = nullptr;
-    GuideRecord* record = nullptr;  // of the guide; receives the vertices of paths; or null
-    float usual = 1;                // the luminance that a path usually brings, > 0, for the record
     LearnedLight learned = {};
     // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
     // reflectance or transmittance, and its depth the length of the path, as if through windows.
@@ -72,6 +67,16 @@ struct PathSample {
     float connected = 0;
 };
 
+// What learns from paths. Its pointees must outlive it; null: not wanted.
+struct PathRecords {
+    GuideRecord* directions = nullptr;    // of PathOptions::guide
+    LightChoiceRecord* lights = nullptr;  // of LearnedLight::lights
+    EnvironmentRecord* environment = nullptr;
+    const EnvironmentGuide* environmentGuide = nullptr;  // which it is of: LearnedLight's
+    // The luminances that a path usually brings, > 0, of which the first two record multiples.
+    float usualForDirections = 1, usualForLights = 1;
+};
+
 // What receives the data of a sample besides its radiance, which they do not change; null: not
 // wanted.
 struct SampleDetail {
@@ -80,6 +85,7 @@ struct SampleDetail {
     FirstHit* firstHit = nullptr;
     // The radiance by groups of lights, with the same weights.
     GroupRadiance* groups = nullptr;
+    const PathRecords* records = nullptr;
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,

@@ -51,34 +51,34 @@ class Beam {
 
 }  // namespace
 
-Media::Sight Media::Look(const Context& context, const Vec3f& origin, const Vec3f& target, int from,
-                         bool isAtInfinity) {
+Media::Visibility Media::Look(const Context& context, const Vec3f& origin, const Vec3f& target,
+                              int from, bool isAtInfinity) {
     const auto rayFrom = [&](const Vec3f& o) { return Ray{o, target - o, 1 - 0.0001f}; };
     Beam beam(context, rayFrom(origin), from);
     while (beam.Advance()) {
         if (!beam.GoThrough()) return {};
         beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
     }
-    Sight sight{.share = beam.transmittance};
-    if (isAtInfinity) sight.isOutOfReach = context.scene.media.Swallows(beam.medium);
-    return sight;
+    Visibility visibility{.share = beam.transmittance};
+    if (isAtInfinity) visibility.isOutOfReach = context.scene.media.Swallows(beam.medium);
+    return visibility;
 }
 
 bool Media::Follow(const Context& context, const Ray& ray, int from, int index,
-                   Sighting* sighting) {
+                   LightHit* lightHit) {
     Beam beam(context, ray, from);
     while (beam.Advance()) {
         const bool isThere = context.scene.shapes.LightAt(beam.found) == index;
         if (isThere && !beam.isInterface) {
-            sighting->share = beam.transmittance;
-            sighting->found = beam.found;
-            sighting->at = beam.hit;
+            lightHit->share = beam.transmittance;
+            lightHit->found = beam.found;
+            lightHit->at = beam.hit;
             return true;
         }
         if (!beam.GoThrough()) return false;
         beam.ray = beam.hit.SpawnRay(ray.d);
     }
-    sighting->share = beam.transmittance;
+    lightHit->share = beam.transmittance;
     return index == kNothing;
 }
 

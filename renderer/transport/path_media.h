@@ -6,8 +6,8 @@
 
 namespace lull {
 
-// The result of a shadow ray.
-struct Sighting {
+// What a ray that looks for a light has found.
+struct LightHit {
     Hit found;                // the light's surface, if it has one
     SurfaceInteraction at;    // there
     Rgb share = Rgb::Ones();  // of its light that gets to where the ray starts, an estimate
@@ -17,13 +17,13 @@ struct Sighting {
 // are moved off their surfaces; the factor keeps the light's own surface out (pbrt-v3's
 // ShadowEpsilon). Where that or rounding turns a grazing ray to the other side of the surface, it
 // would pass through: that is in shadow.
-[[gnu::always_inline]] inline std::optional<Ray> ShadowRay(const SurfaceVertex& v,
+[[gnu::always_inline]] inline std::optional<Ray> ShadowRay(const SurfaceInteraction& hit,
                                                            const LightSample& light) {
-    if (light.isAtInfinity) return v.hit.SpawnRay(light.wi);
-    const Vec3f origin = v.OriginTowards(light.wi);
+    if (light.isAtInfinity) return hit.SpawnRay(light.wi);
+    const Vec3f origin = OffsetRayOrigin(hit.p, hit.pError, hit.n, light.wi);
     const Vec3f target = OffsetRayOrigin(light.p, light.pError, light.n, origin - light.p);
     const Vec3f d = target - origin;
-    if (!v.IsSameSide(d, light.wi)) return {};
+    if (!IsSameSide(hit.n, d, light.wi)) return {};
     return Ray{origin, d, 1 - 0.0001f};
 }
 
@@ -39,7 +39,7 @@ struct Vacuum {
     // Returns the share of a light's sample that gets to a vertex; without panes, whether it does.
     [[gnu::always_inline]] static auto See(const Context& context, const SurfaceVertex& v,
                                            const LightSample& light) {
-        const std::optional<Ray> ray = ShadowRay(v, light);
+        const std::optional<Ray> ray = ShadowRay(v.hit, light);
         const float time = context.camera.time;
         if constexpr (panes)
             return ray ? ShareAlong(context.scene, *ray, time) : Rgb(Rgb::Zero());
@@ -49,27 +49,27 @@ struct Vacuum {
 
     // Returns whether a ray in direction wi leaves the scene.
     static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
-                            Sighting* sighting) {
+                            LightHit* lightHit) {
         const Ray ray = v.hit.SpawnRay(wi);
         if constexpr (!panes) return !context.scene.accelerator.Occluded(ray, context.camera.time);
-        sighting->share = ShareAlong(context.scene, ray, context.camera.time);
-        return !IsBlack(sighting->share);
+        lightHit->share = ShareAlong(context.scene, ray, context.camera.time);
+        return !IsBlack(lightHit->share);
     }
     // Returns whether it meets area light `index`.
     static bool MeetsLight(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
-                           int index, Sighting* sighting) {
+                           int index, LightHit* lightHit) {
         Ray ray = v.hit.SpawnRay(wi);
         const Scene& scene = context.scene;
         const float time = context.camera.time;
         for (;;) {
-            if (!scene.accelerator.Intersect(ray, &sighting->found, time)) return false;
-            if (scene.shapes.LightAt(sighting->found) == index) break;
+            if (!scene.accelerator.Intersect(ray, &lightHit->found, time)) return false;
+            if (scene.shapes.LightAt(lightHit->found) == index) break;
             if constexpr (!panes) return false;
-            sighting->share *= ShareThrough(scene, ray, sighting->found, time, &sighting->at);
-            if (IsBlack(sighting->share)) return false;
-            ray = sighting->at.SpawnRay(wi);
+            lightHit->share *= ShareThrough(scene, ray, lightHit->found, time, &lightHit->at);
+            if (IsBlack(lightHit->share)) return false;
+            ray = lightHit->at.SpawnRay(wi);
         }
-        scene.shapes.Interact(ray, sighting->found, kNeedsNothing, &sighting->at);
+        scene.shapes.Interact(ray, lightHit->found, kNeedsNothing, &lightHit->at);
         return true;
     }
 
@@ -111,7 +111,7 @@ class Media {
     float PhaseParameter() const { return table->PhaseParameter(medium); }
 
     // How a vertex sees a sample of a light.
-    struct Sight {
+    struct Visibility {
         Rgb share = Rgb::Zero();  // of the light that gets there, an estimate
         // The channels in which rays that look for the light end in a medium without an end.
         Eigen::Array<bool, 3, 1> isOutOfReach = {false, false, false};
@@ -119,7 +119,7 @@ class Media {
     // As in pbrt-v3, light from infinity comes from twice the scene's radius away: through a medium
     // that fills the world it would not come from farther.
     template <typename Vertex>
-    Sight See(const Context& context, const Vertex& v, const LightSample& light) const {
+    Visibility See(const Context& context, const Vertex& v, const LightSample& light) const {
         const Vec3f p = v.Position();
         const Vec3f origin = v.OriginTowards(light.isAtInfinity ? light.wi : Vec3f(light.p - p));
         const Vec3f target =
@@ -132,15 +132,15 @@ class Media {
     // As without media.
     template <typename Vertex>
     bool LeavesScene(const Context& context, const Vertex& v, const Vec3f& wi,
-                     Sighting* sighting) const {
+                     LightHit* lightHit) const {
         return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), kNothing,
-                      sighting);
+                      lightHit);
     }
     template <typename Vertex>
     bool MeetsLight(const Context& context, const Vertex& v, const Vec3f& wi, int index,
-                    Sighting* sighting) const {
+                    LightHit* lightHit) const {
         return Follow(context, {v.OriginTowards(wi), wi, kInfinity}, Towards(v, wi), index,
-                      sighting);
+                      lightHit);
     }
 
     // Surfaces behind an interface still belong to the last vertex, whose shadow rays see them;
@@ -165,11 +165,11 @@ class Media {
     int Towards(const MediumVertex&, const Vec3f&) const { return medium; }
 
     // Looks along a segment that starts in medium `from`.
-    static Sight Look(const Context&, const Vec3f& origin, const Vec3f& target, int from,
-                      bool isAtInfinity);
+    static Visibility Look(const Context&, const Vec3f& origin, const Vec3f& target, int from,
+                           bool isAtInfinity);
     // Follows a ray that starts in medium `from` through interfaces and panes. Returns whether it
     // meets area light `index`.
-    static bool Follow(const Context&, const Ray&, int from, int index, Sighting*);
+    static bool Follow(const Context&, const Ray&, int from, int index, LightHit*);
 
     const MediumTable* table;
     int medium;  // that the path's next ray is in

@@ -22,6 +22,7 @@ struct PathContext {
     const CameraSample& camera;
     Media media;
     const LearnedLight* learned = nullptr;
+    const PathRecords* records = nullptr;
 };
 
 // What has been learned of direct light at a vertex.

@@ -1,6 +1,6 @@
 #include "renderer/scene/cameras/footprint.h"
 #include "renderer/transport/direct_light.h"
-#include "renderer/transport/group_recorder_internal.h"
+#include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_recorder_internal.h"
 #include "renderer/transport/subsurface.h"
@@ -8,35 +8,37 @@
 namespace lull {
 namespace {
 
-// Where a medium, or a vertex, leads a path.
-enum class Fate { Passes, Scatters, Ends };
+// What a medium does with a path.
+enum class MediumEvent { Passes, Scatters, Ends };
 
 // Follows the path's ray, which nothing else stops before `end`, through the medium about it. Where
 // that scatters it, adds direct light and continues from there.
 template <typename Media, typename Guiding, typename Recorder>
-[[gnu::always_inline]] inline Fate FollowThroughMedium(PathContext<Media>& context, float end,
-                                                       bool isLast, Guiding& guiding,
-                                                       Recorder& recorder, Path* path) {
+[[gnu::always_inline]] inline MediumEvent FollowThroughMedium(PathContext<Media>& context,
+                                                              float end, bool isLast,
+                                                              Guiding& guiding, Recorder& recorder,
+                                                              Path* path) {
     const Scene& scene = context.scene;
     const MediumSample inMedium = context.media.Sample(path->ray, end, context.sampler);
     path->beta *= inMedium.weight;
-    if (IsBlack(path->beta)) return Fate::Ends;
-    if (!inMedium.t) return Fate::Passes;
+    if (IsBlack(path->beta)) return MediumEvent::Ends;
+    if (!inMedium.t) return MediumEvent::Passes;
     const Vec3f p = path->ray.o + *inMedium.t * path->ray.d;
-    if (!(p.squaredNorm() <= Sqr(scene.shapes.reach))) return Fate::Ends;  // no ray starts there
+    if (!(p.squaredNorm() <= Sqr(scene.shapes.reach)))
+        return MediumEvent::Ends;  // no ray starts there
     const MediumVertex v{p, -path->ray.d.normalized(), context.media.PhaseParameter()};
     path->lightPlace = scene.lights.PlaceOf(v.p);
     recorder.MeetMedium(*path, *inMedium.t, v.p);
-    if (isLast) return Fate::Ends;
+    if (isLast) return MediumEvent::Ends;
     guiding.Enter(v);
     if (context.learned) [[unlikely]]
         path->learned = FindLearned(*context.learned, v.p, kInMedium);
     if (scene.lights.Count() > 0)
         path->L += path->beta * SampleDirectLight(context, v, guiding, recorder, path);
     bool isTransmission;
-    if (!guiding.Scatter(v, context.sampler, path, &isTransmission)) return Fate::Ends;
+    if (!guiding.Scatter(v, context.sampler, path, &isTransmission)) return MediumEvent::Ends;
     recorder.Scatter(*path, true);
-    return Fate::Scatters;
+    return MediumEvent::Scatters;
 }
 
 // Continues the path, which the surface has let in, from where it leaves the solid; adds the light
@@ -114,10 +116,10 @@ template <typename Media, typename Guiding, typename Recorder>
 
         // Scatter in the medium before it, if that does.
         if constexpr (Media::kExist) {
-            const Fate fate = FollowThroughMedium(context, isHit ? found.t : path.ray.tMax, isLast,
-                                                  guiding, recorder, &path);
-            if (fate == Fate::Ends) break;
-            if (fate == Fate::Scatters) {
+            const MediumEvent event = FollowThroughMedium(context, isHit ? found.t : path.ray.tMax,
+                                                          isLast, guiding, recorder, &path);
+            if (event == MediumEvent::Ends) break;
+            if (event == MediumEvent::Scatters) {
                 if (!guiding.SurvivesRoulette(context, bounces, &path)) break;
                 continue;
             }
@@ -221,7 +223,8 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
         Unguided unguided;
         return {trace(unguided), false};
     }
-    Guided guided(*options.guide, options.record, options.usual);
+    const PathRecords records = detail.records ? *detail.records : PathRecords();
+    Guided guided(*options.guide, records.directions, records.usualForDirections);
     const Rgb L = trace(guided);
     return {L, false, guided.Vertices()};
 }
@@ -231,9 +234,10 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
 PathSample Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& options,
               Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const auto trace = [&]<typename Media>(const Media& media) {
-        return TracePath<Media>({scene, integrator, options.estimator, sampler, start.camera, media,
-                                 options.learned.IsEmpty() ? nullptr : &options.learned},
-                                options, start.ray, detail);
+        return TracePath<Media>(
+            {scene, integrator, options.estimator, sampler, start.camera, media,
+             options.learned.IsEmpty() ? nullptr : &options.learned, detail.records},
+            options, start.ray, detail);
     };
     if (scene.isVolumetric) return trace(Media(scene));
     return scene.hasPanes ? trace(NoMediaButPanes(scene)) : trace(NoMedia(scene));

@@ -7,6 +7,17 @@
 
 namespace lull {
 
+// Returns whether both directions leave a surface of normal n on the same side.
+inline bool IsSameSide(const Vec3f& n, const Vec3f& a, const Vec3f& b) {
+    return (a.dot(n) < 0) == (b.dot(n) < 0);
+}
+
+// Returns the factor of radiance that is refracted from wo's side of a surface to the other.
+inline float EtaScaleAt(const SurfaceInteraction& hit, const Bsdf& bsdf) {
+    const float eta2 = Sqr(bsdf.Eta());
+    return hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
+}
+
 struct SurfaceVertex {
     const SurfaceInteraction& hit;
     const Bsdf& bsdf;
@@ -35,15 +46,8 @@ struct SurfaceVertex {
         return OffsetRayOrigin(hit.p, hit.pError, hit.n, d);
     }
     Ray SpawnRay(const Vec3f& d) const { return hit.SpawnRay(d); }
-    // Returns the factor of radiance that is refracted from wo's side to the other.
-    float EtaScale() const {
-        const float eta2 = Sqr(bsdf.Eta());
-        return hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
-    }
-    // Returns whether both leave the surface on the same side.
-    bool IsSameSide(const Vec3f& a, const Vec3f& b) const {
-        return (a.dot(hit.n) < 0) == (b.dot(hit.n) < 0);
-    }
+    float EtaScale() const { return EtaScaleAt(hit, bsdf); }
+    bool IsSameSide(const Vec3f& a, const Vec3f& b) const { return lull::IsSameSide(hit.n, a, b); }
 };
 
 // f is the phase function, which is its density as well.

@@ -26,7 +26,7 @@ float IndexBetween(const Bsdf& bsdf, const Vec3f& wo, const Vec3f& wi) {
 
 }  // namespace
 
-bool Scatter(Origin origin, const SubpathVertex& v, const Vec2f& u, Stride* stride,
+bool Scatter(Origin origin, const SubpathVertex& v, const Vec2f& u, Segment* segment,
              bool* isSpecular, bool* isTransmission) {
     const SurfaceInteraction& hit = v.hit;
     const auto sample = v.bsdf.Sample(hit.wo, u, LobeSet::All);
@@ -64,18 +64,18 @@ bool Scatter(Origin origin, const SubpathVertex& v, const Vec2f& u, Stride* stri
                 ? Rgb(sample->f * cosine)
                 : Rgb(reverse.f * (v.ShadingFactor() * std::abs(wi.dot(hit.n))));
     }
-    stride->beta = v.beta * f / sample->pdf;
-    if (IsBlack(stride->beta) || !IsFinite(stride->beta)) return false;
-    stride->ray = hit.SpawnRay(wi);
-    stride->pdf = forth;
-    stride->p = hit.p;
-    stride->n = hit.n;
-    stride->density = v.arrival.density;
-    stride->sum = sample->isSpecular ? 0 : v.arrival.own;
-    if (!isOneWay) stride->sum += Sqr(double(back)) * v.arrival.fewer;
-    stride->connects = !sample->isSpecular;
-    stride->fromInfinity = false;
-    return stride->density > 0;
+    segment->beta = v.beta * f / sample->pdf;
+    if (IsBlack(segment->beta) || !IsFinite(segment->beta)) return false;
+    segment->ray = hit.SpawnRay(wi);
+    segment->pdf = forth;
+    segment->p = hit.p;
+    segment->n = hit.n;
+    segment->density = v.arrival.density;
+    segment->sum = sample->isSpecular ? 0 : v.arrival.own;
+    if (!isOneWay) segment->sum += Sqr(double(back)) * v.arrival.fewer;
+    segment->connects = !sample->isSpecular;
+    segment->fromInfinity = false;
+    return segment->density > 0;
 }
 
 Rgb ShareBetween(const Scene& scene, const SurfaceInteraction& a, const SurfaceInteraction& b,
@@ -84,10 +84,7 @@ Rgb ShareBetween(const Scene& scene, const SurfaceInteraction& a, const SurfaceI
     const Vec3f from = OffsetRayOrigin(a.p, a.pError, a.n, w);
     const Vec3f to = OffsetRayOrigin(b.p, b.pError, b.n, -w);
     const Vec3f d = to - from;
-    const auto isSameSide = [](const Vec3f& n, const Vec3f& v, const Vec3f& u) {
-        return (n.dot(v) < 0) == (n.dot(u) < 0);
-    };
-    if (!isSameSide(a.n, d, w) || !isSameSide(b.n, d, w)) return Rgb::Zero();
+    if (!IsSameSide(a.n, d, w) || !IsSameSide(b.n, d, w)) return Rgb::Zero();
     return ShareAlong(scene, {from, d, 1 - 0.0001f}, time);
 }
 

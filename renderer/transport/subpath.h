@@ -20,7 +20,7 @@
 namespace lull {
 
 // The way of a subpath from its last vertex to the next.
-struct Stride {
+struct Segment {
     Ray ray;               // of unit direction
     Rgb beta;              // radiance, or power, over the density of the subpath
     float pdf = 1;         // of the direction, 1/sr; from lights at infinity 1/m^2 across it
@@ -46,16 +46,16 @@ inline double PerArea(const Vec3f& n, const Vec3f& d, double distance2) {
     return std::abs(double(n.dot(d))) / distance2;
 }
 
-// Arrives at the surface that the stride's ray meets. `own` is c(i).
-inline Arrival Arrive(const Stride& stride, const Vec3f& p, const Vec3f& n, double own) {
-    const double distance2 = std::max(double((p - stride.p).squaredNorm()), 1e-30);
-    const Vec3f& d = stride.ray.d;
+// Arrives at the surface that the segment's ray meets. `own` is c(i).
+inline Arrival Arrive(const Segment& segment, const Vec3f& p, const Vec3f& n, double own) {
+    const double distance2 = std::max(double((p - segment.p).squaredNorm()), 1e-30);
+    const Vec3f& d = segment.ray.d;
     const double across = std::abs(double(n.dot(d)));
-    const double back = stride.fromInfinity ? 1 : PerArea(stride.n, d, distance2);
+    const double back = segment.fromInfinity ? 1 : PerArea(segment.n, d, distance2);
     Arrival arrival;
-    arrival.density = double(stride.pdf) * (stride.fromInfinity ? across : across / distance2);
+    arrival.density = double(segment.pdf) * (segment.fromInfinity ? across : across / distance2);
     arrival.own = own;
-    arrival.fewer = Sqr(back / stride.density) * stride.sum;
+    arrival.fewer = Sqr(back / segment.density) * segment.sum;
     return arrival;
 }
 
@@ -103,8 +103,8 @@ struct SubpathVertex {
 // Whether a subpath comes from the camera, and carries importance, or from a light.
 enum class Origin { Camera, Light };
 
-// Scatters a subpath at a vertex: makes the stride to the next. Returns false where it ends.
-bool Scatter(Origin, const SubpathVertex&, const Vec2f& u, Stride*, bool* isSpecular,
+// Scatters a subpath at a vertex: makes the segment to the next. Returns false where it ends.
+bool Scatter(Origin, const SubpathVertex&, const Vec2f& u, Segment*, bool* isSpecular,
              bool* isTransmission);
 
 // Returns the share of light that gets from one point of a surface to another.

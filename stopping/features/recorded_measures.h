@@ -9,8 +9,8 @@
 
 namespace lull {
 
-// Returns the numbers recorded of a block at some spp under a name, one of kChannels
-// (lab/recordings/recording.h). Throws std::invalid_argument for unrecorded channels.
+// Returns the numbers of a channel that were recorded of a block at some spp. Throws
+// std::invalid_argument for channels that were not.
 using RecordedValues = std::function<std::span<const float>(std::string_view channel)>;
 
 // Returns the recorded lightness of the sub-blocks.

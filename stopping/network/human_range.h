@@ -9,7 +9,7 @@
 namespace lull {
 
 // The spp at which the human thresholds end: observers were shown no more.
-inline constexpr int kJudgedCap = 10000;
+inline constexpr int kMostShownSpp = 10000;
 
 // How a rule's stops S relate to the thresholds T of people on blocks that it had not seen: the
 // quantiles of log(T / S) at 0, 10, ..., 100 %.

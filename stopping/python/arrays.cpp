@@ -26,15 +26,15 @@ void WarnOfValues(const py::array& values, const std::string& name) {
 }
 
 void WarnOfColours(const py::array& values, const std::string& name) {
-    constexpr double manyNegative = 0.05, most = 0.5;
+    constexpr double kManyNegative = 0.05, kMost = 0.5;
     WarnOfValues(values, name);
     const auto share = [&](const char* comparison, int limit) {
         const py::object holds = py::module_::import("numpy").attr(comparison)(values, limit);
         return holds.attr("mean")().cast<double>();
     };
-    if (share("less", 0) > manyNegative)
+    if (share("less", 0) > kManyNegative)
         Warn(name + " has many negative values, which count as 0; linear radiance is needed");
-    if (share("greater", 1) > most)
+    if (share("greater", 1) > kMost)
         Warn(name +
              " is mostly above 1, the display's white; divide pictures of 0 to 255 by 255 "
              "and undo their gamma, or scale it to how it is shown");

@@ -40,7 +40,7 @@ class Criterion {
 
     // Returns the noise given to a network at the last check, if it has no other input: forecasts
     // follow it in place of the probability (trend.h).
-    virtual std::optional<double> NoiseTold() const { return {}; }
+    virtual std::optional<double> NetworkNoise() const { return {}; }
 
     // Return and set the state that Observe() keeps between calls, for checkpoints. Restore()
     // throws std::runtime_error if `state` was saved by another rule or is damaged; the criterion

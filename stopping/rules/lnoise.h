@@ -21,6 +21,9 @@ double VisibleNoise(const BlockView& view);
 // pixels hold most of it: hence the votes.
 Rule LightnessNoiseRule(double threshold);
 
+// The name of the rule.
+inline constexpr const char* kLightnessNoiseName = "lnoise";
+
 // Reads the threshold T, which the context's caution divides.
 Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context);
 

@@ -85,7 +85,7 @@ Decision RuleCriterion::Observe(const BlockView& view) {
                   PeakOverLimit(*rule, noise, view.spp, view.variance));
 }
 
-std::optional<double> RuleCriterion::NoiseTold() const {
+std::optional<double> RuleCriterion::NetworkNoise() const {
     std::optional<double> noise = statistic ? statistic->Noise() : std::nullopt;
     // At the limit of peak noise the network counts as undecided.
     if (noise) noise = std::max(*noise, rule->trend.undecided * peak);

@@ -135,7 +135,7 @@ class RuleCriterion final : public Criterion {
 
     ViewNeed Need(int spp) const override;
     Decision Observe(const BlockView& view) override;
-    std::optional<double> NoiseTold() const override;
+    std::optional<double> NetworkNoise() const override;
     std::vector<std::byte> Save() const override;
     void Restore(std::span<const std::byte> state) override;
 

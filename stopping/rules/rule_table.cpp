@@ -72,7 +72,7 @@ constexpr RuleEntry kRules[] = {
      .replay = Replay::Decides,
      .sweep = {.bench = kLuxErrors, .largest = 1, .least = 1e-4},
      .read = ReadLuxTile},
-    {.name = "lnoise",
+    {.name = kLightnessNoiseName,
      .argument = "[:T]",
      .standard = "0.65",
      .stops = "when its noise in L*, masked by texture, is below T@ at three consecutive checks",

@@ -33,9 +33,10 @@ RuleTrend TrendOfFalls(const NoiseVisibility& visibility);
 // Returns the trend of a model's answers, or of its noise input.
 RuleTrend TrendOf(const Model& model);
 
-// Returns the noise, times the caution, at which a model with no other input is undecided, where
-// noise has fallen with the root of the spp, or is not yet known at fixed spacing; 0 for other
-// models, and if no noise between 0.001 and 1000 is the limit.
+// Returns the noise, times the caution, above which a model takes a block for noisy. It is defined
+// for models with no input but noise, whose window then has the noise of earlier steps too: at
+// geometric spacing as if it had fallen with the root of the spp, at fixed spacing as if it were
+// the same. 0 for other models, and where the limit is not between 0.001 and 1000.
 double UndecidedNoise(const Model& model);
 
 }  // namespace lull

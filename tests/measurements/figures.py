@@ -23,7 +23,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = ['tests/measurements/models.md', 'stopping/docs/paper.md', 'README.md']
 COMMAND = re.compile(r'^((?:    .*\\\n)*    lull (?:evaluate|train) [^\n]*(?:(?<=\\)\n    [^\n]*)*)\n\n```text\n(.*?)```\n', re.M | re.S)
-OUTPUT = re.compile(r'<!-- output: ([^:]*): ([^:]*): ([^:]*) -->')
+OUTPUT = re.compile(r'<!-- output: ([^:]*): ((?:[^:]|:(?! ))*): ([^:]*) -->')
 FIGURE = re.compile(r'([0-9.-]+)(\**(?: %)?<!-- figure: ([^>]*?) -->)')
 
 

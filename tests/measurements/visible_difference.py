@@ -4,6 +4,9 @@
     python3 visible_difference.py blocks PROGRAM FOLDER HUMAN.csv            # blocks with human thresholds
     python3 visible_difference.py pooling PROGRAM FOLDER HUMAN.csv           # other exponents of the pooling
 
+    lull render staircase2/scene.pbrt --resolution 800x800 --spp 64 --seed 1 --denoise --denoise-layers --estimator pbrt-v3 \\
+        --sampler random -o FOLDER/staircase2-view0.exr
+
 PROGRAM is the target `visible_difference`. FOLDER has VIEWPOINT.exr of 800x800 pixels or VIEWPOINT-BLOCK.exr of 200x200,
 rendered with --denoise --denoise-layers; all else is made from them: the denoised picture stands for that of 10,000 spp, and the
 noise that one of fewer has beside it is drawn from the differences of both halves in the 5x5 pixels around, many times, and

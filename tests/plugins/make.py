@@ -3,7 +3,7 @@
 
     make.py scenes                     writes scenes/NAME.pbrt and the images they use
     make.py references PBRT [NAME...]  renders them (those named) into references/NAME.exr
-    make.py table PROGRAM [SAMPLES]    runs lull_plugins_tests with SAMPLES (256) and writes the results into README.md
+    make.py table PROGRAM [SAMPLES]    runs lull_plugins_tests with SAMPLES (256), writes plugins.csv and prints the ranges
 
 PBRT is a pbrt-v3 whose film has been told to write moments: where the environment variable
 PBRT_MOMENTS names a file, each pixel's mean (R, G, B), unbiased variance of one sample and number of
@@ -12,6 +12,7 @@ samples, as seven doubles, row by row, for box-filtered pixels. References hold 
 Scenes of filtering ask for one sample a pixel, as far apart as its footprints then are, and get SAMPLES
 all the same, for which that pbrt-v3 takes footprints for as many samples as PBRT_SPACING says.
 """
+import csv
 import math
 import os
 import random
@@ -514,6 +515,10 @@ SHOWN = {
 }
 
 
+COLUMNS = ['plug-in', 'scene'] + [f'{figure}, {estimator}' for estimator in ('pbrt-v3', 'combined') for figure in (
+    'energy', 'standard errors', '% of pixels out', '% of tiles out')]
+
+
 def write_table(program, samples):
     output = subprocess.run([program, '--gtest_filter=*LookAsInPbrt*'], stdout=subprocess.PIPE, text=True,
                             env={**os.environ, 'LULL_PLUGIN_SAMPLES': samples}).stdout
@@ -521,24 +526,19 @@ def write_table(program, samples):
     for name, estimator, ratio, sigma, pixels, tiles in re.findall(
             r'^(\S+) +(pbrt-v3|combined) +energy (\S+) \((\S+) sigma\), pixels out (\S+) %, tiles out (\S+) %$',
             output, re.M):
-        found.setdefault(name, {})[estimator] = (f'{ratio} ({sigma})', pixels, tiles)
+        found.setdefault(name, {})[estimator] = (ratio, sigma, pixels, tiles)
     missing = set(SCENES) - set(found)
     if missing:
         sys.exit('not in the output: ' + ' '.join(sorted(missing)))
-    rows = ''
+    rows = []
     for name, by in sorted(found.items()):
-        theirs, ours = by['pbrt-v3'], by['combined']
-        rows += f'| {SHOWN.get(name, name.replace("-", " ", 1))} | [{name}](scenes/{name}.pbrt) | {theirs[0]} | ' \
-                f'{ours[0]} | {theirs[1]}, {ours[1]} | {theirs[2]}, {ours[2]} |\n'
-    path = os.path.join(HERE, 'README.md')
-    with open(path) as file:
-        text = file.read()
-    with open(path, 'w') as file:
-        file.write(text[:text.index('| plug-in |')] + f'''| plug-in | scene | energy, `--estimator pbrt-v3` | `combined` | % of pixels out | % of tiles out |
-|---|---|---|---|---|---|
-{rows}
-{len(found)} scenes, {samples} spp.
-''')
+        both = [by[estimator] for estimator in ('pbrt-v3', 'combined')]
+        rows.append([SHOWN.get(name, name.replace('-', ' ', 1)), name, *(figure for one in both for figure in one)])
+    with open(os.path.join(HERE, 'plugins.csv'), 'w', newline='') as file:
+        csv.writer(file, lineterminator='\n').writerows([COLUMNS, *rows])
+    for column in range(2, len(COLUMNS)):
+        values = [float(row[column]) for row in rows]
+        print(f'{COLUMNS[column]}: {min(values)} to {max(values)}, {len(rows)} scenes, {samples} spp')
 
 
 def main():

@@ -7,9 +7,10 @@
 A feature is right if means of R, G, B and alpha are within 2 % of Cycles' and blocks of 10x10 pixels within 5 % of the mean, on average;
 refused if there is no picture; else warned. One that differs without a warning is silent, and the exit code is 1. Pictures stay
 in the folder OUT, `NAME.png` with Cycles on the left; what is there already is not rendered again, unless it is named. `--write`
-replaces the table in renderer/docs/blender.md. Not part of CI.
+writes features.csv, all features, and replaces the table in renderer/docs/blender.md, those that are not right. Not part of CI.
 """
 import argparse
+import csv
 import json
 import os
 import pathlib
@@ -88,7 +89,7 @@ def beside(a, b, path):
 def clean(line):
     line = re.sub("^((Warning|Error|Info): )+", "", line)
     line = re.sub(r"lull: \S+: /\S+: warning: ", "lull: ", line)
-    return line.removeprefix("The scene cannot be exported: ").replace("|", "\\|")
+    return line.removeprefix("The scene cannot be exported: ")
 
 
 def consequences(said, kinds="Warning|Error"):
@@ -116,6 +117,23 @@ def judge(o, name, said):
     return ", ".join(filter(None, (verdict, f"warned: {texts}" if texts else ""))), apart, off
 
 
+def write(rows, path):
+    """Writes all features."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([["feature", "lull", "means in %", "blocks in %"], *rows])
+
+
+def table(rows):
+    """Returns the number of right features, and a table of the others."""
+    others = [row for row in rows if not row[1].startswith("right")]
+    lines = [f"{len(rows) - len(others)} of {len(rows)} features are right. The others:", "",
+             "| feature | warning | means |", "|---|---|---|"]
+    for title, verdict, means, _ in others:
+        verdict = verdict.removeprefix("warned: ").replace("|", "\\|")
+        lines.append(f"| {title} | {verdict} | {means + ' %' if means else '-'} |")
+    return "\n" + "\n".join(lines) + "\n\n"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("blender")
@@ -125,7 +143,7 @@ def main():
     parser.add_argument("names", nargs="*", help="features, by the names of their functions [all]")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--table", action="store_true", help="render nothing, and judge what is in OUT")
-    parser.add_argument("--write", action="store_true", help="replace the table in renderer/docs/blender.md")
+    parser.add_argument("--write", action="store_true", help="replace features.csv and the table in renderer/docs/blender.md")
     o = parser.parse_args()
     os.makedirs(o.out, exist_ok=True)
     if o.table:
@@ -133,23 +151,22 @@ def main():
     else:
         with tempfile.TemporaryDirectory() as folder:
             names = run(o, folder)
-    rows = ["| feature | lull | means | blocks |", "|---|---|---|---|"]
-    silent = []
+    rows, silent = [], []
     for name in names:
         if not (o.out / f"{name}.json").exists():
             continue
         feature = json.loads((o.out / f"{name}.json").read_text(encoding="utf-8"))
         verdict, apart, off = judge(o, name, feature["said"])
         silent += [name] if "silent" in verdict else []
-        figures = "| |" if apart is None else f"{100 * apart:+.1f} % | {100 * off:.1f} % |"
-        rows.append(f"| {feature['title']} | {verdict} | {figures}")
-    table = "\n".join(rows) + "\n"
-    print(table)
-    (o.out / "features.md").write_text(table, encoding="utf-8")
+        figures = ["", ""] if apart is None else [f"{100 * apart:+.1f}", f"{100 * off:.1f}"]
+        rows.append([feature["title"], verdict, *figures])
+        print(*rows[-1], sep=" | ")
+    write(rows, o.out / "features.csv")
     if o.write:
+        write(rows, HERE / "features.csv")
         page = ROOT / "renderer/docs/blender.md"
         before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-        page.write_text(before + BEGIN + "\n" + table + "\n" + END + rest.split(END)[1], encoding="utf-8")
+        page.write_text(before + BEGIN + table(rows) + END + rest.split(END)[1], encoding="utf-8")
     if silent:
         sys.exit("silent: " + ", ".join(silent))
 

@@ -25,6 +25,11 @@ def _duration(seconds):
             "%d h" % hours)
 
 
+def _step(event):
+    left = event["remainingSeconds"]
+    return event["name"] + ("" if left is None else ", %s left" % _duration(left))
+
+
 def _progress(event):
     text = "%d of %d blocks stopped, %d spp" % (
         event["stoppedBlocks"], event["blocks"], event["medianSpp"])
@@ -195,12 +200,12 @@ class _Job:
                     rectangle[:, :, i] = channels[name]
                 rectangle[:, :, 3] = 1
                 changed = True
-            elif kind == "progress":
+            elif kind in ("progress", "step"):
                 self.engine.update_progress(what["percent"] / 100)
                 if bpy.app.background and time.monotonic() - said < _SECONDS_BETWEEN_LINES:
                     continue  # there each of them is a line
                 said = time.monotonic()
-                self.engine.update_stats("", _progress(what))
+                self.engine.update_stats("", (_step if kind == "step" else _progress)(what))
             elif kind in ("warning", "note") and _ADVICE not in what:
                 self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + what)
             if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:

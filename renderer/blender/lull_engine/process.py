@@ -37,8 +37,8 @@ def run(command, stopped, heard):
 class Render:
     """A render of lull.
 
-    `for kind, data in render.events(stopped)` yields ("progress", {...}), ("warning", text), ("note", text),
-    ("show", (x, y, channels)) and ("idle", None) until the program ends; `code` is then its exit code.
+    `for kind, data in render.events(stopped)` yields ("progress", {...}), ("step", {...}), ("warning", text),
+    ("note", text), ("show", (x, y, channels)) and ("idle", None) until the program ends; `code` is then its exit code.
     If `stopped` returns true, the program ends with the current image.
     """
 
@@ -98,8 +98,8 @@ class Render:
                 self.errors.append(event["message"])
             elif kind in ("warning", "note"):
                 yield kind, event["message"].removeprefix("warning: ")
-            elif kind == "progress":
-                yield "progress", event
+            elif kind in ("progress", "step"):
+                yield kind, event
 
 
 def _receive(connection):

@@ -11,16 +11,17 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <ImfVersion.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 
 #include "renderer/image/files/exr_channels.h"
 #include "renderer/image/files/exr_header.h"
-#include "renderer/image/files/exr_threads.h"
 
 namespace lull {
 
@@ -238,6 +239,14 @@ bool IsExr(std::span<const std::byte> bytes) {
 
 std::unique_ptr<ImageFile> OpenExr(std::span<const std::byte> bytes) {
     return std::make_unique<ExrPicture>(bytes);
+}
+
+int UseExrThreads() {
+    static const int threads = [] {
+        Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
+        return Imf::globalThreadCount();
+    }();
+    return threads;
 }
 
 }  // namespace lull

@@ -45,4 +45,8 @@ class ExrFile {
 // otherwise.
 std::unique_ptr<ImageFile> OpenExr(std::span<const std::byte> bytes);
 
+// OpenEXR compresses strips of a file on threads of its own, which the whole program shares:
+// starts a thread per processor, once, and returns their number.
+int UseExrThreads();
+
 }  // namespace lull

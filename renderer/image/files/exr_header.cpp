@@ -54,8 +54,8 @@ void CheckChannels(std::span<const std::byte> list) {
 void CheckExrHeader(std::span<const std::byte> file) {
     HeaderBytes bytes(file);
     bytes.Take(4);  // the signature
-    constexpr uint32_t hasManyParts = 0x1000;
-    const bool hasMany = bytes.Integer() & hasManyParts;
+    constexpr uint32_t kHasManyParts = 0x1000;
+    const bool hasMany = bytes.Integer() & kHasManyParts;
     // A header for each part, of which the last of many is empty, and in each: name, type, size and
     // value of attributes, and an empty name.
     bool isEmpty = false;

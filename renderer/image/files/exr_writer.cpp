@@ -17,7 +17,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
-#include "renderer/image/files/exr_threads.h"
+#include "renderer/image/files/exr_file.h"
 #include "renderer/image/image.h"
 #include "renderer/image/image_io.h"
 #include "stopping/base/parallel.h"

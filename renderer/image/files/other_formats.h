@@ -1,4 +1,4 @@
-// Opens images in formats that the program does not read by itself.
+// Opens images in formats that the program does not read by itself, by the module of OpenImageIO.
 #pragma once
 
 #include <memory>
@@ -14,5 +14,9 @@ namespace lull {
 // reason, without the path: the module is not there, or it cannot read the file.
 std::unique_ptr<ImageFile> OpenOtherFormat(const std::string& path,
                                            std::span<const std::byte> bytes = {});
+
+// Returns a function of the module by its name. The first call loads the module, which takes 0.2 s.
+// Throws std::runtime_error if it cannot be loaded: `purpose` is the beginning of the message.
+void* ModuleFunction(const char* name, const char* purpose);
 
 }  // namespace lull

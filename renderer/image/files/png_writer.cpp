@@ -11,7 +11,6 @@
 #include "renderer/files/file_io.h"
 #include "renderer/image/files/png_library.h"
 #include "renderer/image/image_io.h"
-#include "renderer/image/png_format.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {
@@ -113,16 +112,16 @@ class PngWriter {
 // Returns the component as an integer of all bits of T.
 template <typename T>
 T EncodeSrgb(float linear) {
-    constexpr float most = std::numeric_limits<T>::max();
-    const float v = most * SrgbFromLinear(std::max(0.f, linear)) + 0.5f;
-    return T(std::min(v, most));
+    constexpr float kMost = std::numeric_limits<T>::max();
+    const float v = kMost * SrgbFromLinear(std::max(0.f, linear)) + 0.5f;
+    return T(std::min(v, kMost));
 }
 
 // Does so without a transfer function, for alpha and encoded colours. NaN is black.
 template <typename T>
 T EncodeLinear(float value) {
-    constexpr float most = std::numeric_limits<T>::max();
-    return T(most * std::clamp(value > 0 ? value : 0, 0.f, 1.f) + 0.5f);
+    constexpr float kMost = std::numeric_limits<T>::max();
+    return T(kMost * std::clamp(value > 0 ? value : 0, 0.f, 1.f) + 0.5f);
 }
 
 // Returns the colours of R, G, B, A divided by alpha; transparent pixels are black.

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "renderer/base/seconds_since.h"
+#include "renderer/base/clocks.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
@@ -93,14 +93,14 @@ void AddOptions(CLI::App& app, Options* o) {
     app.footer(kFooter);
 }
 
-std::vector<ObservedRule> MakeRules(const Options& options, const RenderJob& render) {
+std::vector<MonitoredRule> MakeRules(const Options& options, const RenderJob& render) {
     const ScheduleOptions& schedule = options.render.schedule;
     std::vector<std::string> texts = BenchRules(schedule.passLength, schedule.cap);
     texts.push_back("learned");
     if (options.denoise) texts.push_back(kDenoisedRuleName);
     for (const std::string& rule : options.rules)
         if (std::ranges::find(texts, rule) == texts.end()) texts.push_back(rule);
-    std::vector<ObservedRule> rules;
+    std::vector<MonitoredRule> rules;
     for (const std::string& text : texts) {
         const Rule rule = render.ReadRule("--rule", text);
         rules.push_back({text, rule.text, rule.smallestSide, CriteriaOf(rule),
@@ -146,7 +146,7 @@ struct Bench {
     Options options;
     RenderJob render;
     std::string sceneHash;
-    std::vector<ObservedRule> rules;
+    std::vector<MonitoredRule> rules;
     std::vector<ExternalImage> external;
     std::vector<RgbImage> externalImages;
     std::optional<RgbImage> reference;  // set by the first render, unless it was given
@@ -221,7 +221,7 @@ SessionOptions MakeOptions(const Bench& bench, const Variant& variant) {
         provenance.guide = options.guide.mode;
         provenance.guideMegabytes = options.guide.megabytes;
     }
-    for (const ObservedRule& rule : bench.rules) provenance.criterion += rule.text + " ";
+    for (const MonitoredRule& rule : bench.rules) provenance.criterion += rule.text + " ";
     SessionOptions how = bench.render.MakeSessionOptions(false);
     how.render.sampler = variant.sampler;
     if (variant.isGuided) how.guide = options.guide;
@@ -233,14 +233,14 @@ SessionOptions MakeOptions(const Bench& bench, const Variant& variant) {
 
 // Adds the points of a variant, of which the first render's whole image is the reference, unless
 // another was given.
-void AddPoints(const Variant& variant, const ObservedRender& observed, const GuideFigures& guidance,
-               Bench* bench) {
+void AddPoints(const Variant& variant, const MonitoredRender& monitored,
+               const GuideFigures& guidance, Bench* bench) {
     const bool makesReference = !bench->reference;
-    const int threads = observed.result.threads;
-    if (makesReference) bench->reference = TakeWholeImage(observed).image;
+    const int threads = monitored.result.threads;
+    if (makesReference) bench->reference = TakeWholeImage(monitored).image;
     PointCounter counter(bench->rules.size(), bench->options.render);
     for (BenchPoint point :
-         MeasurePoints(observed, bench->rules, *bench->reference, bench->options.display, threads,
+         MeasurePoints(monitored, bench->rules, *bench->reference, bench->options.display, threads,
                        [&] { counter.Add(); })) {
         point.sampler = NameOf(variant);
         point.sharesReference = makesReference;
@@ -262,8 +262,8 @@ bool BenchVariant(const Variant& variant, Bench* bench) {
     render.LockCheckpoint();
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
     SessionOptions how = MakeOptions(*bench, variant);
-    how.render.makeCriterion = MakeObservers(bench->rules, region, settings.schedule,
-                                             {.snapshots = true, .goesOn = true}, &histories);
+    how.render.makeCriterion = MakeMonitors(bench->rules, region, settings.schedule,
+                                            {.snapshots = true, .goesOn = true}, &histories);
     Session session(*render.scene, region, how);
     if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(variant));
     const RenderResult result = render.Run(&session);

@@ -95,13 +95,13 @@ struct Compared {
 
     CompareOptions options;
     RenderJob render;
-    std::vector<ObservedRule> rules;
+    std::vector<MonitoredRule> rules;
     std::string humanChecksum = "none";
     ComparisonReport report;
     std::vector<ComparedImage> fromFiles;
 };
 
-ObservedRule MakeRule(const std::string& name, const Rule& rule) {
+MonitoredRule MakeRule(const std::string& name, const Rule& rule) {
     return {name, rule.text, rule.smallestSide, CriteriaOf(rule)};
 }
 
@@ -112,7 +112,7 @@ void AddOtherRules(Compared* compared) {
     if (!options.human.empty() && !IsImageFile(options.human)) {
         RenderSettings plain = options.render;
         plain.caution = 1;
-        const Rule human = ReadRule("--human", "thresholds:" + options.human, plain, region);
+        const Rule human = ReadRuleOption("--human", "thresholds:" + options.human, plain, region);
         compared->rules.push_back(MakeRule("human", human));
         compared->humanChecksum = human.checksum;
     }
@@ -133,7 +133,7 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) 
     compared->rules.push_back(MakeRule("automatic", automatic));
     AddOtherRules(compared.get());
     std::vector<std::string> rendered;
-    for (const ObservedRule& rule : compared->rules) rendered.push_back(rule.name);
+    for (const MonitoredRule& rule : compared->rules) rendered.push_back(rule.name);
     if (options.snapshots) rendered.push_back("reference");
     render.CheckFiles(OutputsOf(options, rendered), InputsOf(options));
     render.LockResults(options.output + ".compare.json");
@@ -154,7 +154,7 @@ SessionOptions MakeOptions(Compared* compared) {
     const CompareOptions& options = compared->options;
     const bool hasPage = !options.report.empty();
     SessionOptions how = compared->render.MakeSessionOptions(!options.snapshots);
-    how.render.makeCriterion = MakeObservers(
+    how.render.makeCriterion = MakeMonitors(
         compared->rules, compared->render.input.region, options.render.schedule,
         {.snapshots = true, .noise = true, .curves = hasPage, .goesOn = options.snapshots},
         &compared->report.histories);
@@ -177,7 +177,7 @@ Verification Verify(const Compared& compared, int threads, const ComparedImage& 
     if (!render.settings.quiet) TalkOf(render.settings).Note("the automatic image by itself");
     Session session(*render.scene, render.input.region, how);
     const RenderResult result = session.Run();
-    return VerificationOf(result, session.TheFilm(), expected);
+    return VerificationOf(result, session.GetFilm(), expected);
 }
 
 ResultFiles WriteImages(const Compared& compared) {
@@ -207,13 +207,13 @@ ResultFiles WriteImages(const Compared& compared) {
 }
 
 // Takes all images from a render, adds those that were read, and measures them.
-void AddImages(const ObservedRender& observed, Compared* compared) {
+void AddImages(const MonitoredRender& monitored, Compared* compared) {
     const CompareOptions& options = compared->options;
     ComparisonReport* report = &compared->report;
     Comparison& comparison = report->comparison;
     for (size_t i = 0; i < compared->rules.size(); ++i)
-        comparison.images.push_back(TakeImage(observed, compared->rules, i));
-    if (options.snapshots) comparison.images.push_back(TakeWholeImage(observed));
+        comparison.images.push_back(TakeImage(monitored, compared->rules, i));
+    if (options.snapshots) comparison.images.push_back(TakeWholeImage(monitored));
     for (ComparedImage& image : compared->fromFiles) comparison.images.push_back(std::move(image));
     if (options.snapshots && IsImageFile(options.human))  // the reference is to be the last
         std::swap(comparison.images.back(), *(comparison.images.end() - 2));

@@ -47,7 +47,7 @@ struct Options {
     std::string split;  // the file that lists the blocks of a training; empty: all are judged
     bool rivals = false, constants = false, brief = false;
     ChooseBy chooseBy = ChooseBy::AbsoluteError;
-    ScoreOptions judge;
+    ScoreOptions scoring;
     double caution = 1;
 };
 
@@ -125,7 +125,7 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 void AddCriticalErrorOptions(CLI::App& app, ScoreOptions* score) {
     app.add_option("--grid", score->grid, "Count the decisions of critical errors every N spp")
-        ->check(Between(1, kJudgedCap))
+        ->check(Between(1, kMostShownSpp))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--margins", score->margins, "Set the margins of the critical error, in %")
@@ -167,7 +167,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("NAME");
-    AddCriticalErrorOptions(app, &o->judge);
+    AddCriticalErrorOptions(app, &o->scoring);
     app.add_flag("--brief", o->brief, "Print no tables of single viewpoints");
     app.add_option("--csv", o->csv, "Write all rows to a CSV file")->type_name("F.csv");
     app.add_option("--blocks", o->blocks, "Write the stop of each block to a CSV file")
@@ -191,7 +191,7 @@ std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
     std::vector<EvaluatedRule> rules;
     for (const std::string& path : options.predicted)
         rules.push_back(
-            EvaluateThresholds(path, options.human, people, options.judge.grid, PrintTalk));
+            EvaluateThresholds(path, options.human, people, options.scoring.grid, PrintTalk));
     return rules;
 }
 
@@ -227,7 +227,7 @@ std::vector<EvaluatedRule> EvaluateRecordings(const Options& options) {
                              .rules = options.rules,
                              .context = {.models = ModelFolder(), .caution = options.caution},
                              .predicted = options.predicted,
-                             .grid = options.judge.grid});
+                             .grid = options.scoring.grid});
 }
 
 // Reads the recordings of the one viewpoint that answers are to.
@@ -307,12 +307,13 @@ ExitCode RunEvaluate(const Options& options) {
         HasRecordings(options) ? EvaluateRecordings(options) : EvaluateFiles(options);
     if (options.constants)
         std::ranges::move(
-            EvaluateConstants(rules.at(0).viewpoints, options.chooseBy, options.judge.grid),
+            EvaluateConstants(rules.at(0).viewpoints, options.chooseBy, options.scoring.grid),
             std::back_inserter(rules));
     if (rules.at(0).viewpoints.size() == 1)
         PrintTalk("one viewpoint: nothing follows for other pictures");
-    PrintEvaluation(stdout, rules, options.judge, !options.brief);
-    if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(rules, options.judge));
+    PrintEvaluation(stdout, rules, options.scoring, !options.brief);
+    if (!options.csv.empty())
+        WriteFileAtomically(options.csv, EvaluationCsv(rules, options.scoring));
     if (!options.blocks.empty()) WriteFileAtomically(options.blocks, BlocksCsv(rules));
     WriteCurves(options, rules);
     return kDone;

@@ -60,11 +60,11 @@ void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first
         fmt::print(out, "{:<{}}  {:<{}}  {:>5}  {:>6}  {:>4}  {:>4}", row.*first, width,
                    row.setting, settingWidth, j.viewpoints, j.blocks, j.seen, j.open);
         for (const double error : j.criticalErrors) fmt::print(out, "  {:>6.2f}", 100 * error);
-        fmt::print(out,
-                   "  {:>11}  {:>6.0f}  {:>5.1f}  {:>5.1f}  {:>5.1f}  {:>5}  {:>5}  {:>6}  {:>7}\n",
-                   TextOf(j.criticalInterval), j.absoluteError, 100 * j.absoluteError / kJudgedCap,
-                   100 * j.early, 100 * j.late, PercentText(j.accuracy, 1), PercentText(j.auc, 1),
-                   RankText(j.rankWithin), RankText(j.rankBetween));
+        fmt::print(
+            out, "  {:>11}  {:>6.0f}  {:>5.1f}  {:>5.1f}  {:>5.1f}  {:>5}  {:>5}  {:>6}  {:>7}\n",
+            TextOf(j.criticalInterval), j.absoluteError, 100 * j.absoluteError / kMostShownSpp,
+            100 * j.early, 100 * j.late, PercentText(j.accuracy, 1), PercentText(j.auc, 1),
+            RankText(j.rankWithin), RankText(j.rankBetween));
     }
 }
 

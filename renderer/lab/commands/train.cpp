@@ -51,7 +51,7 @@ ExitCode RunTrain(const TrainOptions& options) {
             {"-o", options.output}, {"the checkpoint", checkpointName}, {"--csv", options.csv}},
         InputsOf(plan));
     std::optional<FileLock> lock;
-    if (!checkpointName.empty()) lock.emplace(LockCheckpoint(checkpointName));
+    if (!checkpointName.empty()) lock.emplace(LockCheckpointFile(checkpointName));
     const Talk talk{.isJson = options.jsonProgress};
     const auto note = [&](const std::string& message) { talk.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
@@ -61,7 +61,7 @@ ExitCode RunTrain(const TrainOptions& options) {
     const std::vector<BlockSplit> splits = MakeSplits(plan, blocks);
     TrainingCheckpoint checkpoint(checkpointName, options.checkpointInterval, WriteBytes);
     if (options.resume) checkpoint.Read();
-    TrainingPrinter printer(StyleOf(options), stderr);
+    TrainingPrinter printer(StyleOfReports(options.jsonProgress, options.quiet), stderr);
     CatchInterrupts();
 
     const std::optional<TrainingResult> result = TrainAll(
@@ -72,16 +72,17 @@ ExitCode RunTrain(const TrainOptions& options) {
             talk.Note("interrupted; --resume continues from " + checkpoint.Path());
         return kInterrupted;
     }
-    const ScoreOptions judge{.grid = plan.settings.n};
+    const ScoreOptions scoring{.grid = plan.settings.n};
     if (!options.output.empty()) {
         WriteModel(options.output, result->network, plan.settings,
-                   MakeRecord(plan, splits.back(), *result, judge), result->logRatios);
+                   MakeRecord(plan, splits.back(), *result, scoring), result->logRatios);
         checkpoint.Remove();
     }
-    PrintEvaluation(stdout, result->rules, judge, true);
+    PrintEvaluation(stdout, result->rules, scoring, true);
     if (const std::string certainty = CertaintyText(*result); !certainty.empty())
         fmt::print("\n{}\n", certainty);
-    if (!options.csv.empty()) WriteFileAtomically(options.csv, EvaluationCsv(result->rules, judge));
+    if (!options.csv.empty())
+        WriteFileAtomically(options.csv, EvaluationCsv(result->rules, scoring));
     return kDone;
 }
 

@@ -1,7 +1,6 @@
 #include "renderer/lab/commands/train_options.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -313,13 +312,6 @@ std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {
     std::vector<NamedFile> inputs = {{"--human", plan.human}};
     for (const std::string& file : plan.datasets) inputs.push_back({"DATASET.h5", file});
     return inputs;
-}
-
-ProgressStyle StyleOf(const TrainOptions& options) {
-    return options.jsonProgress    ? ProgressStyle::Json
-           : options.quiet         ? ProgressStyle::Silent
-           : isatty(STDERR_FILENO) ? ProgressStyle::Line
-                                   : ProgressStyle::Plain;
 }
 
 }  // namespace lull::train

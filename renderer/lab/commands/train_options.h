@@ -30,8 +30,6 @@ std::string ValuesText(const TrainingPlan&);
 // Returns the recordings and thresholds that a training reads; for CheckOutputs().
 std::vector<NamedFile> InputsOf(const TrainingPlan&);
 
-ProgressStyle StyleOf(const TrainOptions& options);
-
 // Completes defaults that depend on other options. Throws CLI::ValidationError for contradictory
 // options.
 void CompleteTrainOptions(TrainOptions* options);

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/say.h"
-#include "renderer/base/seconds_since.h"
 
 namespace lull {
 
@@ -26,24 +26,17 @@ void TrainingPrinter::Print(const TrainingProgress& p) {
     const double rate = seconds > 0 ? double(p.samples - samplesBefore) / seconds : 0;
     const double left = rate > 0 ? double(p.allSamples - p.samples) / rate : 0;
     nextReport = seconds + (style == ProgressStyle::Plain ? 30 : 0.25);
-    if (style == ProgressStyle::Json) {
-        SayTo(stream,
-              R"({{"training":"{}","epoch":{},"epochs":{},"samples":{},"allSamples":{},)"
-              R"("loss":{:.6f},"auc":{:.6f},"samplesPerSecond":{:.1f},)"
-              R"("remainingSeconds":{:.1f}}})"
-              "\n",
-              name, p.epoch, p.epochs, p.samples, p.allSamples, p.loss, p.auc, rate, left);
-    } else {
-        const std::string text =
-            fmt::format("{}{}epoch {}/{}  loss {:.4f}  AUC {:.3f}  {} samples/s  {} left", name,
-                        name.empty() ? "" : "  ", p.epoch, p.epochs, p.loss, p.auc,
-                        FormatCount(rate), FormatDuration(left));
-        if (style == ProgressStyle::Line)
-            SayTo(stream, "\r{}\x1b[K", text);
-        else
-            SayTo(stream, "{}\n", text);
-    }
-    std::fflush(stream);
+    const std::string text =
+        style == ProgressStyle::Json
+            ? fmt::format(
+                  R"({{"training":"{}","epoch":{},"epochs":{},"samples":{},"allSamples":{},)"
+                  R"("loss":{:.6f},"auc":{:.6f},"samplesPerSecond":{:.1f},)"
+                  R"("remainingSeconds":{:.1f}}})",
+                  name, p.epoch, p.epochs, p.samples, p.allSamples, p.loss, p.auc, rate, left)
+            : fmt::format("{}{}epoch {}/{}  loss {:.4f}  AUC {:.3f}  {} samples/s  {} left", name,
+                          name.empty() ? "" : "  ", p.epoch, p.epochs, p.loss, p.auc,
+                          FormatCount(rate), FormatDuration(left));
+    PrintReport(text, style, stream);
 }
 
 void TrainingPrinter::Finish(const TrainingProgress& progress) {

@@ -49,15 +49,15 @@ std::vector<std::string> BenchRules(int passLength, int cap) {
     return rules;
 }
 
-std::vector<BenchPoint> MeasurePoints(const ObservedRender& render,
-                                      const std::vector<ObservedRule>& rules,
+std::vector<BenchPoint> MeasurePoints(const MonitoredRender& render,
+                                      const std::vector<MonitoredRule>& rules,
                                       const RgbImage& reference, const DisplayModel& display,
                                       int threads, const std::function<void()>& onPoint) {
     std::vector<BenchPoint> points(rules.size());
     std::mutex mutex;  // guards onPoint
     const double pixels = double(render.context.film->Region().Area());
     const auto measure = [&](int index) {
-        const ObservedRule& rule = rules[size_t(index)];
+        const MonitoredRule& rule = rules[size_t(index)];
         const ComparedImage image = TakeImage(render, rules, size_t(index));
         BenchPoint& point = points[size_t(index)];
         const size_t colon = std::min(rule.text.find(':'), rule.text.size());

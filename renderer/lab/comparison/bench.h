@@ -29,7 +29,8 @@ std::vector<std::string> BenchRules(int passLength, int cap);
 // Returns a point for each rule, each compared with the reference as a display shows both. Seconds
 // are those of `threads` threads that are always busy. `onPoint` is called after each, by one
 // thread at a time; it may be empty.
-std::vector<BenchPoint> MeasurePoints(const ObservedRender&, const std::vector<ObservedRule>& rules,
+std::vector<BenchPoint> MeasurePoints(const MonitoredRender&,
+                                      const std::vector<MonitoredRule>& rules,
                                       const RgbImage& reference, const DisplayModel&, int threads,
                                       const std::function<void()>& onPoint);
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
-#include "renderer/base/thread_clock.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
 #include "stopping/rules/baselines.h"
@@ -43,7 +43,7 @@ Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
 }
 
 // Renders blocks from their first sample to `spp` each, and leaves out those where it is 0.
-void RenderBlocks(const ObservedRender& render, const std::vector<int>& spp, Film* film) {
+void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Film* film) {
     RenderState state;
     RenderContext context{.source = render.context.source, .film = film, .interrupted = &state};
     RenderOptions options;
@@ -86,7 +86,7 @@ void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelR
 }
 
 // Denoises the image of the samples that its blocks took.
-void DenoiseSamples(const ObservedRender& render, const std::vector<Block>& blocks,
+void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blocks,
                     ComparedImage* image) {
     const PixelRect& region = render.context.film->Region();
     std::vector<int> spp;
@@ -115,7 +115,7 @@ void ForgetLinear(ComparedImage* image) {
     for (ErrorFigures& figures : image->blockFigures) forget(&figures);
 }
 
-ScheduleOptions ScheduleFor(const ObservedRule& rule, ScheduleOptions schedule) {
+ScheduleOptions ScheduleFor(const MonitoredRule& rule, ScheduleOptions schedule) {
     schedule.smallestSide = rule.smallestSide;
     return schedule;
 }
@@ -180,24 +180,24 @@ TotalCost SumCosts(const Comparison& comparison, const ComparedImage& image) {
     return total;
 }
 
-CriterionMaker MakeObservers(const std::vector<ObservedRule>& rules, const PixelRect& region,
-                             const ScheduleOptions& schedule, const ObserverOptions& options,
-                             std::vector<BlockHistory>* histories) {
+CriterionMaker MakeMonitors(const std::vector<MonitoredRule>& rules, const PixelRect& region,
+                            const ScheduleOptions& schedule, const MonitorOptions& options,
+                            std::vector<BlockHistory>* histories) {
     std::vector<std::vector<Block>> blocks;  // by rule
-    for (const ObservedRule& rule : rules)
+    for (const MonitoredRule& rule : rules)
         blocks.push_back(MakeBlocks(region, ScheduleFor(rule, schedule)));
     return [&rules, blocks, options, histories](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> criteria;
         for (size_t r = 0; r < rules.size(); ++r)
             criteria.push_back(blocks[r][size_t(info.index)].votes ? rules[r].make(info) : nullptr);
-        return std::make_unique<BlockObserver>(std::move(criteria), options,
-                                               &(*histories)[size_t(info.index)]);
+        return std::make_unique<BlockMonitor>(std::move(criteria), options,
+                                              &(*histories)[size_t(info.index)]);
     };
 }
 
-ComparedImage TakeImage(const ObservedRender& render, const std::vector<ObservedRule>& rules,
+ComparedImage TakeImage(const MonitoredRender& render, const std::vector<MonitoredRule>& rules,
                         size_t index) {
-    const ObservedRule& rule = rules[index];
+    const MonitoredRule& rule = rules[index];
     const PixelRect& region = render.context.film->Region();
     const int cap = render.options.schedule.cap;
     const std::vector<Block> blocks =
@@ -241,7 +241,7 @@ ComparedImage TakeImage(const ObservedRender& render, const std::vector<Observed
     return image;
 }
 
-ComparedImage TakeWholeImage(const ObservedRender& render) {
+ComparedImage TakeWholeImage(const MonitoredRender& render) {
     const PixelRect& region = render.context.film->Region();
     ComparedImage image = EmptyImage(region, "reference", "");
     for (const BlockResult& result : render.result.blocks) {
@@ -267,6 +267,17 @@ EstimateError CompareEstimates(const ComparedImage& image, const ComparedImage& 
     }
     if (measured > 0) error.total = estimated / measured - 1;
     return error;
+}
+
+Verification VerificationOf(const RenderResult& result, const Film& film,
+                            const ComparedImage& taken) {
+    Verification v{.threads = result.threads, .wallSeconds = result.progress.seconds};
+    for (const BlockResult& block : result.blocks) {
+        v.seconds += block.seconds;
+        v.ruleSeconds += block.criterionSeconds;
+    }
+    v.samePixels = film.MeanImage() == taken.image.values;
+    return v;
 }
 
 }  // namespace lull

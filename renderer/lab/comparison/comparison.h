@@ -7,8 +7,8 @@
 
 #include "renderer/lab/metrics/image_error.h"
 #include "renderer/lab/metrics/seams.h"
+#include "renderer/render/block_monitor.h"
 #include "renderer/render/render.h"
-#include "renderer/results/block_observer.h"
 
 namespace lull {
 
@@ -69,22 +69,22 @@ struct TotalCost {
 };
 TotalCost SumCosts(const Comparison&, const ComparedImage&);
 
-// Names a rule that observers have run over all blocks of a render.
-struct ObservedRule {
+// Names a rule that monitors have run over all blocks of a render.
+struct MonitoredRule {
     std::string name, text;
     int smallestSide = 0;  // pixels; smaller blocks follow a neighbour
     CriterionMaker make;
     bool isDenoised = false;  // its image is to be denoised
 };
 
-// Makes the observers of a render, for RenderOptions::makeCriterion; its schedule's smallestSide
+// Makes the monitors of a render, for RenderOptions::makeCriterion; its schedule's smallestSide
 // must be 0. `rules` and `histories`, one per block, must outlive the render.
-CriterionMaker MakeObservers(const std::vector<ObservedRule>& rules, const PixelRect& region,
-                             const ScheduleOptions&, const ObserverOptions&,
-                             std::vector<BlockHistory>* histories);
+CriterionMaker MakeMonitors(const std::vector<MonitoredRule>& rules, const PixelRect& region,
+                            const ScheduleOptions&, const MonitorOptions&,
+                            std::vector<BlockHistory>* histories);
 
-// An observed render that is complete.
-struct ObservedRender {
+// A monitored render that is complete.
+struct MonitoredRender {
     const RenderContext& context;
     const RenderOptions& options;
     const RenderResult& result;
@@ -95,10 +95,10 @@ struct ObservedRender {
 // small to be judged are rendered again, as only their neighbour determined how far. So are all of
 // an image to be denoised, for which the render must have collected features; it has no `noise`,
 // and denoising it is among the rule's seconds, of which the work of other threads must be no part.
-ComparedImage TakeImage(const ObservedRender&, const std::vector<ObservedRule>& rules,
+ComparedImage TakeImage(const MonitoredRender&, const std::vector<MonitoredRule>& rules,
                         size_t index);
 // Returns the image of all samples that were taken.
-ComparedImage TakeWholeImage(const ObservedRender&);
+ComparedImage TakeWholeImage(const MonitoredRender&);
 
 // Compares the CPU time to the cap, estimated from the cost of the blocks until the rule stopped
 // them, with the measured time: estimated / measured - 1, over all blocks and for the worst one.
@@ -108,5 +108,19 @@ struct EstimateError {
     double total = 0, worst = 0;
 };
 EstimateError CompareEstimates(const ComparedImage& image, const ComparedImage& atCap);
+
+// One render of a rule's image by itself, to measure the cost and savings of the rule on a number
+// of threads.
+struct Verification {
+    int threads = 0;
+    double wallSeconds = 0;  // of the render
+    double seconds = 0;      // of processors, spent on samples
+    double ruleSeconds = 0;  // of processors, spent on the rule
+    bool samePixels = false;
+};
+
+// Returns the cost of a render of a rule alone, whose result is `film`, and whether its image is
+// the one that TakeImage() gave.
+Verification VerificationOf(const RenderResult&, const Film& film, const ComparedImage& taken);
 
 }  // namespace lull

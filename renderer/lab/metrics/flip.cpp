@@ -68,9 +68,9 @@ ColourPlanes OpponentPlanes(std::span<const uint8_t> srgb) {
 std::vector<float> FilterByContrast(const std::vector<float>& plane, int width, int height,
                                     std::array<double, 2> a, std::array<double, 2> b,
                                     double pixelsPerDegree) {
-    constexpr double largestB = 0.04;
+    constexpr double kLargestB = 0.04;
     const int radius =
-        int(std::ceil(3 * std::sqrt(largestB / (2 * Sqr(std::numbers::pi))) * pixelsPerDegree));
+        int(std::ceil(3 * std::sqrt(kLargestB / (2 * Sqr(std::numbers::pi))) * pixelsPerDegree));
     double weightSum = 0;
     std::vector<float> result(plane.size(), 0);
     std::array<double, 2> weights = {};

@@ -106,6 +106,6 @@ function lastColumns(head, cells) {
 
 startBench(data);
 startPage(data.kind, data.bench ? sayBench(data) : sayComparison(data), [],
-  {sppName: image => "spp of " + image.name, sppHead: image => "spp of " + image.name, layers: errorLayers(),
+  {noun: data.kind === "compare" ? "comparison" : data.kind, sppName: image => "spp of " + image.name, sppHead: image => "spp of " + image.name, layers: errorLayers(),
    overlays: data.againstHuman ? [humanOverlay()] : [], isDivided: data.kind === "compare", blockRows, blockColumns, lastColumns,
    summarise: () => showSummary(data)});

@@ -37,7 +37,7 @@ bool IsDrawn(const BlockVerdict& verdict, const CurvesOfRule& rule) {
 
 // The spp that all panels show.
 struct SppAxis {
-    double least = 20, most = kJudgedCap;
+    double least = 20, most = kMostShownSpp;
 
     double At(double spp) const {
         const double share = std::log(spp / least) / std::log(most / least);
@@ -46,7 +46,7 @@ struct SppAxis {
 };
 
 SppAxis AxisOf(const std::vector<CurvesOfRule>& rules) {
-    double least = kJudgedCap / 2.0, most = 2;
+    double least = kMostShownSpp / 2.0, most = 2;
     for (const CurvesOfRule& rule : rules)
         for (const BlockOutcome& block : rule.outcome->blocks) {
             most = std::max({most, double(block.human), double(block.outcome.stop)});

@@ -53,10 +53,10 @@ class Follower {
         } else if (word == RankWord::Round) {
             TracePart(reader.Get<LightRound>());
         } else if (word == RankWord::Splats) {
-            SplatPlane& plane = context.light->Planes().at(size_t(reader.Get<int32_t>()));
+            SplatPlane& plane = context.lightRounds->Planes().at(size_t(reader.Get<int32_t>()));
             plane.Get(plane.Region(), &reader);
         } else if (word == RankWord::Lit) {
-            schedule.BeginRound(context.light->End());
+            schedule.BeginRound(context.lightRounds->End());
             executor.pausing = false;
             rank.EnqueueReady();
         } else if (word == RankWord::Start) {
@@ -101,18 +101,18 @@ class Follower {
 
     void TracePart(const LightRound& round) {
         // Those of a round that was interrupted go on.
-        if (context.light->End() > 0) context.film->ForgetSpreads();
-        context.light->Begin(round);
+        if (context.lightRounds->End() > 0) context.film->ForgetSpreads();
+        context.lightRounds->Begin(round);
         rank.Enqueue([this] {
-            isWhole = context.light->Trace([this] { return executor.IsCancelled(); },
-                                           channel.Rank(), channel.Count());
+            isWhole = context.lightRounds->Trace([this] { return executor.IsCancelled(); },
+                                                 channel.Rank(), channel.Count());
             isTraced = true;
         });
     }
 
     void SendSplats() {
-        for (size_t i = 0; i < context.light->Planes().size(); ++i)
-            channel.Post(0, PackSplats(int(i), context.light->Planes()[i]));
+        for (size_t i = 0; i < context.lightRounds->Planes().size(); ++i)
+            channel.Post(0, PackSplats(int(i), context.lightRounds->Planes()[i]));
         channel.Post(0, PackTraced(isWhole));
     }
 

@@ -42,12 +42,12 @@ class Leader {
         SendStart({});
         executor.RestartIntervals();
         // Passes that an interruption has cut off need the light of their round, too.
-        if (context.light && !schedule.IsOver()) EndLightRound();
+        if (context.lightRounds && !schedule.IsOver()) EndLightRound();
         for (;;) {
             executor.pausing = hasGivenUp;
             rank.EnqueueReady();
             RunUntilPause();
-            const bool isLast = context.light && schedule.IsOver();
+            const bool isLast = context.lightRounds && schedule.IsOver();
             if (schedule.IsRoundOver() && !isLast && !executor.IsCancelled()) {
                 EndRound();
                 continue;
@@ -55,7 +55,7 @@ class Leader {
             const double pause = Seconds();
             const bool undo = schedule.TimeCalled() && IsOver() && !executor.IsCancelled();
             Gather(undo);
-            if (context.light && !undo && !hasGivenUp && schedule.Unlocked().NoPassUnderWay())
+            if (context.lightRounds && !undo && !hasGivenUp && schedule.Unlocked().NoPassUnderWay())
                 LearnLight();
             const bool takesOver = std::exchange(hasGivenUp, false) && !executor.IsCancelled();
             const bool over = !takesOver && IsOver() &&
@@ -84,7 +84,7 @@ class Leader {
 
     void EndRound() {
         executor.Quiesce();
-        if (context.light) return EndLightRound();
+        if (context.lightRounds) return EndLightRound();
         executor.EndRound();
         if (IsLearning(context)) return;
         TellGuide();
@@ -96,21 +96,18 @@ class Leader {
     // Learns from the samples of all ranks, if a round has ended, and lets each of them trace a
     // part of the light of the next, of which all of them need the whole.
     void EndLightRound() {
-        LightRounds& light = *context.light;
-        if (light.End() > 0) {
+        LightRounds& rounds = *context.lightRounds;
+        if (rounds.End() > 0) {
             Gather(false);
             if (executor.IsCancelled()) return;  // what is here may not be all
             if (std::exchange(hasGivenUp, false)) return TakeOver();
             LearnLight();
         }
-        context.learners->Begin(schedule.Unlocked());
-        light.Begin(schedule.Unlocked(), context.learners->Paths().shares);
-        if (light.IsCutShort() && !executor.isLastRound) WriteCheckpoint();
-        executor.isLastRound = light.IsCutShort();
+        executor.BeginLightRound([this] { WriteCheckpoint(); });
         splats.clear();
         traced.clear();
-        executor.isLit = true;
-        channel.PostToAll(Pack(light.Round()));
+        executor.isLightTraced = true;
+        channel.PostToAll(Pack(rounds.Round()));
         TracePart(0);
         Await(traced);
         for (int other = 1; other < channel.Count(); ++other)
@@ -118,9 +115,9 @@ class Leader {
                 Merge(other);
             else
                 TracePart(other);  // of one that was given up
-        if (!executor.isLit) return;
-        for (size_t i = 0; i < light.Planes().size(); ++i)
-            channel.PostToAll(PackSplats(int(i), light.Planes()[i]));
+        if (!executor.isLightTraced) return;
+        for (size_t i = 0; i < rounds.Planes().size(); ++i)
+            channel.PostToAll(PackSplats(int(i), rounds.Planes()[i]));
         channel.PostToAll(Pack(RankWord::Lit));
         schedule.BeginRound(RoundEndOf(context));
     }
@@ -128,18 +125,18 @@ class Leader {
     // Learns from the samples of all ranks, which are here, once a round: whoever goes on from the
     // checkpoint has to know what was learned.
     void LearnLight() {
-        LightRounds& light = *context.light;
-        if (light.End() == 0 || std::exchange(learnedEnd, light.End()) == light.End()) return;
-        context.learners->EndRound(film, {light.End(), false});
+        LightRounds& rounds = *context.lightRounds;
+        if (rounds.End() == 0 || std::exchange(learnedEnd, rounds.End()) == rounds.End()) return;
+        context.learners->EndRound(film, {rounds.End(), false});
     }
 
     // Traces a rank's part, and gives signs of life meanwhile.
     void TracePart(int part) {
         std::atomic<bool> isDone = false;
         rank.Enqueue([&] {
-            if (!context.light->Trace([this] { return executor.IsCancelled(); }, part,
-                                      channel.Count()))
-                executor.isLit = false;
+            if (!context.lightRounds->Trace([this] { return executor.IsCancelled(); }, part,
+                                            channel.Count()))
+                executor.isLightTraced = false;
             isDone = true;
         });
         while (!isDone) {
@@ -153,7 +150,7 @@ class Leader {
     void Merge(int from) {
         for (const std::vector<std::byte>& message : splats[from]) {
             StateReader reader(message);
-            context.light->Planes().at(size_t(reader.Get<int32_t>())).Merge(&reader);
+            context.lightRounds->Planes().at(size_t(reader.Get<int32_t>())).Merge(&reader);
         }
         splats.erase(from);
     }
@@ -261,7 +258,8 @@ class Leader {
                 if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film));
             }
         // The first round of light paths begins where its light has come (RankWord::Lit).
-        if (!context.light || context.light->End() > 0) channel.PostToAll(Pack(RankWord::Begin));
+        if (!context.lightRounds || context.lightRounds->End() > 0)
+            channel.PostToAll(Pack(RankWord::Begin));
     }
 
     int NextSpp(int spp) const { return PassEndAfter(spp, schedule.Unlocked().Options()); }
@@ -353,7 +351,7 @@ class Leader {
             std::vector<std::byte>& message = splats[from].emplace_back(reader.Left());
             reader.GetAll(std::span(message));
         } else if (word == RankWord::Traced) {
-            executor.isLit = reader.Get<uint8_t>() && executor.isLit;
+            executor.isLightTraced = reader.Get<uint8_t>() && executor.isLightTraced;
             traced.insert(from);
         } else if (word == RankWord::Quiet) {
             quiet.insert(from);

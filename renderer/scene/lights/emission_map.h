@@ -35,15 +35,15 @@ struct EmissionMap {
 
     // Returns the mean over a triangle, from a few points: for the choice of lights only.
     Rgb Mean(uint32_t triangle) const {
-        constexpr int n = 4;
+        constexpr int kSteps = 4;
         Rgb sum = Rgb::Zero();
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
                 const Vec2f b = SampleUniformTriangle(
-                    {(float(i) + 0.5f) / float(n), (float(j) + 0.5f) / float(n)});
+                    {(float(i) + 0.5f) / float(kSteps), (float(j) + 0.5f) / float(kSteps)});
                 sum += Covered(triangle, b.y(), 1 - b.x() - b.y());
             }
-        return sum / float(n * n);
+        return sum / float(kSteps * kSteps);
     }
 };
 

@@ -4,6 +4,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/memory.h"
+#include "renderer/base/visit.h"
 #include "renderer/scene/textures/image_lookup.h"
 
 namespace lull {
@@ -53,13 +54,11 @@ Rgb EnvironmentMap::Radiance(const Vec2f& st) const {
 
 void EnvironmentMap::Prefetch(const Vec2f& st) const {
     const Footprint f = BilinearFootprint(st, image.width, image.height, Wrap::Repeat);
-    std::visit(
-        [&](const auto& texels) {
-            for (const int y : {f.y0, f.y1})
-                lull::Prefetch(&texels[(size_t(y) * size_t(image.width) + size_t(f.x0)) *
-                                       size_t(image.channels)]);
-        },
-        image.texels);
+    Visit(image.texels, [&](const auto& texels) {
+        for (const int y : {f.y0, f.y1})
+            lull::Prefetch(
+                &texels[(size_t(y) * size_t(image.width) + size_t(f.x0)) * size_t(image.channels)]);
+    });
 }
 
 void EnvironmentMap::Brightness(int row, std::span<float> cells) const {

@@ -24,6 +24,10 @@
 //     Emitted LeAndPdf(const Vec3f& w) const
 //         returns the radiance that arrives from direction w (unit, world), and the density, 1/sr,
 //         with which Sample finds w.
+//
+// Light that leaves a light, for paths that start there, is sampled in light_emission.cpp: by type,
+// of one with a place (DeltaPosition) by its point `Vec3f p` and the cone of directions that it
+// shines into, which ConeOf() returns there.
 #pragma once
 
 #include "renderer/base/visit.h"

@@ -60,7 +60,7 @@ float OnwardDensity(const AreaLight& light, const Vec3f& n, const Vec3f& w) {
 }
 
 // Samples the hemisphere about n, or both, by the cosine, up to the angle of this sine.
-Vec3f SampleCosine(const Vec3f& n, bool twoSided, float sine, Vec2f u) {
+Vec3f SampleAboutNormal(const Vec3f& n, bool twoSided, float sine, Vec2f u) {
     float side = 1;
     if (twoSided) {
         side = u.x() < 0.5f ? 1.f : -1.f;
@@ -68,15 +68,14 @@ Vec3f SampleCosine(const Vec3f& n, bool twoSided, float sine, Vec2f u) {
     }
     Frame frame{{}, {}, side * n};
     CoordinateSystem(frame.n, &frame.s, &frame.t);
-    const Vec2f d = sine * SampleConcentricDisk(u);
-    return frame.FromLocal({d.x(), d.y(), SafeSqrt(1 - d.squaredNorm())}).normalized();
+    return frame.FromLocal(SampleCosineHemisphere(u, sine)).normalized();
 }
 
 // Samples a direction from a point with normal n with OnwardDensity().
 Vec3f SampleOnward(const AreaLight& light, const Vec3f& n, const Vec2f& u) {
     if (const auto* spot = std::get_if<SpotCone>(light.profile)) return ConeOf(*spot).Sample(u);
     const auto* spread = std::get_if<Spread>(light.profile);
-    return SampleCosine(n, light.twoSided, spread ? spread->sine : 1, u);
+    return SampleAboutNormal(n, light.twoSided, spread ? spread->sine : 1, u);
 }
 
 }  // namespace
@@ -100,7 +99,7 @@ std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
     float pmf;
     ray.light = choice.SampleDiscrete(u, &pmf);
     const Light& light = lights[ray.light];
-    const bool isLit = Visit(light, [&]<typename L>(const L& l) {
+    const bool isSampled = Visit(light, [&]<typename L>(const L& l) {
         if constexpr (L::kType == LightType::Area) {
             const ShapeSample s =
                 VisitEmitter(l.surface, [&](const auto& e) { return SampleArea(e, origin); });
@@ -131,7 +130,7 @@ std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
         }
         return true;
     });
-    if (!isLit || IsBlack(ray.L) || !IsFinite(ray.L)) return {};
+    if (!isSampled || IsBlack(ray.L) || !IsFinite(ray.L)) return {};
     ray.density = Density(ray.light, ray.n, ray.w);
     if (!(ray.density.origin > 0 && ray.density.onward > 0)) return {};
     return ray;

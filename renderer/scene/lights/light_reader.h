@@ -13,4 +13,10 @@ struct LightReader {
     Warnings& warnings;
 };
 
+// Returns the parameter "string lightgroup" of a LightSource or AreaLightSource, which RenderMan
+// has under this name too; empty without one.
+inline std::string LightGroupOf(const Entity& entity) {
+    return entity.parameters.GetString("lightgroup", "");
+}
+
 }  // namespace lull

@@ -7,7 +7,6 @@
 #include "renderer/base/rounding.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/kinds.h"
-#include "renderer/scene/light_groups.h"
 #include "renderer/scene/lights/light_color.h"
 #include "stopping/base/input_file.h"
 

@@ -1,11 +1,11 @@
 // Lights at points.
 #pragma once
 
+#include "renderer/scene/lights/emission_profile.h"
 #include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_image.h"
 #include "renderer/scene/lights/light_reader.h"
 #include "renderer/scene/lights/light_sample.h"
-#include "renderer/scene/lights/spot_cone.h"
 
 namespace lull {
 

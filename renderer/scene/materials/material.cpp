@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/visit.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/materials/basic.h"
 #include "renderer/scene/materials/disney.h"
@@ -68,23 +69,21 @@ void AddLobes(const Material& material, const MaterialInputs& in, Bsdf* bsdf) {
         for (const Lobe& lobe : material.constantLobes) bsdf->Add(lobe);
         bsdf->SetEta(material.constantEta);
     } else {
-        std::visit([&](const auto& kind) { kind.AddLobes(in, bsdf); }, material.kind);
+        Visit(material.kind, [&](const auto& kind) { kind.AddLobes(in, bsdf); });
     }
 }
 
 MaterialTraits TraitsOf(const MaterialKind& kind, const MaterialReader& in) {
-    return std::visit([&](const auto& k) { return k.Traits(in); }, kind);
+    return Visit(kind, [&](const auto& k) { return k.Traits(in); });
 }
 
 SurfaceTilt TiltOf(const MaterialKind& kind, const MaterialReader& in) {
-    return std::visit(
-        [&](const auto& k) {
-            if constexpr (requires { k.Tilt(in); })
-                return k.Tilt(in);
-            else
-                return in.BumpMap();
-        },
-        kind);
+    return Visit(kind, [&](const auto& k) {
+        if constexpr (requires { k.Tilt(in); })
+            return k.Tilt(in);
+        else
+            return in.BumpMap();
+    });
 }
 
 SurfaceNeeds NeedsOf(const SurfaceTilt& tilt, const TextureTable& textures) {
@@ -101,14 +100,12 @@ SurfaceNeeds NeedsOf(const SurfaceTilt& tilt, const TextureTable& textures) {
 
 // Returns why the material cannot be rendered, "" if it can.
 std::string ProblemOf(const MaterialKind& kind, const MaterialReader& in) {
-    const std::string problem = std::visit(
-        [&](const auto& k) {
-            if constexpr (requires { k.Problem(in); })
-                return k.Problem(in);
-            else
-                return std::string();
-        },
-        kind);
+    const std::string problem = Visit(kind, [&](const auto& k) {
+        if constexpr (requires { k.Problem(in); })
+            return k.Problem(in);
+        else
+            return std::string();
+    });
     if (problem.empty() && TraitsOf(kind, in).mostLobes > Bsdf::kMaxLobes)
         return fmt::format("material \"{}\" can have more than {} lobes", in.entity.name,
                            Bsdf::kMaxLobes);
@@ -120,7 +117,7 @@ void FoldConstants(const MaterialReader& in, Material* m) {
     if (!m->traits.isConstant) return;
     Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, Vec3f::UnitZ());
     const MaterialInputs at{in.textures, TextureContext{Vec3f::Zero(), Vec2f::Zero()}, in.made};
-    std::visit([&](const auto& kind) { kind.AddLobes(at, &bsdf); }, m->kind);
+    Visit(m->kind, [&](const auto& kind) { kind.AddLobes(at, &bsdf); });
     m->traits.mostLobes = bsdf.LobeCount(LobeSet::All);
     for (int i = 0; i < m->traits.mostLobes; ++i) m->constantLobes.push_back(bsdf.At(i));
     m->constantEta = bsdf.Eta();
@@ -236,14 +233,13 @@ std::optional<SubsurfaceProfile> MaterialTable::Profile(const TextureTable& text
                                                         const SurfaceInteraction& hit) const {
     const MaterialInputs in{
         textures, {hit.p, hit.uv, hit.dpdx, hit.dpdy, hit.duvdx, hit.duvdy}, materials, &hit};
-    return std::visit(
-        [&](const auto& kind) -> std::optional<SubsurfaceProfile> {
-            if constexpr (requires { kind.Profile(in); })
-                return kind.Profile(in);
-            else
-                return {};
-        },
-        materials[hit.material].kind);
+    return Visit(materials[hit.material].kind,
+                 [&](const auto& kind) -> std::optional<SubsurfaceProfile> {
+                     if constexpr (requires { kind.Profile(in); })
+                         return kind.Profile(in);
+                     else
+                         return {};
+                 });
 }
 
 }  // namespace lull

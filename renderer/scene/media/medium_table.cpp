@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "renderer/base/rounding.h"
-#include "renderer/base/visit.h"
 #include "renderer/bsdf/medium_presets.h"
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"

@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/base/visit.h"
 #include "renderer/input/description.h"
 #include "renderer/scene/media/grid.h"
 #include "renderer/scene/media/homogeneous.h"
@@ -49,7 +50,7 @@ struct MediumTable {
     }
 
     float PhaseParameter(int medium) const {
-        return std::visit([](const auto& m) { return m.g; }, media[medium]);
+        return Visit(media[medium], [](const auto& m) { return m.g; });
     }
 
     // Samples the point before its tMax where the ray scatters.

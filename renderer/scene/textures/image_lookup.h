@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "renderer/base/math.h"
+#include "renderer/base/visit.h"
 #include "renderer/image/image.h"
 
 namespace lull {
@@ -117,14 +118,12 @@ Rgb TexelRgb(const Image& image, const std::vector<T>& texels, int x, int y) {
 // linear, alpha is ignored. The image must not be empty.
 inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrap) {
     const Footprint f = BilinearFootprint(st, image.width, image.height, wrap);
-    return std::visit(
-        [&]<typename T>(const std::vector<T>& texels) -> Rgb {
-            if (image.channels < 3)
-                return Rgb::Constant(
-                    Blend<1>(texels.data(), image.channels, image.width, f, ToFloat<T>));
-            return Blend<3>(texels.data(), image.channels, image.width, f, ToFloat<T>);
-        },
-        image.texels);
+    return Visit(image.texels, [&]<typename T>(const std::vector<T>& texels) -> Rgb {
+        if (image.channels < 3)
+            return Rgb::Constant(
+                Blend<1>(texels.data(), image.channels, image.width, f, ToFloat<T>));
+        return Blend<3>(texels.data(), image.channels, image.width, f, ToFloat<T>);
+    });
 }
 
 }  // namespace lull

@@ -67,7 +67,7 @@ T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c)
         else
             return T();  // never: float textures have grey images
     };
-    return map.scale * std::visit(blend, image.texels);
+    return map.scale * Visit(image.texels, blend);
 }
 
 template <typename T>

@@ -1,7 +1,9 @@
 #include "renderer/scene/textures/mapping.h"
-#include "stopping/base/input_file.h"
 
 #include <fmt/core.h>
+
+#include "renderer/base/visit.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -74,11 +76,11 @@ MappedFootprint FootprintOf(const CylindricalMapping& m, const TextureContext& c
 }  // namespace
 
 Vec2f MapByPosition(const Mapping2D& mapping, const Vec3f& p) {
-    return std::visit([&](const auto& m) { return MapPosition(m, p); }, mapping);
+    return Visit(mapping, [&](const auto& m) { return MapPosition(m, p); });
 }
 
 MappedFootprint MapFootprint(const Mapping2D& mapping, const TextureContext& c) {
-    return std::visit([&](const auto& m) { return FootprintOf(m, c); }, mapping);
+    return Visit(mapping, [&](const auto& m) { return FootprintOf(m, c); });
 }
 
 Mapping2D MakeMapping2D(const TextureInput& input) {

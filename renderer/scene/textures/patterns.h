@@ -1,6 +1,7 @@
 // Textures that are constants, mixtures of others, and patterns of these.
 #pragma once
 
+#include "renderer/base/visit.h"
 #include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/noise.h"
 #include "renderer/scene/textures/texture_input.h"
@@ -155,7 +156,7 @@ inline bool IsSecondColor(const Mapping3D& mapping, const TextureContext& c) {
 template <typename T>
 T Evaluate(const Checkerboard<T>& board, const TextureTable& table, const TextureContext& c) {
     const bool second =
-        std::visit([&](const auto& mapping) { return IsSecondColor(mapping, c); }, board.mapping);
+        Visit(board.mapping, [&](const auto& mapping) { return IsSecondColor(mapping, c); });
     return table.Evaluate(second ? board.tex2 : board.tex1, c);
 }
 

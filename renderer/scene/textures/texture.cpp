@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "renderer/base/visit.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/noise.h"
@@ -41,18 +42,16 @@ TextureHandle<TypeOf<Node>> AddNode(const TextureInput& input, Nodes<Node>* node
     if constexpr (std::is_same_v<decltype(made), Handle>) {
         return made;
     } else {
-        return std::visit(
-            [&](auto&& texture) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(texture)>, Handle>) {
-                    return texture;
-                } else {
-                    nodes->push_back({std::move(texture)});
-                    Handle handle = ConstantTexture<TypeOf<Node>>(0);
-                    handle.index = int(nodes->size()) - 1;
-                    return handle;
-                }
-            },
-            std::move(made));
+        return Visit(made, [&]<typename T>(T& texture) {
+            if constexpr (std::is_same_v<T, Handle>) {
+                return texture;
+            } else {
+                nodes->push_back({std::move(texture)});
+                Handle handle = ConstantTexture<TypeOf<Node>>(0);
+                handle.index = int(nodes->size()) - 1;
+                return handle;
+            }
+        });
     }
 }
 
@@ -137,7 +136,7 @@ std::optional<TextureHandle<T>> Find(const std::vector<TextureHandle<T>>& made,
 
 template <typename Node>
 SurfaceNeeds NodeNeeds(const Node& node, const TextureTable& table) {
-    return std::visit([&](const auto& kind) { return Needs(kind, table); }, node.kind);
+    return Visit(node.kind, [&](const auto& kind) { return Needs(kind, table); });
 }
 
 }  // namespace
@@ -192,13 +191,13 @@ SurfaceNeeds TextureTable::Needs(const SpectrumTexture& t) const {
 }
 
 float TextureTable::EvaluateFloat(int index, const TextureContext& c) const {
-    return std::visit([&](const auto& kind) { return lull::Evaluate(kind, *this, c); },
-                      floats[size_t(index)].kind);
+    return Visit(floats[size_t(index)].kind,
+                 [&](const auto& kind) { return lull::Evaluate(kind, *this, c); });
 }
 
 Rgb TextureTable::EvaluateSpectrum(int index, const TextureContext& c) const {
-    return std::visit([&](const auto& kind) -> Rgb { return lull::Evaluate(kind, *this, c); },
-                      spectra[size_t(index)].kind);
+    return Visit(spectra[size_t(index)].kind,
+                 [&](const auto& kind) -> Rgb { return lull::Evaluate(kind, *this, c); });
 }
 
 }  // namespace lull

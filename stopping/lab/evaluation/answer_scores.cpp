@@ -209,7 +209,7 @@ RuleByAnswers ScoreRule(const RuleRun& run, size_t index, std::span<const Asked>
     for (size_t i = 0; i < blocks.size(); ++i) {
         const int stop = run.outcomes[i].stop, end = blocks[i].recording->spp.back();
         result.stops.push_back(stop);
-        result.open += !run.isKnown && end < kJudgedCap && stop > end;
+        result.open += !run.isKnown && end < kMostShownSpp && stop > end;
         if (!scores.blocks[i].threshold) continue;
         const double ratio = std::max(1, stop) / *scores.blocks[i].threshold;
         early += ratio < 0.8;

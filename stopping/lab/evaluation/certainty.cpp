@@ -15,7 +15,7 @@ namespace {
 // number above.
 bool IsInRange(const BlockOutcome& block, std::span<const double> logRatios) {
     const int stop = block.outcome.stop;
-    const HumanRange range = RangeOfPeople(stop, stop < kJudgedCap, logRatios);
+    const HumanRange range = RangeOfPeople(stop, stop < kMostShownSpp, logRatios);
     return block.human >= range.low && (!range.high || block.human <= *range.high);
 }
 

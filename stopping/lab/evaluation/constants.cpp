@@ -27,7 +27,7 @@ ViewpointOutcome StoppedAt(const ViewpointOutcome& viewpoint, int spp, int grid,
 
 std::vector<double> CostsOf(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
     std::vector<double> costs;
-    for (size_t i = 0; SppOf(i) <= kJudgedCap; ++i)
+    for (size_t i = 0; SppOf(i) <= kMostShownSpp; ++i)
         costs.push_back(CostOf(StoppedAt(viewpoint, SppOf(i), grid, true), chooseBy, grid));
     return costs;
 }
@@ -43,7 +43,7 @@ std::vector<EvaluatedRule> EvaluateConstants(std::span<const ViewpointOutcome> v
                                              ChooseBy chooseBy, int grid) {
     if (viewpoints.empty()) throw std::invalid_argument("constants: there is no viewpoint");
     std::vector<std::vector<double>> costs;
-    std::vector<double> all(kJudgedCap / kStep, 0);
+    std::vector<double> all(kMostShownSpp / kStep, 0);
     for (const ViewpointOutcome& viewpoint : viewpoints) {
         costs.push_back(CostsOf(viewpoint, chooseBy, grid));
         for (size_t i = 0; i < all.size(); ++i) all[i] += costs.back()[i];

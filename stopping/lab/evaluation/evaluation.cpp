@@ -93,21 +93,21 @@ std::string LabelOf(const EvaluatedRule& rule) {
 
 RuleOutcome OutcomeOfStop(int stop, int grid) {
     RuleOutcome outcome{.stop = stop};
-    for (int x = kPassSpp; x <= kJudgedCap; x += grid)
+    for (int x = kPassSpp; x <= kMostShownSpp; x += grid)
         outcome.verdicts.push_back({.spp = x, .score = double(stop) / x, .noisy = stop > x});
     return outcome;
 }
 
 double CriticalError(std::span<const BlockOutcome> blocks, double margin, int grid) {
     // The paper's passes of 20 spp and cap of 10,000 make this 20 floor(500 M / 200).
-    const int half = kPassSpp * int(std::floor(kJudgedCap / kPassSpp * margin / 200));
+    const int half = kPassSpp * int(std::floor(kMostShownSpp / kPassSpp * margin / 200));
     int64_t wrong = 0, count = 0;
     for (const BlockOutcome& block : blocks) {
-        const bool never = block.human >= kJudgedCap;
-        const int lo = never ? kJudgedCap : block.human - half;
-        const int hi = never ? kJudgedCap : block.human + half;
+        const bool never = block.human >= kMostShownSpp;
+        const int lo = never ? kMostShownSpp : block.human - half;
+        const int hi = never ? kMostShownSpp : block.human + half;
         const int stop = block.outcome.stop;
-        for (int x = kPassSpp; x <= kJudgedCap; x += grid, ++count)
+        for (int x = kPassSpp; x <= kMostShownSpp; x += grid, ++count)
             wrong += !((x <= lo && x <= stop) || (x >= hi && x >= stop) || (lo < x && x < hi));
     }
     return count > 0 ? double(wrong) / double(count) : 0;

@@ -20,7 +20,7 @@ struct BlockVerdict {
 
 // Stop and verdicts of a rule on a block.
 struct RuleOutcome {
-    int stop = 0;  // spp; kJudgedCap where it never stopped
+    int stop = 0;  // spp; kMostShownSpp where it never stopped
     // Whether the recording ends below the cap and the rule had not stopped the block there: it
     // stops at the end then or, on a recording that was extended, beyond it.
     bool open = false;
@@ -32,7 +32,7 @@ struct RuleOutcome {
 RuleOutcome OutcomeOfStop(int stop, int grid);
 
 struct BlockOutcome {
-    int human = 0;  // the threshold of people in spp, kJudgedCap where they saw noise even there
+    int human = 0;  // the threshold of people in spp, kMostShownSpp where they saw noise even there
     RuleOutcome outcome = {};
     int block = 0;      // row-major number in the image
     bool seen = false;  // whether the rule is a model that was trained on it
@@ -64,7 +64,7 @@ struct EvaluatedRule {
 std::string LabelOf(const EvaluatedRule& rule);
 
 // Returns the critical error of one viewpoint (paper, Table 3), in [0, 1]: over its blocks and the
-// spp x = 20, 20 + grid, ... up to kJudgedCap, the share of x at which the stop S is wrong. With
+// spp x = 20, 20 + grid, ... up to kMostShownSpp, the share of x at which the stop S is wrong. With
 // the human threshold T and a margin of `margin` % of the cap in all, lo and hi are half the margin
 // below and above T, in whole passes of 20 spp, but T itself where T is the cap; x is right if
 // x <= lo and x <= S, x >= hi and x >= S, or lo < x < hi. 0 for no blocks.

@@ -19,9 +19,9 @@ namespace {
 // Makes an outcome without verdicts: stopped at `spp`, or at the end of the recording if that is 0.
 RuleOutcome MakeOutcome(const BlockRecording& recording, int spp) {
     if (recording.spp.empty()) throw std::invalid_argument("a recording has no passes");
-    if (spp > 0) return {.stop = std::min(spp, kJudgedCap)};
-    const int end = std::min(recording.spp.back(), kJudgedCap);
-    return {.stop = end, .open = end < kJudgedCap};
+    if (spp > 0) return {.stop = std::min(spp, kMostShownSpp)};
+    const int end = std::min(recording.spp.back(), kMostShownSpp);
+    return {.stop = end, .open = end < kMostShownSpp};
 }
 
 // Returns whether a verdict is due: at every second pass, so that they are evenly spaced; at every

@@ -19,7 +19,7 @@ void MarkOpen(std::span<const LabelledBlock> blocks, EvaluatedRule* rule) {
     for (ViewpointOutcome& viewpoint : rule->viewpoints)
         for (BlockOutcome& block : viewpoint.blocks) {
             const int end = blocks[next++].recording->spp.back();
-            block.outcome.open = end < kJudgedCap && block.outcome.stop > end;
+            block.outcome.open = end < kMostShownSpp && block.outcome.stop > end;
         }
 }
 

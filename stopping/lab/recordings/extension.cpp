@@ -135,14 +135,14 @@ ExtendedBlocks ExtendBlocks(std::span<const LabelledBlock> blocks) {
     ExtendedBlocks result{.recordings = {}, .blocks = {blocks.begin(), blocks.end()}};
     std::vector<LabelledBlock*> open;
     for (LabelledBlock& block : result.blocks)
-        if (block.recording->spp.empty() || block.recording->spp.back() < kJudgedCap)
+        if (block.recording->spp.empty() || block.recording->spp.back() < kMostShownSpp)
             open.push_back(&block);
     result.recordings.resize(open.size());
     ForEachIndex(int(open.size()), [&](int i) {
         LabelledBlock& block = *open[size_t(i)];
         auto& recording = result.recordings[size_t(i)];
         recording = std::make_unique<const BlockRecording>(
-            ExtendRecording(*block.recording, block.passSpp, kJudgedCap));
+            ExtendRecording(*block.recording, block.passSpp, kMostShownSpp));
         block.recording = recording.get();
     });
     return result;

@@ -23,7 +23,7 @@ namespace lull {
 // records.
 BlockRecording ExtendRecording(const BlockRecording& recording, int passSpp, int end);
 
-// Blocks with recordings extended to kJudgedCap. It can be moved, but not copied.
+// Blocks with recordings extended to kMostShownSpp. It can be moved, but not copied.
 struct ExtendedBlocks {
     std::vector<std::unique_ptr<const BlockRecording>> recordings;  // those that were extended
     std::vector<LabelledBlock> blocks;  // all, in their order; those that went on are as they were

@@ -120,10 +120,10 @@ std::string CertaintyText(const TrainingResult& result) {
 
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
-                                              const ScoreOptions& judge) {
+                                              const ScoreOptions& scoring) {
     std::map<std::string, std::string> record = MakeRecord(plan, split);
     for (const EvaluatedRule& rule : result.rules)
-        record["judged on " + LabelOf(rule)] = ScoresText(rule.viewpoints, judge);
+        record["judged on " + LabelOf(rule)] = ScoresText(rule.viewpoints, scoring);
     if (const std::string certainty = CertaintyText(result); !certainty.empty())
         record["certainty"] = certainty;
     return record;

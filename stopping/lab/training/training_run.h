@@ -46,6 +46,6 @@ std::string CertaintyText(const TrainingResult& result);
 // Returns the training data of the last network, its options, and its evaluation.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
-                                              const ScoreOptions& judge);
+                                              const ScoreOptions& scoring);
 
 }  // namespace lull

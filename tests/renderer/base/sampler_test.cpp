@@ -4,7 +4,6 @@
 
 #include <set>
 
-#include "renderer/base/half.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {

@@ -51,6 +51,24 @@ GroupedPicture OppositeLamps(const Planes& features) {
             }};
 }
 
+TEST(RunDenoiser, TellsTheShareThatIsDone) {
+    const auto sharesOf = [](auto picture) {
+        std::vector<double> shares;
+        RunDenoiser(std::move(picture), {},
+                    {.onShare = [&](double share) { shares.push_back(share); }});
+        return shares;
+    };
+    for (const std::vector<double>& shares :
+         {sharesOf(NoisyExample()),
+          sharesOf(AddNoise(Planes(90, 600, 3, 0.5f), FlatFeatures(90, 600), 0.1, 1)),
+          sharesOf(OppositeLamps(FlatFeatures(40, 30)))}) {
+        ASSERT_FALSE(shares.empty());
+        EXPECT_GT(shares.front(), 0);
+        EXPECT_TRUE(std::ranges::is_sorted(shares));
+        EXPECT_DOUBLE_EQ(shares.back(), 1);
+    }
+}
+
 TEST(RunDenoiser, AddsUpGroupsAndTakesTheLargestError) {
     const PixelRect block{{0, 0}, {40, 30}};
     const Planes features = NoisyExample().features;

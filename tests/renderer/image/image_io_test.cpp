@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "renderer/base/color.h"
-#include "renderer/image/png_format.h"
 #include "tests/renderer/files/test_files.h"
 
 namespace lull {

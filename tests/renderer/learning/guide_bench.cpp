@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "renderer/base/clocks.h"
 #include "renderer/base/color.h"
-#include "renderer/base/thread_clock.h"
 #include "renderer/learning/learners.h"
 #include "renderer/render/render.h"
 #include "tests/renderer/bench_scenes.h"

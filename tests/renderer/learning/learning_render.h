@@ -37,7 +37,7 @@ struct LearningRender {
                        .film = &film,
                        .interrupted = interrupted,
                        .learners = &learner,
-                       .light = light.get(),
+                       .lightRounds = light.get(),
                        .checkpoints = checkpoints},
                       options);
     }

@@ -1,4 +1,5 @@
 #include "renderer/progress/progress.h"
+#include "renderer/progress/step_printer.h"
 
 #include <gtest/gtest.h>
 
@@ -172,6 +173,28 @@ TEST(ProgressPrinter, CanBeSilent) {
                           printer.Finish(Halfway());
                       }),
               "");
+}
+
+TEST(StepText, HasTheTimeThatIsLeft) {
+    EXPECT_EQ(StepText("denoising", 0.25, 100), " 25%  denoising  1:40 elapsed  about 5:00 left");
+    EXPECT_EQ(StepText("denoising", 0, 3), "  0%  denoising  3.0s elapsed");
+}
+
+TEST(StepJson, IsOneObject) {
+    EXPECT_EQ(StepJson("denoising", 0.5, 8),
+              R"({"event":"step","name":"denoising","percent":50.00,"elapsedSeconds":8.000,)"
+              R"("remainingSeconds":8.000})");
+    EXPECT_TRUE(StepJson("denoising", 0, 8).ends_with(R"("remainingSeconds":null})"));
+}
+
+TEST(StepPrinter, IsSilentAboutShortSteps) {
+    const TemporaryDirectory directory;
+    const std::string name = directory.File("out");
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "w"),
+                                                               std::fclose);
+    StepPrinter("denoising", ProgressStyle::Line, file.get()).Print(0.5);
+    std::fflush(file.get());
+    EXPECT_EQ(ReadBytes(name), "");
 }
 
 }  // namespace

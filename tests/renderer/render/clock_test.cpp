@@ -149,7 +149,7 @@ TEST(Clock, EndsWithinTheFirstPassWhereThereIsNoTimeForIt) {
             for (int i = 0; i < 4; ++i) EXPECT_GE(render.Spp(i), 4);
         }
         for (const BlockResult& b : render.result.blocks)
-            for (const DecisionRecord& decision : b.decisions) EXPECT_EQ(decision.spp, 20);
+            for (const BlockDecision& decision : b.decisions) EXPECT_EQ(decision.spp, 20);
 
         const RenderResult whole = Render(
             {.source = UnevenSample, .film = &render.film, .interrupted = &state}, render.setup);

@@ -16,7 +16,7 @@ struct Probe final : Criterion {
         const double value = view.mean[0] / view.spp;
         return {.stop = value < 1, .checked = true, .value = value, .threshold = 1};
     }
-    std::optional<double> NoiseTold() const override { return checks; }
+    std::optional<double> NetworkNoise() const override { return checks; }
     std::vector<std::byte> Save() const override {
         StateWriter writer;
         writer.Put(checks);
@@ -53,7 +53,7 @@ TEST(GradedCriterion, StopsWhereTheNoisiestPictureDoes) {
     const Decision end = Observe(&graded, 50);
     EXPECT_TRUE(end.stop);
     EXPECT_FLOAT_EQ(float(end.value), 0.8f);
-    EXPECT_EQ(graded.NoiseTold(), 4);
+    EXPECT_EQ(graded.NetworkNoise(), 4);
 }
 
 TEST(GradedCriterion, GoesOnFromWhatItHasSaved) {
@@ -62,7 +62,7 @@ TEST(GradedCriterion, GoesOnFromWhatItHasSaved) {
     Observe(&graded, 20);
     restored.Restore(graded.Save());
     EXPECT_FALSE(Observe(&restored, 40).stop);
-    EXPECT_EQ(restored.NoiseTold(), 3);
+    EXPECT_EQ(restored.NetworkNoise(), 3);
     EXPECT_TRUE(Observe(&restored, 50).stop);
     const std::vector<std::byte> damaged(7);
     EXPECT_THROW(MakeGraded().Restore(damaged), std::runtime_error);

@@ -58,7 +58,7 @@ TEST(LightRounds, HaveTheSameBitsForAnyThreadsAndInterruption) {
     ASSERT_FALSE(whole.Run().cancelled);
     Session parallel(*scene, kRegion, OptionsFor("", 2));
     parallel.Run();
-    EXPECT_TRUE(SameSums(parallel.TheFilm(), whole.TheFilm()));
+    EXPECT_TRUE(SameSums(parallel.GetFilm(), whole.GetFilm()));
 
     const TemporaryDirectory directory;
     const std::string file = directory.File("c.h5");
@@ -72,7 +72,7 @@ TEST(LightRounds, HaveTheSameBitsForAnyThreadsAndInterruption) {
         isDone = !session.Run().cancelled;
         interruptions += !isDone;
         if (!isDone) continue;
-        EXPECT_TRUE(SameSums(session.TheFilm(), whole.TheFilm()));
+        EXPECT_TRUE(SameSums(session.GetFilm(), whole.GetFilm()));
     }
     EXPECT_GT(interruptions, 2);
 }
@@ -117,7 +117,7 @@ TEST(LightRounds, HaveTheSameBitsFromTheEndsOfRoundsOn) {
             session.Resume();
             session.Run();
             if (end == 60) {
-                EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm())) << cap;
+                EXPECT_TRUE(SamePixels(session.GetFilm(), whole.GetFilm())) << cap;
             }
         }
     }
@@ -138,7 +138,7 @@ TEST(LightRounds, HaveTheSameBitsFromTheEndsOfRoundsOn) {
         Session session(*scene, kRegion, second);
         session.Resume();
         session.Run();
-        EXPECT_TRUE(SamePixels(session.TheFilm(), whole.TheFilm())) << spp;
+        EXPECT_TRUE(SamePixels(session.GetFilm(), whole.GetFilm())) << spp;
     }
 }
 
@@ -165,7 +165,7 @@ Means Render(const Scene& scene, int spp) {
     options.render.schedule.cap = spp;
     Session session(scene, kRegion, options);
     session.Run();
-    return MeansOf(session.TheFilm());
+    return MeansOf(session.GetFilm());
 }
 
 TEST(LightRounds, HaveTheMeanOfPaths) {
@@ -198,8 +198,8 @@ TEST(LightRounds, TellGroupsOfLightsApart) {
     session.Run();
     Session plain(*scene, kRegion, OptionsFor("", 2));
     plain.Run();
-    const Film& film = session.TheFilm();
-    EXPECT_TRUE(SamePixels(film, plain.TheFilm()));
+    const Film& film = session.GetFilm();
+    EXPECT_TRUE(SamePixels(film, plain.GetFilm()));
     const auto& groups = *film.layers.Find<LightGroupLayer>();
     const auto& squares = *film.layers.Find<SquareLayer>();
     for (int y = 0; y < 24; ++y)
@@ -265,8 +265,8 @@ WorldEnd
     session.Run();
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 32; ++x)
-            EXPECT_TRUE(std::isfinite(session.TheFilm().At({x, y}).sum[1]));
-    EXPECT_GT(session.TheFilm().RejectedCount(), 50);
+            EXPECT_TRUE(std::isfinite(session.GetFilm().At({x, y}).sum[1]));
+    EXPECT_GT(session.GetFilm().RejectedCount(), 50);
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(Session, GoesOnFromWhereverItWasInterrupted) {
         EXPECT_TRUE(said.warnings.empty());
         EXPECT_EQ(said.learning.size(), 1u);
         if (!isDone) continue;
-        EXPECT_TRUE(SameSums(session.TheFilm(), whole.TheFilm()));
+        EXPECT_TRUE(SameSums(session.GetFilm(), whole.GetFilm()));
     }
     EXPECT_GT(interruptions, 2);
     EXPECT_EQ(resumed, interruptions);
@@ -124,11 +124,11 @@ TEST(Session, TakesLightGroupsUpAgain) {
     EXPECT_THROW(other.Resume(), Error);
     same.Resume();
     EXPECT_FALSE(same.Run().cancelled);
-    EXPECT_TRUE(SameSums(same.TheFilm(), whole.TheFilm()));
-    const FilmPixel pixel = same.TheFilm().At({16, 20});
+    EXPECT_TRUE(SameSums(same.GetFilm(), whole.GetFilm()));
+    const FilmPixel pixel = same.GetFilm().At({16, 20});
     EXPECT_GT(pixel.sum[0], 0);
     const FilmPixel lamp =
-        same.TheFilm().layers.Find<LightGroupLayer>()->At(0, {16, 20}, pixel.count);
+        same.GetFilm().layers.Find<LightGroupLayer>()->At(0, {16, 20}, pixel.count);
     EXPECT_EQ(lamp.sum, pixel.sum);
     EXPECT_EQ(lamp.halfSum, pixel.halfSum);
 }

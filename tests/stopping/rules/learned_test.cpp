@@ -207,7 +207,7 @@ TEST(Learned, SaysWhatNoiseItWasTold) {
         const BlockImage block = NoisyBlock(40, 40, 0.5, spp, unsigned(spp));
         const Decision decision = criterion->Observe(block.At(spp));
         if (!decision.checked) continue;
-        const auto noise = criterion->NoiseTold();
+        const auto noise = criterion->NetworkNoise();
         ASSERT_TRUE(noise);
         EXPECT_EQ(*noise >= limit, decision.value >= 0.5) << *noise;
         ++(decision.value >= 0.5 ? noisy : clean);

@@ -110,8 +110,8 @@ typedef struct lull_answer {
     int next_spp;     /* smallest spp of the next check; 0: none */
     int votes;        /* consecutive votes to stop */
     int votes_needed; /* votes that stop the block; 1 for rules without votes */
-    /* Of a stopped block: range of spp that contains the human threshold in 80 of 100 cases, if the
-     * model has one; 0: unknown. */
+    /* Of a stopped block: range of spp intended to contain the human threshold in 80 of 100 cases,
+     * if the model has one; 0: unknown. */
     int people_low, people_high;
     double value;         /* value of the rule, */
     double threshold;     /* and its threshold */

@@ -36,7 +36,7 @@ TEST(BenchRules, HaveTheLadderAndEachKindAndCanAllBeRead) {
 
 TEST(MeasurePoints, GivesAPointForEachRule) {
     const PixelRect region{{0, 0}, {80, 80}};
-    const std::vector<ObservedRule> rules = {
+    const std::vector<MonitoredRule> rules = {
         {"a", "fixed:20", 0, [](const BlockInfo&) { return MakeCriterion(FixedRule(20)); }},
         {"b", "fixed:80", 0, [](const BlockInfo&) { return MakeCriterion(FixedRule(80)); }},
         {"c", "dammertz:0.01:area", 0,
@@ -46,14 +46,14 @@ TEST(MeasurePoints, GivesAPointForEachRule) {
     options.schedule.cap = 160;
     Film film(region);
     std::vector<BlockHistory> histories(4);
-    options.makeCriterion = MakeObservers(rules, region, options.schedule,
-                                          {.snapshots = true, .goesOn = true}, &histories);
+    options.makeCriterion = MakeMonitors(rules, region, options.schedule,
+                                         {.snapshots = true, .goesOn = true}, &histories);
     const RenderContext context{.source = SyntheticSample, .film = &film};
     const RenderResult result = Render(context, options);
-    const ObservedRender observed{context, options, result, histories};
+    const MonitoredRender monitored{context, options, result, histories};
     int calls = 0;
     const std::vector<BenchPoint> points =
-        MeasurePoints(observed, rules, TakeWholeImage(observed).image, {}, 2, [&] { ++calls; });
+        MeasurePoints(monitored, rules, TakeWholeImage(monitored).image, {}, 2, [&] { ++calls; });
     ASSERT_EQ(points.size(), 3u);
     EXPECT_EQ(calls, 3);
     EXPECT_EQ(points[1].rule, "fixed");

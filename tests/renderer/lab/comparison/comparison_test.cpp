@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "renderer/base/error.h"
-#include "renderer/lab/comparison/verification.h"
 #include "stopping/base/block_view.h"
 #include "stopping/rules/baselines.h"
 #include "tests/renderer/render/synthetic_samples.h"
@@ -21,7 +20,7 @@ ScheduleOptions Schedule() {
     return schedule;
 }
 
-std::vector<ObservedRule> Rules() {
+std::vector<MonitoredRule> Rules() {
     const auto dammertz = [](const BlockInfo&) { return MakeCriterion(DammertzRule(0.5)); };
     const auto bySpp = [](const BlockInfo& info) {
         return MakeCriterion(FixedRule(20 + 20 * (info.index % 5)));
@@ -38,7 +37,7 @@ RenderOptions Options() {
 }
 
 // Renders as `lull render` would with that rule alone.
-std::pair<RgbImage, std::vector<int>> RenderAlone(const ObservedRule& rule) {
+std::pair<RgbImage, std::vector<int>> RenderAlone(const MonitoredRule& rule) {
     Film film(kRegion);
     RenderOptions options = Options();
     options.schedule.smallestSide = rule.smallestSide;
@@ -50,7 +49,7 @@ std::pair<RgbImage, std::vector<int>> RenderAlone(const ObservedRule& rule) {
 }
 
 struct Observed {
-    std::vector<ObservedRule> rules = Rules();
+    std::vector<MonitoredRule> rules = Rules();
     Film film{kRegion};
     RenderContext context{.source = SyntheticSample, .film = &film};
     RenderOptions options = Options();
@@ -60,11 +59,11 @@ struct Observed {
     explicit Observed(bool goesOn) {
         histories.resize(MakeBlocks(kRegion, options.schedule).size());
         options.makeCriterion =
-            MakeObservers(rules, kRegion, options.schedule,
-                          {.snapshots = true, .noise = true, .goesOn = goesOn}, &histories);
+            MakeMonitors(rules, kRegion, options.schedule,
+                         {.snapshots = true, .noise = true, .goesOn = goesOn}, &histories);
         result = Render(context, options);
     }
-    ObservedRender Get() const { return {context, options, result, histories}; }
+    MonitoredRender Get() const { return {context, options, result, histories}; }
 };
 
 // What the whole design rests on: one render holds the images of all rules, to the last bit.

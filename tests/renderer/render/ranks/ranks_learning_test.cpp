@@ -38,7 +38,7 @@ Shared RenderPart(const Learning& learning, int ranks, const Part& part = {}) {
     if (part.before) learners[0]->Take(*part.learned, *part.before->film);
     std::atomic<int64_t> left = part.tiles;
     const auto change = [&](RenderSetup* o, int rank) {
-        o->light = lights[size_t(rank)].get();
+        o->lightRounds = lights[size_t(rank)].get();
         o->learners = learners[size_t(rank)].get();
         o->rankPatience = 1;
         o->schedule.cap = learning.cap;

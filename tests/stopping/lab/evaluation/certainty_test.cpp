@@ -51,7 +51,7 @@ TEST(RangeOfPeople, IsInSamples) {
     EXPECT_EQ(RangeOfPeople(6000, true, ratios).low, 3000);
     EXPECT_FALSE(RangeOfPeople(1000, false, ratios).high);
     EXPECT_EQ(RangeOfPeople(1, true, ratios).low, 1);
-    EXPECT_EQ(RangeOfPeople(1 << 24, true, ratios).low, kJudgedCap);
+    EXPECT_EQ(RangeOfPeople(1 << 24, true, ratios).low, kMostShownSpp);
 }
 
 // Thresholds that scatter about the stops in the same way everywhere lie in the range as often as

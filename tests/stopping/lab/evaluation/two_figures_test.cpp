@@ -16,7 +16,7 @@ EvaluatedRule Stopping(std::vector<RuleOutcome> outcomes) {
 }
 
 TEST(TwoFigures, AreGivenWhereARecordingEndsTooEarly) {
-    const BlockRecording part = EmptyRecording(500), whole = EmptyRecording(kJudgedCap);
+    const BlockRecording part = EmptyRecording(500), whole = EmptyRecording(kMostShownSpp);
     const std::vector<LabelledBlock> blocks = {{.viewpoint = "attic",
                                                 .block = 0,
                                                 .human = 300,

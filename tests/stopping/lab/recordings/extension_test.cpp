@@ -35,7 +35,7 @@ LabelledBlock BlockOf(const BlockRecording& recording) {
 }
 
 TEST(Extension, GoesOnByTheLawsOfTheNumbers) {
-    BlockRecording whole = EmptyRecording(kJudgedCap);
+    BlockRecording whole = EmptyRecording(kMostShownSpp);
     SetChannel(&whole, "h100", [](int spp) { return 0.3 + 5 * std::pow(spp, -0.9); });
     SetChannel(&whole, "masked_noise", [](int spp) { return 9 / std::sqrt(spp); });
     SetChannel(&whole, "deviation", [](int spp) { return std::sqrt(4 + 300.0 / spp); });
@@ -43,7 +43,7 @@ TEST(Extension, GoesOnByTheLawsOfTheNumbers) {
     whole.absent.set(ChannelIndex("attributes26"));
     whole.cyclesStops = {40, 160, 640};
     const BlockRecording cut = CutAt(whole, 1000);
-    const BlockRecording extended = ExtendRecording(cut, 20, kJudgedCap);
+    const BlockRecording extended = ExtendRecording(cut, 20, kMostShownSpp);
 
     EXPECT_EQ(extended.spp, whole.spp);
     EXPECT_TRUE(std::equal(cut.values.begin(), cut.values.end(), extended.values.begin()));
@@ -55,7 +55,7 @@ TEST(Extension, GoesOnByTheLawsOfTheNumbers) {
     for (size_t i = 3; i < kCyclesThresholds.size(); ++i) {
         const double ratio = kCyclesThresholds[2] / kCyclesThresholds[i];
         const double spp = 640 * ratio * ratio;
-        if (spp > kJudgedCap)
+        if (spp > kMostShownSpp)
             EXPECT_EQ(extended.cyclesStops[i], 0) << i;
         else
             EXPECT_NEAR(extended.cyclesStops[i], std::max(spp, 1020.0), 20) << i;
@@ -76,7 +76,7 @@ TEST(Extension, TakesShortRecordings) {
 }
 
 TEST(Extension, LeavesWholeRecordingsAsTheyAre) {
-    const BlockRecording whole = EmptyRecording(kJudgedCap), part = EmptyRecording(500);
+    const BlockRecording whole = EmptyRecording(kMostShownSpp), part = EmptyRecording(500);
     const std::vector<LabelledBlock> blocks = {BlockOf(part), BlockOf(whole)};
     const ExtendedBlocks extended = ExtendBlocks(blocks);
     ASSERT_EQ(extended.blocks.size(), 2u);
@@ -101,7 +101,7 @@ Prediction PredictFrom(double share, const Simulator& rule) {
                 const int stop = rule(BlockOf(recording)).stop;
                 const BlockRecording cut = CutAt(recording, int(share * stop));
                 EXPECT_TRUE(rule(BlockOf(cut)).open);
-                const BlockRecording extended = ExtendRecording(cut, 20, kJudgedCap);
+                const BlockRecording extended = ExtendRecording(cut, 20, kMostShownSpp);
                 const double ratio = rule(BlockOf(extended)).stop / double(stop);
                 sum += ratio;
                 squares += ratio * ratio;

@@ -1,9 +1,10 @@
-#include "renderer/results/shortfall.h"
+#include "renderer/render/shortfall.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "renderer/progress/forecast.h"
+#include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -17,7 +18,7 @@ bool CountsSamples(const std::string& text) {
 
 bool ComparesVisibleNoise(const std::string& text) {
     const RuleEntry* rule = FindRule(text);
-    return rule && rule->name == "lnoise";
+    return rule && rule->name == kLightnessNoiseName;
 }
 
 // Returns the noise of blocks that the rule has stopped.
@@ -25,7 +26,7 @@ double NoiseAtStop(const std::vector<BlockResult>& blocks) {
     std::vector<double> noise;
     for (const BlockResult& b : blocks)
         if (b.block.stoppedByVote && std::isfinite(b.block.noise)) noise.push_back(b.block.noise);
-    if (noise.empty()) return std::stod(ArgumentOf("lnoise"));
+    if (noise.empty()) return std::stod(ArgumentOf(kLightnessNoiseName));
     const auto middle = noise.begin() + noise.size() / 2;
     std::nth_element(noise.begin(), middle, noise.end());
     return *middle;
@@ -63,15 +64,15 @@ std::vector<NoisyBlock> FindShortfall(const Provenance& provenance, const Render
 }
 
 std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend& trend) {
-    constexpr int mostCap = 1 << 24;
+    constexpr int kMostCap = 1 << 24;
     if (trend.kind == RuleTrend::Samples) return {};
     std::vector<StopTrend> trends(result.blocks.size(), StopTrend(trend));
     std::vector<Block> blocks;
     std::vector<CappedBlock> capped;
     for (size_t i = 0; i < result.blocks.size(); ++i) {
         const auto& decisions = result.blocks[i].decisions;
-        for (const DecisionRecord& record : decisions)
-            trends[i].Add(record.spp, record.decision, 1, record.noiseTold);
+        for (const BlockDecision& record : decisions)
+            trends[i].Add(record.spp, record.decision, 1, record.networkNoise);
         blocks.push_back(result.blocks[i].block);
         Block& block = blocks.back();
         if (!block.IsAtCap() || decisions.empty()) continue;
@@ -79,13 +80,13 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend&
         const Decision& last = decisions.back().decision;
         capped.push_back({int(i), last.value, last.threshold, 0});
     }
-    if (const auto stops = PredictStops(trends, blocks, mostCap))
+    if (const auto stops = PredictStops(trends, blocks, kMostCap))
         for (CappedBlock& c : capped) {
             // A prediction that is no more than its sample count is of a block without a
             // trend.
             const int had = blocks[size_t(c.block)].spp;
             const double spp = std::ceil((*stops)[size_t(c.block)]);
-            if (spp < mostCap && (spp > had || c.value <= c.threshold))
+            if (spp < kMostCap && (spp > had || c.value <= c.threshold))
                 c.neededSpp = std::max(int(spp), had + 1);
         }
     std::ranges::stable_sort(capped, [](const CappedBlock& a, const CappedBlock& b) {

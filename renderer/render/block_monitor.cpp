@@ -1,8 +1,8 @@
-#include "renderer/results/block_observer.h"
+#include "renderer/render/block_monitor.h"
 
 #include <algorithm>
 
-#include "renderer/base/thread_clock.h"
+#include "renderer/base/clocks.h"
 #include "stopping/base/state.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/signals/lightness.h"
@@ -13,7 +13,7 @@ namespace lull {
 
 namespace {
 
-constexpr uint32_t kObserverTag = 0x3153424f;  // "OBS1"
+constexpr uint32_t kMonitorTag = 0x3153424f;  // "OBS1"
 constexpr int kCurveSubBlocks = 100;
 constexpr int kSmallestCurveSide = 10;  // pixels: one to each row of sub-blocks
 
@@ -33,14 +33,14 @@ constexpr const char* kDamaged = "the saved observations are damaged";
 
 }  // namespace
 
-BlockObserver::BlockObserver(std::vector<std::unique_ptr<Criterion>> rules,
-                             const ObserverOptions& options, BlockHistory* history)
+BlockMonitor::BlockMonitor(std::vector<std::unique_ptr<Criterion>> rules,
+                           const MonitorOptions& options, BlockHistory* history)
     : rules(std::move(rules)), options(options), history(history) {
     *history = {};
     history->stops.resize(this->rules.size());
 }
 
-ViewNeed BlockObserver::Need(int spp) const {
+ViewNeed BlockMonitor::Need(int spp) const {
     // A rule that only counts needs no view, but where it stops, the snapshot does.
     ViewNeed need = options.snapshots ? ViewNeed::Mean : ViewNeed::Nothing;
     if (options.curves || (options.snapshots && options.noise)) need = ViewNeed::MeanAndHalf;
@@ -49,11 +49,11 @@ ViewNeed BlockObserver::Need(int spp) const {
     return need;
 }
 
-Decision BlockObserver::ObserveRule(size_t i, const BlockView& view) {
+Decision BlockMonitor::ObserveRule(size_t i, const BlockView& view) {
     const double start = ThreadSeconds();
     const bool needsView = rules[i]->Need(view.spp) != ViewNeed::Nothing;
     const Decision decision = rules[i]->Observe(view);
-    if (i == 0) noiseTold = rules[i]->NoiseTold();
+    if (i == 0) networkNoise = rules[i]->NetworkNoise();
     RuleStop& stop = history->stops[i];
     stop.ruleSeconds += ThreadSeconds() - start + (needsView ? view.viewSeconds : 0);
     if (!decision.stop) return decision;
@@ -66,7 +66,7 @@ Decision BlockObserver::ObserveRule(size_t i, const BlockView& view) {
     return decision;
 }
 
-void BlockObserver::AddToCurves(const BlockView& view) {
+void BlockMonitor::AddToCurves(const BlockView& view) {
     BlockCurves& curves = history->curves;
     const bool isDue = curves.spp.empty() || view.spp >= 1.07 * curves.spp.back();
     if (!isDue || std::min(view.width, view.height) < kSmallestCurveSide) return;
@@ -75,7 +75,7 @@ void BlockObserver::AddToCurves(const BlockView& view) {
     curves.noise.push_back(float(VisibleNoise(view)));
 }
 
-Decision BlockObserver::Observe(const BlockView& view) {
+Decision BlockMonitor::Observe(const BlockView& view) {
     Decision first;
     for (size_t i = 0; i < rules.size(); ++i) {
         if (!rules[i]) continue;
@@ -88,9 +88,9 @@ Decision BlockObserver::Observe(const BlockView& view) {
     return first;
 }
 
-std::vector<std::byte> BlockObserver::Save() const {
+std::vector<std::byte> BlockMonitor::Save() const {
     StateWriter writer;
-    writer.Put(kObserverTag);
+    writer.Put(kMonitorTag);
     writer.PutVector(history->stops);
     for (const std::unique_ptr<Criterion>& rule : rules)
         writer.PutVector(rule ? rule->Save() : std::vector<std::byte>());
@@ -106,9 +106,9 @@ std::vector<std::byte> BlockObserver::Save() const {
     return std::move(writer.bytes);
 }
 
-void BlockObserver::Restore(std::span<const std::byte> state) {
+void BlockMonitor::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
-    reader.Expect(kObserverTag);
+    reader.Expect(kMonitorTag);
     history->stops = reader.GetVector<RuleStop>(kDamaged);
     if (history->stops.size() != rules.size())
         throw std::runtime_error("the saved observations are of other rules");

@@ -1,9 +1,15 @@
-// Measures work by the time that threads have spent on a processor.
+// Measures wall-clock time, and work by the time that threads have spent on a processor.
 #pragma once
 
+#include <chrono>
 #include <ctime>
 
 namespace lull {
+
+// Returns the wall-clock time since `start`.
+inline double SecondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 // Returns the seconds of a clock of processors.
 inline double SecondsOf(clockid_t clock) {

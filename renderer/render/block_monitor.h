@@ -1,4 +1,4 @@
-// Watches a block during a render: where rules would have stopped it, how it looked there, and how
+// Monitors a block during a render: where rules would have stopped it, how it looked there, and how
 // its noise developed.
 #pragma once
 
@@ -36,7 +36,7 @@ struct BlockHistory {
     BlockCurves curves;
 };
 
-struct ObserverOptions {
+struct MonitorOptions {
     bool snapshots = false;  // where rules stop the block
     bool noise = false;      // in the snapshots
     bool curves = false;     // for blocks of at least 10 pixels a side
@@ -45,16 +45,16 @@ struct ObserverOptions {
 
 // Runs several rules over one block; its own decisions are the first rule's until that
 // stops.
-class BlockObserver final : public Criterion {
+class BlockMonitor final : public Criterion {
   public:
-    // A null rule does not check the block. `history` must outlive the observer.
-    BlockObserver(std::vector<std::unique_ptr<Criterion>> rules, const ObserverOptions& options,
-                  BlockHistory* history);
+    // A null rule does not check the block. `history` must outlive the monitor.
+    BlockMonitor(std::vector<std::unique_ptr<Criterion>> rules, const MonitorOptions& options,
+                 BlockHistory* history);
 
     ViewNeed Need(int spp) const override;
     Decision Observe(const BlockView& view) override;
     // Of the first rule.
-    std::optional<double> NoiseTold() const override { return noiseTold; }
+    std::optional<double> NetworkNoise() const override { return networkNoise; }
     std::vector<std::byte> Save() const override;
     void Restore(std::span<const std::byte> state) override;
 
@@ -63,9 +63,9 @@ class BlockObserver final : public Criterion {
     void AddToCurves(const BlockView& view);
 
     std::vector<std::unique_ptr<Criterion>> rules;  // null once they have stopped the block
-    ObserverOptions options;
+    MonitorOptions options;
     BlockHistory* history;
-    std::optional<double> noiseTold;
+    std::optional<double> networkNoise;
 };
 
 }  // namespace lull

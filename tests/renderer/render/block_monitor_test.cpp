@@ -1,4 +1,4 @@
-#include "renderer/results/block_observer.h"
+#include "renderer/render/block_monitor.h"
 
 #include <gtest/gtest.h>
 
@@ -42,15 +42,15 @@ std::vector<std::unique_ptr<Criterion>> FixedRules(std::initializer_list<int> sp
     return rules;
 }
 
-TEST(BlockObserver, KeepsTheBlockWhereRulesStopIt) {
+TEST(BlockMonitor, KeepsTheBlockWhereRulesStopIt) {
     FadingBlock block;
     BlockHistory history;
-    BlockObserver observer(FixedRules({40, 80, 40}), {.snapshots = true, .goesOn = true}, &history);
+    BlockMonitor monitor(FixedRules({40, 80, 40}), {.snapshots = true, .goesOn = true}, &history);
     std::vector<float> at40, at80;
     for (int spp = 20; spp <= 120; spp += 20) {
         const BlockView view = block.At(spp);
-        EXPECT_NE(observer.Need(spp), ViewNeed::Nothing);
-        EXPECT_FALSE(observer.Observe(view).stop);
+        EXPECT_NE(monitor.Need(spp), ViewNeed::Nothing);
+        EXPECT_FALSE(monitor.Observe(view).stop);
         if (spp == 40) at40 = block.mean;
         if (spp == 80) at80 = block.mean;
     }
@@ -65,30 +65,30 @@ TEST(BlockObserver, KeepsTheBlockWhereRulesStopIt) {
     EXPECT_TRUE(history.snapshots[40].noise.empty());
 }
 
-TEST(BlockObserver, StopsWithTheLastRule) {
+TEST(BlockMonitor, StopsWithTheLastRule) {
     FadingBlock block;
     BlockHistory history;
-    BlockObserver observer(FixedRules({60, 0, 40}), {}, &history);
-    EXPECT_EQ(observer.Need(20), ViewNeed::Nothing);
-    EXPECT_FALSE(observer.Observe(block.At(20)).stop);
-    EXPECT_FALSE(observer.Observe(block.At(40)).stop);
-    EXPECT_TRUE(observer.Observe(block.At(60)).stop);
+    BlockMonitor monitor(FixedRules({60, 0, 40}), {}, &history);
+    EXPECT_EQ(monitor.Need(20), ViewNeed::Nothing);
+    EXPECT_FALSE(monitor.Observe(block.At(20)).stop);
+    EXPECT_FALSE(monitor.Observe(block.At(40)).stop);
+    EXPECT_TRUE(monitor.Observe(block.At(60)).stop);
     EXPECT_TRUE(history.snapshots.empty());
     EXPECT_TRUE(history.curves.spp.empty());
 }
 
-TEST(BlockObserver, PassesOnWhatTheFirstRuleSays) {
+TEST(BlockMonitor, PassesOnWhatTheFirstRuleSays) {
     FadingBlock block;
     BlockHistory history;
     std::vector<std::unique_ptr<Criterion>> rules;
     rules.push_back(MakeCriterion(DammertzRule(0.05)));
     rules.push_back(MakeCriterion(FixedRule(2000)));
-    BlockObserver observer(std::move(rules), {.goesOn = true}, &history);
+    BlockMonitor monitor(std::move(rules), {.goesOn = true}, &history);
     const std::unique_ptr<Criterion> alone = MakeCriterion(DammertzRule(0.05));
     bool stopped = false;
     for (int spp = 20; spp <= 2000; spp += 20) {
         const BlockView view = block.At(spp);
-        const Decision seen = observer.Observe(view);
+        const Decision seen = monitor.Observe(view);
         if (stopped) {
             EXPECT_FALSE(seen.checked);
             continue;
@@ -107,11 +107,11 @@ TEST(BlockObserver, PassesOnWhatTheFirstRuleSays) {
     EXPECT_LT(history.stops[1].ruleSeconds, 0.25);
 }
 
-TEST(BlockObserver, RecordsCurvesThatFall) {
+TEST(BlockMonitor, RecordsCurvesThatFall) {
     FadingBlock block;
     BlockHistory history;
-    BlockObserver observer(FixedRules({4000}), {.curves = true}, &history);
-    for (int spp = 20; spp <= 4000; spp += 20) observer.Observe(block.At(spp));
+    BlockMonitor monitor(FixedRules({4000}), {.curves = true}, &history);
+    for (int spp = 20; spp <= 4000; spp += 20) monitor.Observe(block.At(spp));
     const BlockCurves& curves = history.curves;
     ASSERT_GT(curves.spp.size(), 20u);
     EXPECT_LT(curves.spp.size(), 60u);
@@ -120,24 +120,24 @@ TEST(BlockObserver, RecordsCurvesThatFall) {
     EXPECT_LT(curves.entropy.back(), curves.entropy.front());
 }
 
-TEST(BlockObserver, GoesOnAfterAnInterruption) {
+TEST(BlockMonitor, GoesOnAfterAnInterruption) {
     FadingBlock block;
-    const ObserverOptions options{.snapshots = true, .noise = true, .curves = true, .goesOn = true};
+    const MonitorOptions options{.snapshots = true, .noise = true, .curves = true, .goesOn = true};
     const auto rules = [] {
         auto made = FixedRules({40, 0});
         made.push_back(MakeCriterion(CyclesRule(0.05)));
         return made;
     };
     BlockHistory whole, parts;
-    BlockObserver undisturbed(rules(), options, &whole);
-    auto interrupted = std::make_unique<BlockObserver>(rules(), options, &parts);
+    BlockMonitor undisturbed(rules(), options, &whole);
+    auto interrupted = std::make_unique<BlockMonitor>(rules(), options, &parts);
     for (int spp = 20; spp <= 3000; spp += 20) {
         const BlockView view = block.At(spp);
         undisturbed.Observe(view);
         interrupted->Observe(view);
         if (spp % 300 != 0) continue;
         const std::vector<std::byte> state = interrupted->Save();
-        interrupted = std::make_unique<BlockObserver>(rules(), options, &parts);
+        interrupted = std::make_unique<BlockMonitor>(rules(), options, &parts);
         interrupted->Restore(state);
     }
     for (size_t i = 0; i < 3; ++i) EXPECT_EQ(parts.stops[i].spp, whole.stops[i].spp);
@@ -151,17 +151,17 @@ TEST(BlockObserver, GoesOnAfterAnInterruption) {
     EXPECT_EQ(parts.curves.noise, whole.curves.noise);
 }
 
-TEST(BlockObserver, RefusesStatesThatAreNotItsOwn) {
+TEST(BlockMonitor, RefusesStatesThatAreNotItsOwn) {
     FadingBlock block;
     BlockHistory history, other;
-    BlockObserver observer(FixedRules({40}), {.snapshots = true}, &history);
-    observer.Observe(block.At(20));
-    observer.Observe(block.At(40));
-    std::vector<std::byte> state = observer.Save();
-    BlockObserver two(FixedRules({40, 60}), {.snapshots = true}, &other);
+    BlockMonitor monitor(FixedRules({40}), {.snapshots = true}, &history);
+    monitor.Observe(block.At(20));
+    monitor.Observe(block.At(40));
+    std::vector<std::byte> state = monitor.Save();
+    BlockMonitor two(FixedRules({40, 60}), {.snapshots = true}, &other);
     EXPECT_THROW(two.Restore(state), std::runtime_error);
     for (const size_t size : {size_t(0), size_t(3), size_t(30), state.size() - 1}) {
-        BlockObserver fresh(FixedRules({40}), {.snapshots = true}, &other);
+        BlockMonitor fresh(FixedRules({40}), {.snapshots = true}, &other);
         EXPECT_THROW(fresh.Restore(std::span(state).first(size)), std::runtime_error) << size;
     }
 }

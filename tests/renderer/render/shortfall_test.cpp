@@ -1,4 +1,4 @@
-#include "renderer/results/shortfall.h"
+#include "renderer/render/shortfall.h"
 
 #include <gtest/gtest.h>
 
@@ -91,7 +91,7 @@ TEST(Capped, SaysNothingWhereNothingIsKnown) {
     EXPECT_TRUE(FindCapped(CappedResult(1), {.kind = RuleTrend::Samples}).empty());
     RenderResult sure = CappedResult(1);
     for (BlockResult& block : sure.blocks)
-        for (DecisionRecord& record : block.decisions) record.decision.value = 1 - 1e-9;
+        for (BlockDecision& record : block.decisions) record.decision.value = 1 - 1e-9;
     sure.blocks[1].block.stopped = sure.blocks[1].block.stoppedByVote = false;
     const std::vector<CappedBlock> capped = FindCapped(sure, {.kind = RuleTrend::Probability});
     ASSERT_EQ(capped.size(), 1u);

@@ -7,21 +7,20 @@
 
 namespace lull {
 
-class Nap {
+// Waits twice as long each time, up to a limit.
+class Backoff {
   public:
-    void Take() {
-        constexpr std::chrono::microseconds longest{10000};
+    void Wait() {
+        constexpr std::chrono::microseconds kLongest{10000};
         std::this_thread::sleep_for(length);
-        length = std::min(2 * length, longest);
+        length = std::min(2 * length, kLongest);
     }
-    double SecondsSinceFirst() const {
-        return std::chrono::duration<double>(Clock::now() - first).count();
-    }
+    double Seconds() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
   private:
     using Clock = std::chrono::steady_clock;
 
-    Clock::time_point first = Clock::now();
+    Clock::time_point start = Clock::now();
     std::chrono::microseconds length{50};
 };
 
