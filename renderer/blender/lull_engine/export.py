@@ -131,7 +131,7 @@ def limits(scene, depth):
     if r.use_simplify and c.texture_limit_render != 'OFF':
         said.append("differs: textures have their full size")
     if c.pixel_filter_type != 'BOX' or c.filter_width != 1:
-        said.append("differs: edges are sharper: a pixel is the mean over its square, whatever Cycles' filter")
+        said.append("differs: edges are as sharp as means over pixels, whatever Cycles' filter")
     return said + _unjudged(scene)
 
 
