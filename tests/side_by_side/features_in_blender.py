@@ -949,6 +949,18 @@ def random(scene):
     dressed(made, "floor")
 
 
+@case("texture over places, on objects that share a mesh")
+def places(scene):
+    made, bsdf, tree = surface('BsdfDiffuse')
+    checker = node(tree, 'ShaderNodeTexChecker', Scale=1.5)
+    tree.links.new(tree.nodes.new('ShaderNodeNewGeometry').outputs['Position'], checker.inputs[0])
+    tree.links.new(checker.outputs[0], bsdf.inputs['Color'])
+    dressed(made)
+    other = bpy.data.objects.new("other", the("ball").data)
+    scene.collection.objects.link(other)
+    other.location = (1.5, 0, 0.7)
+
+
 @case("group of nodes")
 def group(scene):
     inner = bpy.data.node_groups.new("paint", 'ShaderNodeTree')
