@@ -322,6 +322,8 @@ bpy.data.lights['Light'].use_shadow = False""")
                 "1 material is in part in the viewport colour, as one of its surfaces is unknown: 'half known'",
                 "1 material is of the same transmission everywhere: 'patchy'",
                 "1 material is occluded by the same object alone: 'shaded'",
+                "1 material is without properties of objects: 'named'",
+                "passes that lull lacks are missing: cryptomatte above 6 levels",
                 "1 material is without anisotropic: 'brushed'",
                 "blurred, by images of 64 pixels over whole meshes (Texture Size): 'fine'",
                 "1 material is the same on all copies: 'random'",

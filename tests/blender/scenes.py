@@ -365,6 +365,9 @@ def doubtful(folder):
              fed("shaded", 'Base Color', 'AmbientOcclusion'), material("brushed", 'BsdfAnisotropic', Anisotropy=0.5)]
     for i, made in enumerate(shown):
         sphere(made, (i - 4, 0, 0.4), 0.4)
+    named = fed("named", 'Base Color', 'Attribute')
+    next(n for n in named.node_tree.nodes if n.type == 'ATTRIBUTE').attribute_type = 'OBJECT'
+    sphere(named, (0, 2, 0.4), 0.4)
     floor(fed("fine", 'Base Color', 'TexNoise', 1, Scale=500)).scale = (10, 10, 1)
 
     parts = bpy.data.collections.new("parts")
@@ -384,6 +387,7 @@ def doubtful(folder):
     edge.name, edge.visible_camera = "edge", False
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
     scene.render.use_simplify = scene.cycles.use_camera_cull = edge.cycles.use_camera_cull = True
+    scene.view_layers[0].pass_cryptomatte_depth, scene.view_layers[0].use_pass_cryptomatte_object = 8, True
     scene.cycles.use_fast_gi, scene.view_settings.look = True, 'High Contrast'
     camera((0, -7, 3.2), (1.2, 0, 0), lens=35)
 

@@ -4,7 +4,7 @@
     cmake --build --preset release --target lull blender_addon
     tests/side_by_side/features.py blender build/release/share/lull/lull-blender.zip build/release/renderer/lull OUT [NAME...]
 
-A feature is right if means of R, G and B are within 2 % of Cycles' and blocks of 10x10 pixels within 5 % of the mean, on average;
+A feature is right if means of R, G, B and alpha are within 2 % of Cycles' and blocks of 10x10 pixels within 5 % of the mean, on average;
 refused if there is no picture; else warned. One that differs without a warning is silent, and the exit code is 1. Pictures stay
 in the folder OUT, `NAME.png` with Cycles on the left; what is there already is not rendered again, unless it is named. `--write`
 writes features.csv, all features, and replaces the table in renderer/docs/blender.md, those that are not right. Not part of CI.
@@ -109,7 +109,8 @@ def judge(o, name, said):
     beside(a, b, o.out / f"{name}.png")
     means = b.mean((0, 1)) / np.maximum(a.mean((0, 1)), 1e-9) - 1
     apart = means[np.argmax(abs(means))]
-    off = abs(blocks(a) - blocks(b))[..., :3].mean() / a[..., :3].mean()
+    apart_in_blocks = abs(blocks(a) - blocks(b))
+    off = max(apart_in_blocks[..., :3].mean() / a[..., :3].mean(), apart_in_blocks[..., 3].mean())
     is_right = abs(apart) <= MEANS and off <= BLOCKS
     texts = "; ".join(warnings + remarks)
     verdict = "right" if is_right else "" if texts else "**silent**"

@@ -905,6 +905,25 @@ def mixed(scene):
     dressed(made)
 
 
+@case("Mix of Diffuse and nothing")
+def half_mixed(scene):
+    made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
+    mix = tree.nodes.new('ShaderNodeMixShader')
+    tree.links.new(base.outputs[0], mix.inputs[1])
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("wall that is there from inside alone")
+def one_sided(scene):
+    made, _, tree = surface('BsdfTransparent')
+    inside, mix, where = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfDiffuse', 'MixShader', 'NewGeometry'))
+    for a, b in ((where.outputs['Backfacing'], mix.inputs[0]), (tree.nodes[1].outputs[0], mix.inputs[1]), (inside.outputs[0], mix.inputs[2])):
+        tree.links.new(a, b)
+    cover(mix, tree)
+    cube(made, 3, (0, 0, 1.5))
+
+
 @case("Add of Diffuse and Emission")
 def added(scene):
     made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
@@ -924,6 +943,33 @@ def no_nodes(scene):
     made = bpy.data.materials.new("plain")
     made.diffuse_color = (0.2, 0.5, 0.2, 1)
     dressed(made)
+
+
+@case("glass by a mask")
+def masked_glass(scene):
+    made, bsdf, tree = principled(Roughness=0.1)
+    tree.links.new(node(tree, 'ShaderNodeTexChecker', Scale=2).outputs['Fac'], bsdf.inputs['Transmission'])
+    dressed(made)
+
+
+@case("Random of two objects")
+def random(scene):
+    made, bsdf, tree = surface('BsdfDiffuse')
+    tree.links.new(tree.nodes.new('ShaderNodeObjectInfo').outputs['Random'], bsdf.inputs['Color'])
+    dressed(made)
+    dressed(made, "floor")
+
+
+@case("texture over places, on objects that share a mesh")
+def places(scene):
+    made, bsdf, tree = surface('BsdfDiffuse')
+    checker = node(tree, 'ShaderNodeTexChecker', Scale=1.5)
+    tree.links.new(tree.nodes.new('ShaderNodeNewGeometry').outputs['Position'], checker.inputs[0])
+    tree.links.new(checker.outputs[0], bsdf.inputs['Color'])
+    dressed(made)
+    other = bpy.data.objects.new("other", the("ball").data)
+    scene.collection.objects.link(other)
+    other.location = (1.5, 0, 0.7)
 
 
 @case("group of nodes")
@@ -1003,6 +1049,19 @@ def two_uvs(scene):
     layer = wall(made).data.uv_layers.new(name="small")
     for loop in layer.data:
         loop.uv *= 0.5
+
+
+@case("image texture over a UV map that two meshes have in other places")
+def uv_order(scene):
+    made, shown, _, tree = textured()
+    tree.links.new(node(tree, 'ShaderNodeUVMap', uv_map="small").outputs[0], shown.inputs[0])
+    for x, others in (-1, ("other",)), (1, ()):
+        o = wall(made, 0.9)
+        o.location.x = x
+        o.data.uv_layers.remove(o.data.uv_layers[0])
+        for name in (*others, "small"):
+            for loop, uv in zip(o.data.uv_layers.new(name=name).data, ((0, 0), (1, 0), (1, 1), (0, 1))):
+                loop.uv = [v * (0.1 if name == "small" else 1) for v in uv]
 
 
 @case("image texture times a colour")

@@ -36,7 +36,14 @@ class Baker:
         o.data = o.data.copy()
         o.data.uv_layers.active = o.data.uv_layers[_UV]
         others = [i for i, m in enumerate(o.data.materials) if m != slot]
+        name = o["lull_source"]
+        original = bpy.data.objects.get(name)
+        if original:
+            original.name = "lull original"
+        o.name = name  # by which Cycles chooses random numbers
         pixels = self._bake(material, socket, o, self.size, others, kind)
+        if original:
+            original.name = name
         baked = pixels[:, :, 3] > 0
         if baked.any():  # others do not count in averages
             pixels[~baked] = pixels[baked].mean(0)

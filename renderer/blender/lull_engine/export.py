@@ -97,6 +97,8 @@ def _deny_viewport(tree):
 def note_film(scene, notes):
     if scene.render.use_motion_blur:
         notes.say("there is no motion blur")
+    if scene.render.use_multiview:
+        notes.say("all views have the same picture")
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
         notes.say("pixels are square, whatever their aspect")
     if scene.render.film_transparent and scene.cycles.film_transparent_glass:
@@ -131,7 +133,7 @@ def limits(scene, depth):
     if r.use_simplify and c.texture_limit_render != 'OFF':
         said.append("differs: textures have their full size")
     if c.pixel_filter_type != 'BOX' or c.filter_width != 1:
-        said.append("differs: edges are sharper: a pixel is the mean over its square, whatever Cycles' filter")
+        said.append("differs: edges are as sharp as means over pixels, whatever Cycles' filter")
     return said + _unjudged(scene)
 
 
@@ -169,8 +171,10 @@ def add_camera(scene, flat, notes):
     if data.dof.use_dof:
         focus = data.dof.focus_distance
         if data.dof.focus_object:
-            at = data.dof.focus_object.matrix_world.translation
-            focus = -(camera.matrix_world.normalized().inverted() @ at).z
+            at = data.dof.focus_object.matrix_world
+            if data.dof.focus_subtarget:
+                at = at @ data.dof.focus_object.pose.bones[data.dof.focus_subtarget].matrix
+            focus = -(camera.matrix_world.normalized().inverted() @ at.translation).z
         # As Cycles has it: the lens in metres, or 1 for an orthographic camera.
         length = data.lens * 1e-3 if data.type == 'PERSP' else 1
         lens["lensRadius"] = length / (2 * data.dof.aperture_fstop)

@@ -3,7 +3,6 @@ metaballs and text. Copies share their mesh."""
 import bpy
 from mathutils import Matrix
 
-import groups
 import strands
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
@@ -73,8 +72,8 @@ def _place_hair(flat, instance, graph, override, meshes, made):
 
 def _key(o):
     materials = [slot.material for slot in o.material_slots]
-    # Materials that ask who they are on are baked for each object.
-    asks = any(m and m.use_nodes and groups.has(m.node_tree, 'OBJECT_INFO') for m in materials)
+    # Materials that ask who they are on, or where, are baked for each object.
+    asks = any(m and m.use_nodes and _asks(m.node_tree, False) for m in materials)
     return (o.data.as_pointer() if o.data else 0, o.type, tuple(m.name if m else "" for m in materials),
             o.original.name if asks else "")
 
@@ -145,16 +144,20 @@ def _note_copies(names, notes):
     """Notes those of the materials of copies that ask which copy they are on."""
     for name in names:
         material = bpy.data.materials[name]
-        if material.use_nodes and _asks_for_copy(material.node_tree):
+        if material.use_nodes and _asks(material.node_tree, True):
             notes.add("the same on all copies", name, "materials")
 
 
-def _asks_for_copy(tree):
+def _asks(tree, is_copy):
+    """Returns whether nodes tell objects apart, or copies of one."""
     for node in tree.nodes:
         used = {o.name for o in node.outputs if o.links}
-        if node.type == 'GROUP' and node.node_tree and _asks_for_copy(node.node_tree) or node.type == 'PARTICLE_INFO' and used or \
-                node.type == 'OBJECT_INFO' and used & {'Location', 'Random'} or \
-                node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER':
+        is_placed = node.type == 'NEW_GEOMETRY' and 'Position' in used or \
+            node.type == 'TEX_COORD' and node.object and 'Object' in used
+        is_named = node.type == 'OBJECT_INFO' and used & ({'Location', 'Random'} if is_copy else used)
+        is_copied = is_copy and (node.type == 'PARTICLE_INFO' and used or
+                                 node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER')
+        if is_placed or is_named or is_copied or node.type == 'GROUP' and node.node_tree and _asks(node.node_tree, is_copy):
             return True
     return False
 

@@ -5,11 +5,6 @@ _OF_THE_TREE = {"rna_type", "type", "inputs", "outputs", "internal_links", "dime
                 "bl_height_min", "bl_height_max", "parent", "location", "select", "name"}
 
 
-def has(tree, kind):
-    """Returns whether a tree has a node of a kind, in groups or not."""
-    return any(n.type == kind or n.type == 'GROUP' and n.node_tree and has(n.node_tree, kind) for n in tree.nodes)
-
-
 def inline(tree):
     """Replaces groups, of any depth. Those without a tree stay."""
     while True:

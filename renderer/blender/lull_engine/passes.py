@@ -136,6 +136,8 @@ def lacked(layer):
     found += [name for name, wanted in (
         ("volume direct", layer.cycles.use_pass_volume_direct), ("volume indirect", layer.cycles.use_pass_volume_indirect),
         ("shadow catcher", layer.cycles.use_pass_shadow_catcher)) if wanted]
+    if (layer.use_pass_cryptomatte_object or layer.use_pass_cryptomatte_material) and layer.pass_cryptomatte_depth > 2 * _LAYERS:
+        found.append(f"cryptomatte above {2 * _LAYERS} levels")
     return found + ["cryptomatte of assets"] * layer.use_pass_cryptomatte_asset + [aov.name for aov in layer.aovs]
 
 

@@ -207,7 +207,10 @@ class _Surface:
             notes.add("displaced as finely as meshes are, without bump", self.name, "materials")
         if not getattr(self.original.cycles, "use_transparent_shadow", True) and (p['Alpha'] != 1 or self.copy.get("lull_thin")):
             notes.add("letting light through where transparent", self.name, "materials")
-        if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for v in p.values() if self._is_output(v) for n in _upstream(v)):
+        nodes = [n for v in p.values() if self._is_output(v) for n in _upstream(v)]
+        if any(n.type == 'ATTRIBUTE' and n.attribute_type == 'OBJECT' for n in nodes):
+            notes.add("without properties of objects", self.name, "materials")
+        if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for n in nodes):
             notes.add("occluded by the same object alone", self.name, "materials")
 
     def _mark(self, node):

@@ -29,6 +29,8 @@ def write(scene, layer, camera, base, is_sharp, notes):
     unseen = [name for name in _RAYS if not getattr(world.cycles_visibility, name)]
     if unseen:
         notes.say(f"the world '{world.name}' lights all rays but those of the camera, whatever its visibility")
+    if world.cycles.max_bounces < 12:
+        notes.say(f"the world '{world.name}' lights after any number of bounces")
     backdrop = None
     is_sharp = is_sharp and world.use_nodes and not _background(world)
     if not scene.render.film_transparent and (asks or not world.cycles_visibility.camera or is_sharp):
