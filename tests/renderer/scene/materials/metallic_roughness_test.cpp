@@ -133,7 +133,7 @@ TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
 // By interpolated normals, too, no light comes from behind.
 TEST(MetallicRoughness, ReflectsNothingIntoTheSurface) {
     for (const float roughness : {0.f, 0.05f, 0.2f}) {
-        const SceneWith b({{"roughnessfactor", roughness}});
+        SceneWith b({{"roughnessfactor", roughness}});
         const MaterialTable table = b.Make();
         SurfaceInteraction hit = MaterialScene::Hit(0);
         hit.ns = Vec3f(-0.766f, 0, 0.643f).normalized();
