@@ -146,15 +146,18 @@ def _blackbody(kelvin):
 
 def _points(scene, light, matrix):
     """Yields points of a light that the camera might see."""
-    steps = [(x / 4, y / 4) for x in range(-4, 5) for y in range(-4, 5)]
+    steps, eye = [(x / 4, y / 4) for x in range(-4, 5) for y in range(-4, 5)], scene.camera.matrix_world
     if light.type == 'AREA':
+        away = eye.col[2].xyz if scene.camera.data.type == 'ORTHO' else eye.translation - matrix.translation
+        if away.dot(matrix.col[2].xyz) >= 0:  # where it is not there
+            return
         width, height = _size(light)
         yield from (matrix @ Vector((x * width / 2, y * height / 2, 0)) for x, y in steps)
     elif light.type == 'SUN':
-        axes, wide, eye = matrix.to_3x3().normalized(), math.tan(min(light.angle, 3) / 2), scene.camera.matrix_world.translation
-        yield from (eye + 1e4 * (axes @ Vector((wide * x, wide * y, 1))) for x, y in steps if x * x + y * y <= 1)
+        axes, wide = matrix.to_3x3().normalized(), math.tan(min(light.angle, 3) / 2)
+        yield from (eye.translation + 1e4 * (axes @ Vector((wide * x, wide * y, 1))) for x, y in steps if x * x + y * y <= 1)
     else:
-        across, radius = scene.camera.matrix_world.to_3x3().normalized(), light.shadow_soft_size
+        across, radius = eye.to_3x3().normalized(), light.shadow_soft_size
         yield from (matrix.translation + radius * (across @ Vector((x, y, 0))) for x, y in steps if x * x + y * y <= 1)
 
 

@@ -329,7 +329,8 @@ class _Surface:
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
         if 'Normal' in a or 'Normal' in b:
-            if a.get('Normal') != b.get('Normal'):
+            reflect = all(p['Base Color'] != (0, 0, 0) for p in (a, b))
+            if reflect and a.get('Normal') != b.get('Normal'):
                 self.notes.add("with the normals of the first of mixed surfaces that has any", self.name, "materials")
             mixed['Normal'] = a.get('Normal', b.get('Normal'))
         return mixed
@@ -344,8 +345,8 @@ class _Surface:
         return dict(_DEFAULTS, **{'Base Color': tuple(self.original.diffuse_color)[:3]})
 
     def _mix_by_view(self, a, b, factor):
-        """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what the
-        camera sees holds."""
+        """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what lights
+        the scene holds, else what the camera sees."""
         kinds = {n.type for n in _upstream(factor)}
         is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
         if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
@@ -358,7 +359,7 @@ class _Surface:
             return self._lit_through(other)
         self.notes.add("the same from all sides and for all rays", self.name, "materials")
         if is_ray:
-            return b if factor.name == 'Is Camera Ray' else a
+            return b if factor.name == 'Is Camera Ray' and a['Radiance'] == (0, 0, 0) else a
         return other if clear['Alpha'] == 0 else a
 
     def _pane(self, clear, shine, factor):
