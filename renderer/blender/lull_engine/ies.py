@@ -46,16 +46,34 @@ def _all_around(horizontal, candela):
     return horizontal, candela
 
 
+def _between(angles, wanted):
+    """Returns for each wanted angle the number of that below it, and how far on it is to the next."""
+    below = np.clip(np.searchsorted(angles, wanted, 'right') - 1, 0, len(angles) - 2)
+    return below, (wanted - angles[below]) / (angles[below + 1] - angles[below])
+
+
+def _catmull_rom(a, b, c, d, x):
+    return b + x / 2 * (c - a + x * (2 * a - 5 * b + 4 * c - d + x * (3 * (b - c) + d - a)))
+
+
 def strengths(text):
-    """Returns the strength of Cycles' lamp by direction: rows from its -z axis to z, columns from x by y."""
+    """Returns the strength of Cycles' lamp by direction: rows from its -z axis to z, columns from x by y. The candela are
+    interpolated by cubics, as there."""
     vertical, horizontal, candela = parse(text)
     down = (np.arange(_ROWS) + .5) * 180 / _ROWS
     columns = 2 if len(horizontal) == 2 else 2 * _ROWS
     around = (np.arange(columns) + .5) * 360 / columns
     turned = (270 - around) % 360  # the profile begins at -y, and turns to -x
-    by_row = np.array([np.interp(down, vertical, c, left=0, right=0) for c in candela])
-    made = np.array([np.interp(turned, horizontal, row) for row in by_row.T])
-    return np.maximum(made, 0) * _STRENGTH_PER_CANDELA
+    row, x = _between(vertical, down)
+    last = len(vertical) - 1
+    rows = [candela[:, np.where(row == 0, 1, row - 1)], candela[:, row], candela[:, row + 1],
+            candela[:, np.minimum(row + 2, last)]]
+    by_row = np.where((vertical[0] <= down) & (down <= vertical[-1]), _catmull_rom(*rows, x), 0)
+    column, x = _between(horizontal, turned)
+    last = len(horizontal) - 1  # the same as the first
+    made = _catmull_rom(by_row[np.where(column == 0, last - 1, column - 1)], by_row[column], by_row[column + 1],
+                        by_row[np.where(column + 2 > last, 1, column + 2)], x[:, None])
+    return np.maximum(made.T, 0) * _STRENGTH_PER_CANDELA
 
 
 def text_of(node):
