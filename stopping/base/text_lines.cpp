@@ -1,7 +1,7 @@
 #include "stopping/base/text_lines.h"
 
-#include <istream>
 #include <algorithm>
+#include <istream>
 #include <iterator>
 #include <stdexcept>
 
