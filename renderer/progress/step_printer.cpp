@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "renderer/base/clocks.h"
-#include "renderer/base/say.h"
 
 namespace lull {
 

@@ -155,7 +155,7 @@ template <typename Media, typename Vertex, typename Guiding, typename Recorder>
     if (!(pmf > 0)) return Rgb::Zero();
     const TiledSample sample = SampleTiled(context, v.Position(), index, path->learned.tiles);
     Rgb L = SampleLight(context, v, guiding, sample, pmf);
-    if (context.records && context.learned) [[unlikely]]
+    if (context.learned && context.records) [[unlikely]]
         Record(*context.records, context.scene.lights, path->learned, index, sample.tile,
                sample.powerRatio, Luminance(L) * pmf, Luminance(path->beta * L) * pmf);
     if (context.estimator == Estimator::PbrtV3)

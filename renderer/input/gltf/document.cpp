@@ -127,6 +127,11 @@ bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int
 
 }  // namespace
 
+const tinygltf::Value* OwnValue(const tinygltf::Value& extras, const std::string& name) {
+    if (!extras.Has("lull") || !extras.Get("lull").Has(name)) return nullptr;
+    return &extras.Get("lull").Get(name);
+}
+
 FileLoc GltfDocument::At(const std::string& path) const {
     return {std::make_shared<const std::string>(file + ": " + path), 0};
 }

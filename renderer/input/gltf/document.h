@@ -18,6 +18,10 @@ struct GltfDocument {
     FileLoc At(const std::string& path) const;
 };
 
+// Returns a property of our own in the `extras` of a camera, a light or a material; null: there is
+// none.
+const tinygltf::Value* OwnValue(const tinygltf::Value& extras, const std::string& name);
+
 // Reads a file and the buffers it names; images stay encoded, those in files of their own unread.
 // Unsupported extensions lead to warnings, or to an error if the file requires them. Throws Error
 // with the file and, if there is one, the JSON pointer of the mistake.

@@ -54,27 +54,27 @@ void AddSphere(const tinygltf::Light& source, const Rgb& intensity, double radiu
     description->shapes.push_back(std::move(sphere));
 }
 
-// Returns a value that is lull's own to know; null for none.
-tinygltf::Value Extra(const tinygltf::Light& light, const std::string& name) {
-    const bool has = light.extras.Has("lull") && light.extras.Get("lull").Has(name);
-    return has ? light.extras.Get("lull").Get(name) : tinygltf::Value();
+// Returns a number of our own, 0 for none.
+double OwnNumber(const tinygltf::Light& light, const std::string& name) {
+    const tinygltf::Value* value = OwnValue(light.extras, name);
+    return value ? value->GetNumberAsDouble() : 0;
 }
 
 double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
-    const auto radius = NotNegative(Extra(light, "radius").GetNumberAsDouble());
+    const auto radius = NotNegative(OwnNumber(light, "radius"));
     if (!radius) throw Error(loc, "its radius is negative");
     return *radius;
 }
 
 // Returns the name of an image of the light's directions; empty: it shines evenly.
 std::string ProfileOf(const tinygltf::Light& light, const FileLoc& loc) {
-    const tinygltf::Value profile = Extra(light, "profile");
-    if (profile.Type() == tinygltf::NULL_TYPE) return "";
-    if (!profile.IsString() || profile.Get<std::string>().empty())
+    const tinygltf::Value* profile = OwnValue(light.extras, "profile");
+    if (!profile) return "";
+    if (!profile->IsString() || profile->Get<std::string>().empty())
         throw Error(loc, "its profile has to be the name of an image file");
     if (light.type != "point" || RadiusOf(light, loc) > 0)
         throw Error(loc, "it has a profile; only point lights without a radius can");
-    return profile.Get<std::string>();
+    return profile->Get<std::string>();
 }
 
 // Makes a goniometric light of the image: its first row is the -z axis of the node, where spots
@@ -90,7 +90,7 @@ void AddProfile(const std::string& profile, LightEntity* light) {
 
 // Returns the angle across a directional light, degrees.
 double AngleOf(const tinygltf::Light& light, const FileLoc& loc) {
-    const double angle = Extra(light, "angle").GetNumberAsDouble();
+    const double angle = OwnNumber(light, "angle");
     const auto across = InRange(angle, 0, std::numbers::pi);
     if (!across)
         throw Error(loc, fmt::format("its angle is {:g}; it has to be from 0 to pi", angle));

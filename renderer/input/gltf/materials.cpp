@@ -37,17 +37,11 @@ Rgb Color(const tinygltf::Value& owner, const std::string& name, const Rgb& othe
             float(c.Get(2).GetNumberAsDouble())};
 }
 
-// Returns a property of our own, in `extras`; null: there is none.
-const tinygltf::Value* OwnValue(const tinygltf::Material& material, const std::string& name) {
-    if (!material.extras.Has("lull") || !material.extras.Get("lull").Has(name)) return nullptr;
-    return &material.extras.Get("lull").Get(name);
-}
-
 // Returns whether a property of our own is true: "addedInterface", the base is not
 // attenuated by the interface above it; "openBehind", rays from behind pass. Throws Error.
 bool OwnProperty(const tinygltf::Material& material, const std::string& name,
                  const GltfDocument& document, const std::string& path) {
-    const tinygltf::Value* value = OwnValue(material, name);
+    const tinygltf::Value* value = OwnValue(material.extras, name);
     if (!value) return false;
     if (!value->IsBool())
         throw Error(document.At(path + "/extras/lull/" + name), "has to be true or false");
@@ -58,7 +52,7 @@ bool OwnProperty(const tinygltf::Material& material, const std::string& name,
 // leaves into, degrees; 180: to all sides. Throws Error.
 double SpreadOf(const tinygltf::Material& material, const GltfDocument& document,
                 const std::string& path) {
-    const tinygltf::Value* value = OwnValue(material, "spread");
+    const tinygltf::Value* value = OwnValue(material.extras, "spread");
     if (!value) return 180;
     const auto spread =
         InRange(value->IsNumber() ? value->GetNumberAsDouble() : 0, 0, std::numbers::pi);
