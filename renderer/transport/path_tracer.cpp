@@ -41,6 +41,22 @@ template <typename Media, typename Guiding, typename Recorder>
     return MediumEvent::Scatters;
 }
 
+// Continues the path straight on where the pane lets it pass without scattering. Returns false
+// where it does not; `bsdf`, that of the vertex, is then of the light that it scatters.
+template <typename Media, typename Recorder>
+[[gnu::always_inline]] inline bool PassPane(PathContext<Media>& context, const SurfaceVertex& v,
+                                            bool isLast, Bsdf* bsdf, Recorder& recorder,
+                                            Path* path) {
+    Rgb beta = path->beta;  // a copy, as the function called is not inlined
+    const bool passes = GoesThroughPane(v.hit.wo, isLast, context.sampler, bsdf, &beta);
+    path->beta = beta;
+    if (!passes) return false;
+    path->ray = v.hit.SpawnRay(path->ray.d);
+    context.media.Leave(v, path->ray.d);
+    recorder.Scatter(*path, true);
+    return true;
+}
+
 // Continues the path, which the surface has let in, from where it leaves the solid; adds the light
 // that arrives there directly. Returns false where it ends.
 template <typename Media, typename Guiding, typename Recorder>
@@ -167,18 +183,10 @@ template <typename Media, typename Guiding, typename Recorder>
 
         // Go straight on through a pane, which is no vertex: shadow rays pass it, too.
         if constexpr (Media::kLetThrough)
-            if (needs & kLetsThrough) {
-                Rgb beta = path.beta;
-                const bool goesThrough = GoesThroughPane(hit.wo, isLast, sampler, &bsdf, &beta);
-                path.beta = beta;
-                if (goesThrough) {
-                    path.learned = learnedBefore;
-                    path.ray = hit.SpawnRay(path.ray.d);
-                    context.media.Leave(v, path.ray.d);
-                    recorder.Scatter(path, true);
-                    --bounces;
-                    continue;
-                }
+            if ((needs & kLetsThrough) && PassPane(context, v, isLast, &bsdf, recorder, &path)) {
+                path.learned = learnedBefore;
+                --bounces;
+                continue;
             }
         if (isLast) break;
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
