@@ -1,4 +1,4 @@
-"""Checks that a quantity has one value on all pages, and that of the table of scenes where it comes from one.
+"""Checks that a quantity has one value on all pages and charts, and that of the table of scenes where it comes from one.
 
     python3 one_value.py
 
@@ -18,10 +18,18 @@ WORDS = {word: number for number, word in enumerate(
     'zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen'.split())}
 WORDS['twenty-six'] = 26
 
-README, LIMITS, MODELS, RENDERER = 'README.md', 'renderer/docs/limits.md', 'tests/measurements/models.md', 'tests/measurements/renderer.md'
-DENOISING, RULES, PAPER, DATA = 'tests/measurements/denoising.md', 'stopping/docs/entropy.md', 'stopping/docs/paper.md', 'stopping/data/README.md'
-REFERENCE, RENDERING = 'renderer/docs/reference.md', 'renderer/docs/rendering.md'
+README, DATA = 'README.md', 'stopping/data/README.md'
+MODELS, RENDERER, DENOISING = (f'tests/measurements/{name}.md' for name in ('models', 'renderer', 'denoising'))
+RULES, PAPER, TRAINING = (f'stopping/docs/{name}.md' for name in ('entropy', 'paper', 'training'))
+REFERENCE, RENDERING, BLENDER = (f'renderer/docs/{name}.md' for name in ('reference', 'rendering', 'blender'))
 SPEED = 'tests/measurements/pbrt_speed.csv', 'samples_per_second'
+TIMES = 'tests/measurements/denoising_halves.csv', 'cpu_seconds'
+
+
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values)
+
 
 QUANTITIES = [
     ('blocks of the default', MODELS, '# blocks of ten viewpoints of seven scenes, 800x800', '# blocks of ten viewpoints; other',
@@ -39,14 +47,15 @@ QUANTITIES = [
      'default takes at least #', 'at the earliest, # spp', r'earliest stop, spp \| 380 \| 380 \| #'),
     ("the paper's earliest stop, spp", PAPER, 'every 40 spp, so that no block stops before # spp', r'earliest stop, spp \| # '),
     ("first check of the default, spp", RULES, 'with both inputs is at # spp', 'each block, from # spp'),
-    ('early stops where options are left out', MODELS, 'without the scene. The critical error is 9.0 %, with # % early', '# % of the stops are early'),
+    ('early stops where options are left out', ('tests/measurements/nested.csv', 'early_percent', mean),
+     'without the scene. The critical error is 9.0 %, with # % early', '# % of the stops are early'),
     ('early stops with the shipped options', MODELS, 'in the same run, with # % early', r'each scene left out .{1,60}%: [0-9.-]+\) \| #;'),
-    ('limit of peak noise, L*', RULES, 'limit is # for the model', r'none \| none \| # L'),
+    ('limit of peak noise, L*', RULES, 'limit is # for the model', r'none \| none \| # L', r'shipped options, 0\.25 and #,'),
     ('exponent of nearness', RULES, 'and x = #, which', 'shipped options, # and'),
     ('visible noise over deviation', RULES, 'that is # to 2, times', 'in SVD-entropy, # to 2 times'),
     ('units of the default', RULES, 'layers of 8 and # units', r'\| 8, #; 533'),
-    ('epochs', 'stopping/docs/training.md', r'epochs \| #, samples', '# epochs, no dropout'),
-    ('rate of RMSprop', 'stopping/docs/training.md', 'RMSprop with a rate of #, ρ', 'viewpoints balanced; batches of 64, RMSprop, rate #'),
+    ('epochs', TRAINING, r'epochs \| #, samples', '# epochs, no dropout'),
+    ('rate of RMSprop', TRAINING, 'RMSprop with a rate of #, ρ', 'viewpoints balanced; batches of 64, RMSprop, rate #'),
     ('answers of a staircase', REFERENCE, r'Ask N times per block of a staircase \(2 to 100\) #', 'Staircases ask # times'),
     ('published error', PAPER, r'svd-entropy-rnn 40 640 0 0 # ', 'blocks of the published # %'),
     ('ranges', RULES, 'the human threshold in # of 100', 'intended to contain # % of the human'),
@@ -61,13 +70,14 @@ QUANTITIES = [
     ('bytes of a pixel, denoised', RENDERING, 'checkpoints need; # with', 'of which the film has #'),
     ('bytes of a pixel', RENDERING, 'A pixel of the film takes # bytes', 'of which the film takes # or 48'),
     ('bytes of a pixel with a half buffer', RENDERING, 'film takes 24 bytes; # with', 'of which the film takes 24 or #'),
-    ('shortest time by --denoise, s', DENOISING, 'after # to [0-9]+ s of CPU time', 'takes # to [0-9]+ s of CPU time in'),
+    ('shortest time by --denoise, s', (*TIMES, min), 'after # to [0-9]+ s of CPU time', 'takes # to [0-9]+ s of CPU time in'),
     ('longest of the 13, s', DENOISING, 'after 2 to # s of CPU time', 'takes 2 to # s of CPU time in 13'),
-    ('longest of the 17, s', DENOISING, '160 to # s in four', r'\([0-9]+ and # s\)'),
+    ('longest of the 17, s', (*TIMES, max), '160 to # s in four', r'\([0-9]+ and # s\)'),
     ('scenes compared with pbrt-v3', RENDERER, 'with those of pbrt-v3, # scenes', 'and on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),
-    ('version of Blender', 'renderer/docs/blender.md', 'Tested with Blender 3.4.# ', 'with Blender 3.4.# alone', 'Blender 3.4.#, two threads'),
+    ('last stop of cornell, spp', README, '580 to # spp: 294', '>stopped at # spp'),
+    ('version of Blender', BLENDER, 'Tested with Blender 3.4.# ', 'with Blender 3.4.# alone', 'Blender 3.4.#, two threads'),
 ]
 
 
@@ -104,7 +114,8 @@ def computed(file, column, function):
 
 
 def main():
-    pages = {str(path.relative_to(ROOT)): plain(path.read_text(encoding='utf-8')) for path in sorted(ROOT.rglob('*.md'))
+    files = [*ROOT.rglob('*.md'), *(ROOT / 'scenes' / 'pictures').glob('*.svg')]
+    pages = {str(path.relative_to(ROOT)): plain(path.read_text(encoding='utf-8')) for path in sorted(files)
              if not any(part == 'build' or part.startswith('.') for part in path.relative_to(ROOT).parts)}
     wrong, count = [], 0
     for name, home, *texts in QUANTITIES:
