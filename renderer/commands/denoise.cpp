@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -133,6 +134,9 @@ ExitCode RunDenoise(Options options) {
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
     // The next steps need the memory.
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
+    for (ExrChannel& channel : exr.channels)  // depths may be infinite
+        std::ranges::replace_if(
+            channel.values, [](float v) { return std::isnan(v); }, 0.f);
     const auto start = std::chrono::steady_clock::now();
     const DenoisedImage denoised = DenoiseWithReports(std::move(picture), region, blocks,
                                                       StyleOfReports(false, options.quiet));
