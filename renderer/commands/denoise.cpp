@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -15,6 +16,7 @@
 #include "renderer/render/film_picture.h"
 #include "renderer/results/channel_names.h"
 #include "renderer/results/denoiser_channels.h"
+#include "renderer/results/exr_windows.h"
 #include "renderer/results/image_files.h"
 
 namespace lull::denoise {
@@ -82,6 +84,21 @@ void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture
                         options.input, kLeastDenoisedSpp));
 }
 
+// Moves images of other programs to the display window if their data windows differ: some write
+// those pixels alone that are not black.
+void UseOneWindow(const Options& options, ExrImage* a, ExrImage* b) {
+    if (DataWindow(*a) == DataWindow(*b)) return;
+    MoveTo(ShownWindow(*a, options.input), a);
+    MoveTo(ShownWindow(*b, options.half), b);
+}
+
+// Writes what an image shows within a window.
+void WriteShown(const std::string& png, const PixelRect& shown, const PixelRect& data,
+                const RgbImage& image) {
+    const RgbImage picture = {shown.Width(), shown.Height(), MovedTo(shown, data, 3, image.values)};
+    WritePng(png, MeansOf(picture), picture.width, picture.height);
+}
+
 ExitCode RunDenoise(Options options) {
     using std::filesystem::path;
     if (options.output.empty())
@@ -97,15 +114,18 @@ ExitCode RunDenoise(Options options) {
     ExrImage exr = ReadExr(options.input);
     NoisyPicture picture;
     if (options.half.empty()) {
+        CheckColours(options.input, exr);
         picture = ReadPicture(exr, options.input);
     } else {
         ExrImage half = ReadExr(options.half);
+        UseOneWindow(options, &exr, &half);
         UseOwnNames(options.input, &exr);
         UseOwnNames(options.half, &half);
         picture = ReadPicture(exr, options.input, half, options.half);
     }
 
     CheckHalves(options, exr, picture);
+    const PixelRect shown = ShownWindow(exr, options.input);
 
     const PixelRect region{{0, 0}, {exr.width, exr.height}};
     ScheduleOptions schedule;
@@ -114,6 +134,9 @@ ExitCode RunDenoise(Options options) {
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
     // The next steps need the memory.
     std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
+    for (ExrChannel& channel : exr.channels)  // depths may be infinite
+        std::ranges::replace_if(
+            channel.values, [](float v) { return std::isnan(v); }, 0.f);
     const auto start = std::chrono::steady_clock::now();
     const DenoisedImage denoised = DenoiseWithReports(std::move(picture), region, blocks,
                                                       StyleOfReports(false, options.quiet));
@@ -125,7 +148,7 @@ ExitCode RunDenoise(Options options) {
     ResultFiles results;
     results.Write(options.output, [&](const std::string& file) { WriteExr(file, exr); });
     results.Write(png, [&](const std::string& file) {
-        WritePng(file, MeansOf(denoised.image), exr.width, exr.height);
+        WriteShown(file, shown, DataWindow(exr), denoised.image);
     });
     for (const std::string& name : results.Names()) fmt::print("{}\n", name);
     results.Check();

@@ -1,19 +1,21 @@
 // Options whose values are names, or numbers in a range. All options check their numbers by these:
-// CLI11's own checks pass NaN, and whole numbers beyond their type's range.
+// CLI11's own checks pass NaN, whole numbers beyond their type's range, hexadecimal and octal ones.
 #pragma once
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "renderer/base/enum_names.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -60,18 +62,32 @@ CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
         ->default_str(NameOf(*value));
 }
 
+// Returns why a text is no number from `least` to `most` in decimal notation, "" if it is one.
+// Whole numbers with zeros in front are none: CLI11 reads them as octal ones.
+template <typename T>
+std::string ProblemOfNumber(std::string_view text, T least, T most) {
+    constexpr bool isWhole = std::is_integral_v<T>;
+    const std::string quoted = Printable(text);
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    T value{};
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    const std::string_view digits = text.substr(text.starts_with('-') ? 1 : 0);
+    const bool isOctal = isWhole && digits.size() > 1 && digits[0] == '0';
+    if (error == std::errc::invalid_argument || rest != end || isOctal)
+        return fmt::format("'{}' is not a {} such as {}", quoted,
+                           isWhole ? "whole number" : "number", isWhole ? "20" : "0.5");
+    const bool isWithin = error == std::errc() && value >= least && value <= most;
+    return isWithin ? ""
+                    : fmt::format("'{}' is not in the range from {} to {}", quoted, least, most);
+}
+
 // Checks that a value is a number from `least` to `most`.
 template <typename T>
 CLI::Validator Between(T least, T most) {
-    const CLI::Range range(least, most);
-    const auto check = [=](std::string& text) -> std::string {
-        T value;
-        if (std::is_floating_point_v<T> && CLI::detail::lexical_cast(text, value) &&
-            !std::isfinite(double(value)))
-            return fmt::format("Value {} not in range [{} - {}]", text, least, most);
-        return range(text);
-    };
-    return CLI::Validator(check, range.get_description());
+    return CLI::Validator(
+        [=](const std::string& text) { return ProblemOfNumber(text, least, most); },
+        CLI::Range(least, most).get_description());
 }
 
 // Checks that a value is a finite number above 0.
@@ -82,15 +98,7 @@ inline CLI::Validator AboveZero() {
 
 // Checks that a value is a whole number of up to 64 bits.
 inline CLI::Validator WholeNumber() {
-    const auto check = [](std::string& text) -> std::string {
-        uint64_t value;
-        const char* const end = text.data() + text.size();
-        const auto [rest, error] = std::from_chars(text.data(), end, value);
-        if (error == std::errc() && rest == end) return "";
-        return fmt::format("{} is not a whole number from 0 to {}", text,
-                           std::numeric_limits<uint64_t>::max());
-    };
-    return CLI::Validator(check, "NONNEGATIVE");
+    return Between<uint64_t>(0, std::numeric_limits<uint64_t>::max()).description("NONNEGATIVE");
 }
 
 }  // namespace lull

@@ -178,10 +178,7 @@ std::string FirstDifference(const std::string& text, const std::string& other) {
 // render.
 bool IsFinished(const PreparedRender& p) {
     const RenderFiles& files = p.files;
-    const bool hasRanges = !p.render.provenance.logRatios.empty();
-    for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds,
-                                    hasRanges ? files.ranges : "", files.report})
-        if (!file.empty() && !IsThere(file)) return false;
+    if (!IsThere(files.exr) || !AreWhole(files, p.render.provenance)) return false;
     std::string found;
     try {
         const ExrImage image = ReadExr(files.exr);

@@ -1,8 +1,12 @@
 #include "renderer/commands/render_files.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 
+#include "renderer/files/file_contents.h"
 #include "renderer/files/file_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/pages/html_page.h"
 #include "renderer/render/provenance.h"
 #include "renderer/results/block_files.h"
@@ -14,6 +18,21 @@ namespace lull {
 namespace {
 
 using std::filesystem::path;
+
+// Returns whether a render that ends by itself has a file of ranges.
+bool HasRanges(const Provenance& provenance) { return !provenance.logRatios.empty(); }
+
+// Returns whether a file is there and was not cut short.
+bool IsWhole(const std::string& file) try {
+    if (!IsThere(file)) return false;
+    if (file.ends_with(".png")) return ReadImage(file).width > 0;
+    const char* const end = file.ends_with(".json")   ? "\n}\n"
+                            : file.ends_with(".html") ? "</html>\n"
+                                                      : "\n";
+    return ReadFile(file).View().ends_with(end);
+} catch (const Error&) {
+    return false;
+}
 
 }  // namespace
 
@@ -45,6 +64,14 @@ std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
     return outputs;
 }
 
+bool AreWhole(const RenderFiles& files, const Provenance& provenance) {
+    const std::initializer_list<std::string> others = {files.png, files.sppMap, files.thresholds,
+                                                       HasRanges(provenance) ? files.ranges : "",
+                                                       files.report};
+    return std::ranges::all_of(
+        others, [](const std::string& file) { return file.empty() || IsWhole(file); });
+}
+
 ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
     const PictureOrigin& origin = render.origin;
     const Provenance& provenance = origin.provenance;
@@ -74,7 +101,7 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
         results.Write(files.thresholds, [&](const std::string& file) {
             WriteThresholdsOf(file, provenance.scene, ThresholdsOf(provenance, result));
         });
-    if (result.cancelled || provenance.logRatios.empty())
+    if (result.cancelled || !HasRanges(provenance))
         ResultFiles::RemoveOld(files.ranges);
     else
         results.Write(files.ranges,

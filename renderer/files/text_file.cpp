@@ -1,45 +1,20 @@
 #include "renderer/files/text_file.h"
 
-#include <algorithm>
 #include <string>
+
+#include "stopping/base/text_encoding.h"
 
 namespace lull {
 
-using namespace std::string_view_literals;
-
-std::string_view WideEncoding(std::string_view bytes) {
-    if (bytes.starts_with("\xff\xfe\0\0"sv) || bytes.starts_with("\0\0\xfe\xff"sv)) return "UTF-32";
-    const bool isEven = bytes.size() % 2 == 0;
-    if (isEven && (bytes.starts_with("\xff\xfe"sv) || bytes.starts_with("\xfe\xff"sv)))
-        return "UTF-16";
-    // Of characters that every text is full of, one byte of two, or three of four, is 0.
-    constexpr size_t kLookedAt = 1024, kLeast = 8;
-    const size_t size = std::min(kLookedAt, bytes.size()) / 4 * 4;
-    if (size < kLeast) return "";
-    size_t zeros[4] = {};
-    for (size_t i = 0; i < size; ++i) zeros[i % 4] += bytes[i] == '\0';
-    const size_t rows = size / 4, many = rows - rows / 8, few = rows / 8;
-    const auto isWide = [&](std::string_view pattern) {  // z: zeros
-        for (size_t i = 0; i < 4; ++i)
-            if (pattern[i] == 'z' ? zeros[i] < many : zeros[i] > few) return false;
-        return true;
-    };
-    if (isWide("xzzz") || isWide("zzzx")) return "UTF-32";
-    return isWide("xzxz") || isWide("zxzx") ? "UTF-16" : "";
-}
-
 std::string_view WithoutByteOrderMark(std::string_view text, const FileLoc& loc) {
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     if (const std::string_view wide = WideEncoding(text); !wide.empty())
         throw Error(loc, "the text is " + std::string(wide) + "; save it as UTF-8");
     return text;
 }
 
 std::string_view CleanText(std::string_view text, const FileLoc& loc) {
-    text = WithoutByteOrderMark(text, loc);
-    const size_t last = text.find_last_not_of("\x1a\0 \t\r\n"sv);
-    if (last == text.npos) return text;  // there is no text that these would end
-    return text.substr(0, text.find_first_of("\x1a\0"sv, last + 1));
+    return WithoutEndMarks(WithoutByteOrderMark(text, loc));
 }
 
 }  // namespace lull

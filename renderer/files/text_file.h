@@ -14,7 +14,4 @@ std::string_view WithoutByteOrderMark(std::string_view text, const FileLoc& loc)
 // Does so, and leaves out Control-Z and NUL at the end, by which old programs mark it.
 std::string_view CleanText(std::string_view text, const FileLoc& loc);
 
-// Returns "UTF-16" or "UTF-32" for such text, "" for all else.
-std::string_view WideEncoding(std::string_view bytes);
-
 }  // namespace lull

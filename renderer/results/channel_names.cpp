@@ -46,6 +46,9 @@ bool IsPass(const std::string& layer, const std::string& pass) {
     return layer == pass + "." || layer.ends_with("." + pass + ".");
 }
 
+// Channels with which Y is no grey value.
+constexpr std::array kBesideY = {"X", "RY", "BY", "U", "V", "Cb", "Cr", "Co", "Cg", "C", "M", "K"};
+
 void UseColours(const std::string& file, ExrImage* image) {
     if (HasAll(*image, "", "RGB")) return;
     std::vector<std::string> layers = LayersWith(*image, "RGB");
@@ -80,7 +83,23 @@ void UsePass(std::initializer_list<const char*> passes, const std::string& to,
 
 }  // namespace
 
+void CheckColours(const std::string& file, const ExrImage& image) {
+    if (image.attributes.contains("chromaticities"))
+        throw Error(
+            fmt::format("{}: its colours have other primaries than those of Rec. 709; "
+                        "convert it to linear Rec. 709. Its channels are {}",
+                        file, ListOfChannels(image)));
+    if (HasAll(image, "", "RGB") || !image.Find("Y")) return;
+    for (const char* channel : kBesideY)
+        if (image.Find(channel))
+            throw Error(
+                fmt::format("{}: Y and {} are colours of another space; convert it to R, G "
+                            "and B. Its channels are {}",
+                            file, channel, ListOfChannels(image)));
+}
+
 void UseOwnNames(const std::string& file, ExrImage* image) {
+    CheckColours(file, *image);
     UseColours(file, image);
     UsePass({"Denoising Albedo"}, "albedo.", "RGB", image);
     UsePass({"Denoising Normal", "Normal"}, "N.", "XYZ", image);

@@ -14,6 +14,11 @@ namespace lull {
 // its channels if there are no colours, or several.
 void UseOwnNames(const std::string& file, ExrImage*);
 
+// Throws Error with `file` and a list of its channels unless its colours are linear ones of Rec.
+// 709: R, G and B of other primaries ("chromaticities"), or a Y that is one of X, Y and Z, of luma
+// and chroma, or of inks.
+void CheckColours(const std::string& file, const ExrImage&);
+
 // Lists the names of channels for messages, the first of them where there are many.
 std::string ListOfChannels(const ExrImage&);
 

@@ -5,27 +5,18 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "stopping/base/text_encoding.h"
+
 namespace lull {
 
-namespace {
-
-using namespace std::string_view_literals;
-
-bool IsUtf16(std::string_view text) {
-    if (text.starts_with("\xff\xfe"sv) || text.starts_with("\xfe\xff"sv)) return true;
-    // Every second byte of an ASCII character is 0.
-    return text.size() >= 4 && (text[0] == '\0') != (text[1] == '\0') &&
-           (text[0] == '\0') == (text[2] == '\0') && (text[1] == '\0') == (text[3] == '\0');
-}
-
-}  // namespace
-
 TextLines::TextLines(std::istream& in, const std::string& name)
-    : text(std::istreambuf_iterator<char>(in), {}) {
+    : name(name), text(std::istreambuf_iterator<char>(in), {}) {
     if (in.bad()) throw std::runtime_error(name + ": cannot be read");
-    if (IsUtf16(text)) throw std::runtime_error(name + ": the text is UTF-16; save it as UTF-8");
-    if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
-    text.resize(std::min(text.find_first_of("\x1a\0"sv), text.size()));
+    if (const std::string_view wide = WideEncoding(text); !wide.empty())
+        throw std::runtime_error(name + ": the text is " + std::string(wide) +
+                                 "; save it as UTF-8");
+    if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+    text.resize(WithoutEndMarks(text).size());
 }
 
 bool TextLines::Next() {
@@ -34,6 +25,10 @@ bool TextLines::Next() {
     line = text.substr(next, end - next);
     next = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     ++number;
+    if (line.find_first_of(kEndMarks) != line.npos)
+        throw std::runtime_error(name + ":" + std::to_string(number) +
+                                 ": Control-Z or NUL, which mark the end of a text, with more text "
+                                 "behind; remove one or the other");
     return true;
 }
 

@@ -39,6 +39,14 @@ TEST(CommandLine, RefusesWrongUsage) {
           "render scene.pbrt --seed 1.5",
           "render scene.pbrt --seed 18446744073709551616",
           "selftest --seed 18446744073709551616",
+          "render scene.pbrt --seed 0x10",
+          "render scene.pbrt --spp 0x10",
+          "render scene.pbrt --spp 010",
+          "render scene.pbrt --spp ' 5'",
+          "render scene.pbrt --spp \"1'000\"",
+          "render scene.pbrt --spp 99999999999999999999",
+          "render scene.pbrt --caution 0x1p2",
+          "render scene.pbrt --resolution 0x10x8",
           "render scene.pbrt --exposure nan",
           "render scene.pbrt --exposure inf",
           "render scene.pbrt --environment a.exr --environment-rotation nan",
@@ -72,6 +80,17 @@ TEST(CommandLine, RefusesWrongUsage) {
         EXPECT_EQ(outcome.out, "") << arguments;
     }
     EXPECT_EQ(directory.CountFiles(), 1);
+}
+
+TEST(CommandLine, ReadsNumbersInDecimalNotation) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(kSphere));
+    const std::string render = "render scene.pbrt --quiet -o a.exr --spp ";
+    for (const char* good : {"+2", "2 --exposure +.5", "2 --exposure -1e-1", "2 --seed +7"})
+        ExpectSuccess(directory, render + good);
+    EXPECT_TRUE(Contains(RunLull(directory, render + "0x2").err, "'0x2' is not a whole number"));
+    EXPECT_TRUE(Contains(RunLull(directory, render + "0").err,
+                         "'0' is not in the range from 1 to 16777216"));
 }
 
 // Whatever the cap, the pass is the one that was given, or the usual one.

@@ -439,6 +439,17 @@ colorspaces:
     EXPECT_EQ(RunLull(directory, "render scene.pbrt --ocio no.ocio").exitCode, 1);
 }
 
+// Of configurations that are no text, too.
+TEST_F(LayersTest, MessagesOfOpenColorIoCanBePrinted) {
+    directory.Write("raw.ocio", "ocio_profile_version: 1\n\xff\x01\x1b[31mx: [\n: \x80");
+    for (const char* view : {"--ocio raw.ocio", "--ocio raw.ocio --view \xff\x1b[31m"}) {
+        const Outcome bad = RunLull(directory, "render scene.pbrt -o c.exr " + std::string(view));
+        EXPECT_EQ(bad.exitCode, 1);
+        EXPECT_TRUE(Contains(bad.err, "raw.ocio")) << bad.err;
+        for (const char c : bad.err) EXPECT_TRUE((c >= ' ' && c < 0x7f) || c == '\n') << bad.err;
+    }
+}
+
 // What a viewer has put together at the end is what is in the file.
 TEST_F(LayersTest, ViewersSeeTheImage) {
     ViewerServer server;

@@ -74,17 +74,22 @@ TEST(Sequence, KnowsFramesThatAreNotDone) {
     const std::string command =
         std::string(kRender) + "--frames 0:0.5:4 --checkpoint c.h5 --resume --report r.json ";
     ExpectSuccess(directory, command + "-o a.exr");
-    const std::string whole = ReadBytes(directory.File("a.0001.exr"));
     EXPECT_EQ(ExpectSuccess(directory, command + "-o a.exr").out, "");
     for (const char* file :
          {"a.0001.png", "a.0001.spp.png", "a.0001.thresholds.csv", "r.0001.json", "a.0001.exr"}) {
-        std::filesystem::remove(directory.File(file));
-        EXPECT_TRUE(ExpectSuccess(directory, command + "-o a.exr").out.starts_with("a.0001.exr\n"))
-            << file;
-        EXPECT_TRUE(std::filesystem::exists(directory.File(file)));
+        const std::string whole = ReadBytes(directory.File(file));
+        for (const size_t left :
+             {whole.size(), size_t(0), whole.size() / 2, whole.size() * 9 / 10}) {
+            if (left == whole.size())
+                std::filesystem::remove(directory.File(file));
+            else
+                directory.Write(file, std::string_view(whole).substr(0, left));
+            EXPECT_TRUE(
+                ExpectSuccess(directory, command + "-o a.exr").out.starts_with("a.0001.exr\n"))
+                << file << ": " << left << " bytes";
+        }
+        EXPECT_EQ(ExpectSuccess(directory, command + "-o a.exr").out, "") << file;
     }
-    directory.Write("a.0001.exr", std::string_view(whole).substr(0, whole.size() / 2));
-    EXPECT_TRUE(ExpectSuccess(directory, command + "-o a.exr").out.starts_with("a.0001.exr\n"));
     EXPECT_NO_THROW(ReadExr(directory.File("a.0001.exr")));
     ExpectFailure(directory, command + "-o a.exr --seed 7",
                   {"a.0001.exr", "other settings", "seed=0 there", "seed=7 here"});

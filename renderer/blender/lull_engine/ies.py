@@ -26,7 +26,7 @@ def parse(text):
         vertical, rest = np.array(numbers[13:13 + rows]), numbers[13 + rows:]
         horizontal = np.array(rest[:columns])
         candela = np.array(rest[columns:columns + rows * columns]).reshape(columns, rows) * scale
-    except (ValueError, IndexError) as e:
+    except (ValueError, IndexError, OverflowError) as e:
         raise Unreadable from e
     if kind != 1 or rows < 2 or columns < 1 or not np.isfinite(candela).all() or (np.diff(vertical) <= 0).any() \
             or (np.diff(horizontal) <= 0).any():

@@ -1,6 +1,7 @@
 #include "renderer/image/files/exr_file.h"
 
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -13,6 +14,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 #include <ImfVersion.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -48,6 +50,21 @@ const Imf::Channel& ChannelOf(const Imf::Header& header, const std::string& name
     return header.channels()[name.c_str()];
 }
 
+// Returns the chromaticities of colours as text, "" for those of Rec. 709.
+std::string OtherPrimaries(const Imf::Chromaticities& given) {
+    constexpr float kSlack = 0.005f;  // usual figures have two to four digits
+    const Imf::Chromaticities usual;
+    std::string text;
+    bool isOther = false;
+    for (const auto part : {&Imf::Chromaticities::red, &Imf::Chromaticities::green,
+                            &Imf::Chromaticities::blue, &Imf::Chromaticities::white}) {
+        const Imath::V2f xy = given.*part;
+        isOther |= !((xy - usual.*part).length() <= kSlack);
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", xy.x, xy.y);
+    }
+    return isOther ? text : "";
+}
+
 std::map<std::string, ExrAttribute> AttributesOf(const Imf::Header& header) {
     std::map<std::string, ExrAttribute> attributes;
     for (auto a = header.begin(); a != header.end(); ++a) {
@@ -58,6 +75,9 @@ std::map<std::string, ExrAttribute> AttributesOf(const Imf::Header& header) {
             attributes[a.name()] = i->value();
         } else if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(value)) {
             attributes[a.name()] = f->value();
+        } else if (const auto* c = dynamic_cast<const Imf::ChromaticitiesAttribute*>(value)) {
+            if (const std::string text = OtherPrimaries(c->value()); !text.empty())
+                attributes[a.name()] = text;
         } else if (const auto* m = dynamic_cast<const Imf::M44fAttribute*>(value)) {
             using RowMajor = Eigen::Matrix<float, 4, 4, Eigen::RowMajor>;
             attributes[a.name()] =

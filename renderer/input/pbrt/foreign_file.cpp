@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "renderer/files/text_file.h"
+#include "stopping/base/text_encoding.h"
 
 namespace lull {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "renderer/files/text_file.h"
 #include "renderer/input/pbrt/foreign_file.h"
+#include "stopping/base/text_encoding.h"
 
 namespace lull {
 namespace {

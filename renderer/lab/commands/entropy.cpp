@@ -176,7 +176,7 @@ ExitCode RunEntropy(const Options& options) {
         fmt::print("{:<{}}  {:>6}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}\n", "picture", width,
                    "spp", "H", "H1", "H2", "mean H", "mean H1", "mean H2");
     for (const Source& source : sources) {
-        const RgbImage image = ReadComparedFile(source.file, source.file).image.image;
+        const RgbImage image = ReadShownPicture(source.file);
         EntropiesOfPicture picture;
         try {
             picture =

@@ -8,6 +8,8 @@
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
 #include "renderer/image/image_io.h"
+#include "renderer/results/channel_names.h"
+#include "renderer/results/exr_windows.h"
 
 namespace lull {
 
@@ -38,7 +40,7 @@ ComparedFile ReadDisplayFile(const std::string& path, const std::string& name) {
     if (IsTiff(path) && !std::holds_alternative<std::vector<uint8_t>>(picture.texels))
         throw Error(path + ": of TIFF files, only those of 8 bits are compared; make it an EXR");
     ComparedFile file;
-    file.region = {{0, 0}, {picture.width, picture.height}};
+    file.region = file.shown = {{0, 0}, {picture.width, picture.height}};
     file.image.name = name;
     file.image.isDisplay = true;
     const size_t channels = size_t(picture.channels);
@@ -72,8 +74,10 @@ bool IsImageFile(const std::string& path) {
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name) {
     if (IsDisplayFile(path)) return ReadDisplayFile(path, name);
     const ExrImage exr = ReadExr(path);
+    CheckColours(path, exr);
     ComparedFile file;
-    file.region = {exr.origin, exr.origin + Vec2i(exr.width, exr.height)};
+    file.region = DataWindow(exr);
+    file.shown = ShownWindow(exr, path);
     file.image.name = name;
     RgbImage& image = file.image.image;
     image = {exr.width, exr.height, std::vector<float>(size_t(file.region.Area()) * 3)};
@@ -94,9 +98,38 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name) 
     return file;
 }
 
+namespace {
+
+void MoveTo(const PixelRect& window, ComparedFile* file) {
+    file->image.image = {window.Width(), window.Height(),
+                         MovedTo(window, file->region, 3, file->image.image.values)};
+    if (!file->spp.empty()) file->spp = MovedTo(window, file->region, 1, file->spp);
+    file->region = window;
+}
+
+bool IsPlaced(const ComparedFile& file) { return !file.image.isDisplay; }
+
+// Moves images to the window of the picture if they have data of different regions.
+void UseOneWindow(std::vector<ComparedFile>* files) {
+    const auto first = std::ranges::find_if(*files, IsPlaced);
+    const auto isElsewhere = [&](const ComparedFile& file) {
+        return IsPlaced(file) && !(file.region == first->region);
+    };
+    if (std::ranges::none_of(*files, isElsewhere)) return;
+    for (ComparedFile& file : *files)
+        if (IsPlaced(file)) MoveTo(file.shown, &file);
+}
+
+}  // namespace
+
+RgbImage ReadShownPicture(const std::string& path) {
+    ComparedFile file = ReadComparedFile(path, path);
+    MoveTo(file.shown, &file);
+    return std::move(file.image.image);
+}
+
 PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string& reference) {
-    const auto isPlaced = [](const ComparedFile& file) { return !file.image.isDisplay; };
-    const auto first = std::ranges::find_if(files, isPlaced);
+    const auto first = std::ranges::find_if(files, IsPlaced);
     const PixelRect region = first == files.end() ? files.back().region : first->region;
     for (const ComparedFile& file : files) {
         if (!HaveOneSize(file.region, region))
@@ -104,7 +137,7 @@ PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string
                                     reference, files.front().image.name,
                                     SizeOf(files.front().region), files.back().image.name,
                                     SizeOf(files.back().region)));
-        if (isPlaced(file) && !(file.region == region))
+        if (IsPlaced(file) && !(file.region == region))
             throw Error(fmt::format("{}: shows another part of the image than the {} one",
                                     reference, files.front().image.name));
     }
@@ -140,16 +173,18 @@ void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file) {
 }
 
 RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region) {
-    RgbImage image = ReadComparedFile(path, path).image.image;
-    if (const PixelRect own = {{0, 0}, {image.width, image.height}}; !HaveOneSize(own, region))
-        throw Error(fmt::format("{}: has {}, not {}", path, SizeOf(own), SizeOf(region)));
-    return image;
+    ComparedFile file = ReadComparedFile(path, path);
+    if (HaveOneSize(file.shown, region)) MoveTo(file.shown, &file);
+    if (!HaveOneSize(file.region, region))
+        throw Error(fmt::format("{}: has {}, not {}", path, SizeOf(file.shown), SizeOf(region)));
+    return std::move(file.image.image);
 }
 
 ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
                               const Comparison& comparison) {
     ComparedFile file = ReadComparedFile(path, name);
     const PixelRect& region = comparison.region;
+    if (!(file.region == region) && file.shown == region) MoveTo(region, &file);
     if (!HaveOneSize(file.region, region))
         throw Error(fmt::format("{}: has {}, the scene's image {}", path, SizeOf(file.region),
                                 SizeOf(region)));
@@ -163,6 +198,7 @@ ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
 
 Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
                         const ScheduleOptions& schedule) {
+    UseOneWindow(&files);
     Comparison comparison = BeginComparison(CommonRegion(files, reference), schedule);
     for (ComparedFile& file : files) {
         SetCosts(comparison.blocks, &file);

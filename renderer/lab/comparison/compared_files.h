@@ -8,6 +8,7 @@ namespace lull {
 struct ComparedFile {
     ComparedImage image;
     PixelRect region;        // of the whole image that it covers
+    PixelRect shown;         // the window of the picture (ShownWindow()), black outside of `region`
     std::vector<float> spp;  // of each pixel; empty: not known
 };
 
@@ -24,8 +25,11 @@ bool IsDisplayFile(const std::string& path);
 // linear or not.
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
 
-// Reads an image as ReadComparedFile() does. Throws Error if it does not have the size of the
-// region.
+// Reads such a file as the picture that it shows (ShownWindow()). Throws Error.
+RgbImage ReadShownPicture(const std::string& path);
+
+// Reads an image as ReadShownPicture() does, or its data alone if they have the size of the region.
+// Throws Error if neither has.
 RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region);
 
 // Reads an image to be compared with others of a region and blocks that are known; a picture for
@@ -34,7 +38,8 @@ RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region);
 ComparedImage ReadImageBeside(const std::string& path, const std::string& name, const Comparison&);
 
 // Returns a comparison of files, the last of which is the reference, read from the file of that
-// name; the cap is the most samples that it has. Throws Error if they do not fit together.
+// name: of their data, or, if these are of different regions, of the pictures that they show. The
+// cap is the most samples that it has. Throws Error if they do not fit together.
 Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
                         const ScheduleOptions&);
 

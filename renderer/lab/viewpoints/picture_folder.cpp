@@ -89,7 +89,7 @@ PictureFolder FindPictures(const std::string& folder, const std::string& name) {
     if (const std::string problem = CheckViewpointName(found.name); !problem.empty())
         throw Error(fmt::format("--images {}: {}", folder, problem));
     if (found.files.empty()) throw Error(fmt::format("--images {}: has no pictures", folder));
-    const RgbImage first = ReadComparedFile(found.files.begin()->second, found.name).image.image;
+    const RgbImage first = ReadShownPicture(found.files.begin()->second);
     found.width = first.width;
     found.height = first.height;
     return found;
@@ -105,7 +105,7 @@ PictureFolder FindNamedPictures(const std::string& text) {
 
 RgbImage ReadPicture(const PictureFolder& folder, int spp) {
     const std::string& file = folder.files.at(spp);
-    RgbImage image = ReadComparedFile(file, folder.name).image.image;
+    RgbImage image = ReadShownPicture(file);
     if (image.width != folder.width || image.height != folder.height)
         throw Error(fmt::format("{}: has {}x{} pixels, {} has {}x{}", file, image.width,
                                 image.height, folder.files.begin()->second, folder.width,

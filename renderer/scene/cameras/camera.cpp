@@ -5,6 +5,7 @@
 #include "renderer/base/rounding.h"
 #include "renderer/base/sampling.h"
 #include "renderer/files/file_contents.h"
+#include "renderer/input/nonnegative.h"
 #include "renderer/scene/cameras/lens_file.h"
 
 namespace lull {
@@ -149,8 +150,7 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     settings.loc = entity.loc;
     settings.file = Printable(file, 4096);
     settings.interfaces = LoadLens(ResolvePath(description, file), entity.loc);
-    const float diameter = params.GetFloat("aperturediameter", 1);  // millimetres
-    if (!(diameter >= 0)) throw Error(entity.loc, "\"aperturediameter\" has to be at least 0");
+    const float diameter = GetNonnegative(entity, "aperturediameter", 1);  // millimetres
     for (LensInterface& stop : settings.interfaces)
         if (const double radius = 0.0005 * double(diameter); stop.radius == 0) {
             if (IsAbove(radius, stop.apertureRadius))
@@ -174,15 +174,15 @@ void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     const Parameters& params = entity.parameters;
     const std::array<float, 4> screen = ReadScreen(entity, resolution);
     const float fov = camera->projection == Projection::Perspective ? ReadFieldOfView(entity) : 90;
-    camera->lensRadius = params.GetFloat("lensradius", 0);
+    camera->lensRadius = GetNonnegative(entity, "lensradius", 0);
     camera->focalDistance = params.GetFloat("focaldistance", 1e6f);
-    if (!(camera->lensRadius >= 0) || !(camera->focalDistance > 0))
-        throw Error(entity.loc, "\"lensradius\" has to be at least 0, \"focaldistance\" above 0");
+    if (!(camera->focalDistance > 0))
+        throw Error(entity.loc, "\"focaldistance\" has to be above 0");
     // lull's own, of glTF's cameras.
-    camera->clipStart = params.GetFloat("clipstart", 0);
+    camera->clipStart = GetNonnegative(entity, "clipstart", 0);
     camera->clipEnd = params.GetFloat("clipend", kInfinity);
-    if (!(camera->clipStart >= 0) || !(camera->clipEnd > camera->clipStart))
-        throw Error(entity.loc, "\"clipstart\" has to be at least 0, \"clipend\" above it");
+    if (!(camera->clipEnd > camera->clipStart))
+        throw Error(entity.loc, "\"clipend\" has to be above \"clipstart\"");
 
     if (camera->projection == Projection::Environment) {
         camera->lensRadius = 0;  // it has none, though pbrt-v3 reads the parameter

@@ -2,12 +2,20 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/bsdf/medium_presets.h"
+#include "renderer/input/nonnegative.h"
 
 namespace lull {
 namespace {
 
 constexpr float kMostEta = 4, kMostG = 0.99f;
+
+// Returns x, clamped to a range by no more than rounding could have taken it outside.
+float WithinRounding(float x, float least, float most) {
+    const double exact(x);
+    return float(InRange(exact, double(least), double(most)).value_or(exact));
+}
 
 bool IsTabulated(float eta, float g) {
     return eta >= 1 && eta <= kMostEta && std::abs(g) <= kMostG;
@@ -32,10 +40,10 @@ TranslucentSolid::TranslucentSolid(const MaterialReader& in, float g)
     : kr(in.Spectrum("Kr", 1)),
       kt(in.Spectrum("Kt", 1)),
       roughness(in, in.Float("uroughness", 0), in.Float("vroughness", 0)),
-      eta(in.entity.parameters.GetFloat("eta", 1.33f)),
-      g(g),
-      scale(in.entity.parameters.GetFloat("scale", 1)) {
-    if (IsTabulated(eta, g)) table = std::make_shared<const DiffusionTable>(g, eta);
+      eta(WithinRounding(in.entity.parameters.GetFloat("eta", 1.33f), 1, kMostEta)),
+      g(WithinRounding(g, -kMostG, kMostG)),
+      scale(RaisedToZero(in.entity.parameters.GetFloat("scale", 1))) {
+    if (IsTabulated(eta, this->g)) table = std::make_shared<const DiffusionTable>(this->g, eta);
 }
 
 std::string TranslucentSolid::Problem(const MaterialReader& in) const {

@@ -4,6 +4,7 @@
 
 #include "renderer/base/rounding.h"
 #include "renderer/bsdf/medium_presets.h"
+#include "renderer/input/nonnegative.h"
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
 #include "stopping/base/input_file.h"
@@ -17,11 +18,16 @@ std::pair<Ray, float> Normalised(const Ray& ray) {
     return {{ray.o, ray.d / length, ray.tMax * length}, 1 / length};
 }
 
-void CheckCoefficient(const MediumEntity& entity, const char* name, const Rgb& value) {
+// Returns a coefficient of scattering or absorption; throws Error.
+Rgb ReadCoefficient(const MediumEntity& entity, const char* name, const Rgb& otherwise,
+                    float scale) {
+    const Rgb value =
+        (entity.parameters.GetSpectrum(name, otherwise) * scale).unaryExpr(&RaisedToZero);
     if (!(value >= 0).all() || !IsFinite(value))
         throw Error(entity.loc, fmt::format("\"{}\" of medium \"{}\" has to be finite and at least "
                                             "0",
                                             name, Printable(entity.mediumName)));
+    return value;
 }
 
 // A ray is stopped to look at the density as often, on the mean, as its length times the greatest
@@ -49,7 +55,8 @@ void ReadDensity(const MediumEntity& entity, GridMedium* grid) {
                                             Printable(entity.mediumName), values.size(),
                                             grid->size.x(), grid->size.y(), grid->size.z()));
     grid->density.assign(values.begin(), values.end());
-    for (const float d : grid->density) {
+    for (float& d : grid->density) {
+        d = RaisedToZero(d);
         if (!(d >= 0) || !std::isfinite(d))
             throw Error(entity.loc,
                         fmt::format("medium \"{}\": a density is not finite or negative",
@@ -100,10 +107,8 @@ Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
                      Printable(preset));
     const float scale = params.GetFloat("scale", 1);
     float g = params.GetFloat("g", 0);
-    sigmaA = params.GetSpectrum("sigma_a", sigmaA) * scale;
-    sigmaS = params.GetSpectrum("sigma_s", sigmaS) * scale;
-    CheckCoefficient(entity, "sigma_a", sigmaA);
-    CheckCoefficient(entity, "sigma_s", sigmaS);
+    sigmaA = ReadCoefficient(entity, "sigma_a", sigmaA, scale);
+    sigmaS = ReadCoefficient(entity, "sigma_s", sigmaS, scale);
     constexpr float kMostForward = 0.99999f;  // with 1, light would go straight on
     if (!InRange(double(g), -1, 1))
         throw Error(entity.loc, fmt::format("\"g\" of medium \"{}\" has to lie between -1 and 1",

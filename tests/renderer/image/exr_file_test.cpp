@@ -1,10 +1,12 @@
 // EXRs that lull does not write itself, as OpenEXR writes them.
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
@@ -133,6 +135,20 @@ TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
     file.directory.Write("a.exr", channels);
     const std::string damaged = ErrorOf([&] { ReadExr(file.path); });
     EXPECT_TRUE(Contains(damaged, "its list of channels is damaged")) << damaged;
+}
+
+TEST(ExrFile, KnowsOtherPrimaries) {
+    for (const bool isOther : {false, true}) {
+        OneChannel file;
+        file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+        Imf::Chromaticities primaries;
+        if (isOther) primaries.red = {0.7347f, 0.2653f};  // ACES
+        Imf::addChromaticities(file.header, primaries);
+        Imf::OutputFile out(file.path.c_str(), file.header);
+        out.setFrameBuffer(file.Frame(Imf::FLOAT, file.values.data()));
+        out.writePixels(5);
+        EXPECT_EQ(ReadExr(file.path).attributes.contains("chromaticities"), isOther);
+    }
 }
 
 // Writes Y = 1, 2, ... over the data window, of which a picture shows the display window.

@@ -102,6 +102,25 @@ TEST(GltfLights, AreSpheresThatShineAsSpots) {
     EXPECT_NEAR(light.GetFloat("conedeltaangle", 0), 90 / kPi, 1e-4f);
 }
 
+// They shine along the -z axis that a node's negative scale has turned, whatever its size.
+TEST(GltfLights, AreMirroredWithTheirNodes) {
+    const auto axisOf = [](const std::vector<double>& scale) {
+        GltfFile file;
+        file.Node({{"mesh", file.Triangle()}});
+        file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+        file.root["extensions"] = {
+            {"KHR_lights_punctual",
+             {{"lights", {{{"type", "spot"}, {"spot", {{"outerConeAngle", 1}}}}}}}}};
+        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"scale", scale}});
+        const LightEntity light = kFolder.Parse(file).lights.at(0);
+        EXPECT_NEAR(light.parameters.GetFloat("coneangle", 0), 180 / kPi, 1e-4f);
+        return TransformVector(light.worldFromLight, {0, 0, -1});
+    };
+    EXPECT_TRUE(axisOf({-2, 2, 2}).isApprox(Vec3f(0, 0, -1)));
+    EXPECT_TRUE(axisOf({2, 2, -2}).isApprox(Vec3f(0, 0, 1)));
+    EXPECT_TRUE(axisOf({-3, -3, -3}).isApprox(Vec3f(0, 0, 1)));
+}
+
 TEST(GltfLights, HaveAProfileOfOurOwn) {
     const auto fileWith = [](const json& light) {
         GltfFile file;

@@ -25,21 +25,32 @@ TEST(TextLines, EndAsOnAllSystems) {
     for (const std::string& text : {"a\n\nb c"s, "a\n\nb c\n"s, "a\r\n\r\nb c\r\n"s, "a\r\rb c\r"s,
                                     "\xef\xbb\xbf"
                                     "a\n\nb c\n\x1a"s,
-                                    "a\n\nb c\n\0"s, "a\n\nb c\x1amore\n"s})
+                                    "a\n\nb c\n\0"s, "a\n\nb c\x1a\0\r\n\0"s})
         EXPECT_EQ(LinesOf(text), expected) << text;
     EXPECT_TRUE(LinesOf("").empty());
 }
 
-TEST(TextLines, RefuseUtf16) {
+std::string MessageOf(const std::string& text) {
+    try {
+        LinesOf(text);
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(TextLines, RefuseOtherEncodings) {
     for (const std::string& text : {"\xff\xfe"
                                     "a\0\n\0"s,
-                                    "\xfe\xff\0a\0\n"s, "a\0b\0"s, "\0a\0b"s})
-        try {
-            LinesOf(text);
-            ADD_FAILURE() << text;
-        } catch (const std::runtime_error& error) {
-            EXPECT_EQ(error.what(), "a.csv: the text is UTF-16; save it as UTF-8"s);
-        }
+                                    "\xfe\xff\0a\0\n"s, "a\0;\0001\0;\0"s, "\0a\0;\0001\0;"s})
+        EXPECT_EQ(MessageOf(text), "a.csv: the text is UTF-16; save it as UTF-8");
+    EXPECT_EQ(MessageOf("\xff\xfe\0\0a\0\0\0"s), "a.csv: the text is UTF-32; save it as UTF-8");
+}
+
+// Once, all behind the mark was left out without a word.
+TEST(TextLines, RefuseMarksOfTheEndAmidTheText) {
+    for (const std::string& text : {"a\nb\x1a\nc"s, "a\r\nb\0c"s, "a\r\x1a\rc\r"s})
+        EXPECT_TRUE(MessageOf(text).starts_with("a.csv:2: Control-Z or NUL")) << MessageOf(text);
 }
 
 }  // namespace

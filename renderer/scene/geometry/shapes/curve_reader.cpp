@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/input/nonnegative.h"
 #include "renderer/scene/geometry/shapes/placement.h"
 #include "stopping/base/input_file.h"
 
@@ -103,14 +104,8 @@ std::vector<Vec3f> ReadNormals(const Entity& entity, CurveKind kind, size_t piec
 }
 
 std::array<float, 2> ReadWidths(const Entity& entity) {
-    const Parameters& params = entity.parameters;
-    const float width = params.GetFloat("width", 1);
-    const std::array widths = {params.GetFloat("width0", width), params.GetFloat("width1", width)};
-    for (const float w : widths)
-        if (!(w >= 0) || !std::isfinite(w))
-            throw Error(entity.loc,
-                        fmt::format("the width of a curve is {}; it has to be at least 0", w));
-    return widths;
+    const float width = GetNonnegative(entity, "width", 1);
+    return {GetNonnegative(entity, "width0", width), GetNonnegative(entity, "width1", width)};
 }
 
 // Adds the pieces of one strand, in shape space.

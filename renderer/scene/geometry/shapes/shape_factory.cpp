@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/input/loop_subdivision.h"
+#include "renderer/input/nonnegative.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/scene/geometry/shapes/curve_reader.h"
 #include "renderer/scene/geometry/shapes/patches.h"
@@ -165,9 +166,9 @@ Disk MakeDisk(const ShapeEntity& entity) {
     disk.place = PlacementOf(entity, &scale);
     disk.height = scale * params.GetFloat("height", 0);
     disk.radius = scale * params.GetFloat("radius", 1);
-    disk.innerRadius = scale * params.GetFloat("innerradius", 0);
+    disk.innerRadius = scale * GetNonnegative(entity, "innerradius", 0);
     disk.phiMax = PhiMaxOf(params);
-    if (!(disk.radius > 0) || !(disk.innerRadius >= 0) || !(disk.Area() > 0))
+    if (!(disk.radius > 0) || !(disk.Area() > 0))
         throw Error(entity.loc, "the disk has no area; \"radius\" has to be above \"innerradius\"");
     return disk;
 }

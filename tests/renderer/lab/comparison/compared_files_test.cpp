@@ -63,6 +63,33 @@ TEST(ComparedFiles, KeepWhatTheyWereMadeWith) {
     EXPECT_TRUE(ComparisonOf({file}, "a.exr", {.blockSize = 4}).images[0].costs.empty());
 }
 
+// Those of other programs are black outside their data; ours are the part that was rendered.
+TEST(ComparedFiles, ShowPictures) {
+    const TemporaryDirectory directory;
+    const std::string own = WriteGrey(directory, "own.exr");
+    EXPECT_EQ(ReadShownPicture(own).width, kWidth);
+    ExrImage foreign = ReadExr(own);
+    foreign.attributes.clear();
+    const std::string file = directory.File("foreign.exr");
+    WriteExr(file, foreign);
+    const RgbImage picture = ReadShownPicture(file);
+    ASSERT_EQ(Vec2i(picture.width, picture.height), Vec2i(10, kHeight));
+    for (int x = 0; x < 10; ++x)
+        EXPECT_EQ(picture.values[size_t(3 * x)], x < 2 || x >= 8 ? 0 : 0.25f) << x;
+    EXPECT_EQ(ReadImageOfSize(file, {{0, 0}, {10, kHeight}}).values, picture.values);
+    EXPECT_EQ(ReadImageOfSize(file, {{2, 0}, {8, kHeight}}).width, kWidth);
+
+    // Beside data of the same region they are these, beside all of the picture all of it.
+    const ComparedFile part = ReadComparedFile(file, "part");
+    EXPECT_EQ(ComparisonOf({part, part}, file, {}).region, part.region);
+    foreign.origin = {0, 0};
+    WriteExr(file, foreign);
+    const Comparison whole = ComparisonOf({part, ReadComparedFile(file, "other")}, file, {});
+    EXPECT_EQ(whole.region, (PixelRect{{0, 0}, {10, 4}}));
+    EXPECT_EQ(whole.images[0].image.values, picture.values);
+    EXPECT_EQ(ReadImageBeside(file, "a", BeginComparison(whole.region, {})).image.width, 10);
+}
+
 TEST(ComparedFiles, LetPicturesForDisplaysBeOfAnyPart) {
     const TemporaryDirectory directory;
     const ComparedFile display = ReadComparedFile(WriteDisplay(directory), "automatic"),

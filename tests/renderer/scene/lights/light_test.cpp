@@ -153,6 +153,40 @@ TEST(Lights, SpotsWithARadiusShineAsSpots) {
     EXPECT_TRUE(sphere[0].index() != point[0].index());
 }
 
+// A mirror changes neither the width of a cone nor the side of a sphere that shines.
+TEST(Lights, SpotsInMirroredCoordinatesShineWhereTheirImagesDo) {
+    const std::string cone = "\"float coneangle\" [40] \"float conedeltaangle\" [20] ";
+    for (const bool isSphere : {false, true})
+        for (const Vec3f& s : {Vec3f(-1, 1, 1), Vec3f(1, 1, -1), Vec3f(-1, -1, -1)}) {
+            const auto lightOf = [&](const Vec3f& scale, const Vec3f& to) {
+                const std::string spot = fmt::format("\"spot-squared\" \"point to\" [{} {} {}] {}",
+                                                     to.x(), to.y(), to.z(), cone);
+                return fmt::format("Scale {} {} {}\n", scale.x(), scale.y(), scale.z()) +
+                       (isSphere ? "AreaLightSource " + spot +
+                                       "\"rgb L\" [3 2 1]\nShape \"sphere\" \"float radius\" [.01]"
+                                 : "LightSource " + spot + "\"rgb I\" [3 2 1]");
+            };
+            const Vec3f to(0.2f, 0.3f, -1);
+            const LightScene plain(lightOf(Vec3f::Ones(), to)),
+                mirrored(lightOf(s, to.cwiseProduct(s)));
+            Random random(6);
+            int lit = 0;
+            for (int k = 0; k < 300; ++k) {
+                const Vec3f from = 5 * SampleUniformSphere(random.Point());
+                const Vec2f u = random.Point();
+                const auto arriving = [&](const LightScene& scene) -> double {
+                    const auto light = scene.scene->lights.Sample(0, from, u);
+                    return light ? double(light->L.x() / light->pdf) : 0;
+                };
+                const double peak = 3 * (isSphere ? std::numbers::pi * 1e-4 : 1) / 25;
+                lit += arriving(plain) > 0.5 * peak;
+                EXPECT_NEAR(arriving(mirrored), arriving(plain), 0.03 * peak)
+                    << isSphere << " " << s.transpose();
+            }
+            EXPECT_GT(lit, 10);
+        }
+}
+
 // pbrt-v4's portals guide sampling alone.
 TEST(Lights, PortalsAreNoted) {
     for (const char* kind : {"", "\"bool studio\" \"true\""}) {
