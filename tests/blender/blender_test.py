@@ -272,9 +272,11 @@ bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
     def test_exports_one_file(self):
         path = self.folder / "one" / "passes.glb"
         path.parent.mkdir()
+        path.with_suffix(".blend").write_bytes(b"the user's")
         said = self.blender(*self.command("passes", SAMPLES + f"bpy.ops.lull.export(filepath={str(path)!r})")[:-2])
         command = next(line[line.index("lull render"):] for line in said.splitlines() if "lull render" in line)
-        self.assertEqual(sorted(f.name for f in path.parent.iterdir()), ["passes.glb", "passes.world.exr"])
+        self.assertEqual(sorted(f.name for f in path.parent.iterdir()), ["passes.blend", "passes.glb", "passes.world.exr"])
+        self.assertEqual(path.with_suffix(".blend").read_bytes(), b"the user's")
         picture = path.with_name("picture.exr")
         subprocess.run(shlex.split(command) + ["-o", picture, "--quiet"], env=self.environment, check=True,
                        stdout=subprocess.DEVNULL)
