@@ -419,6 +419,45 @@ def world_sky(scene):
     scene.world.node_tree.nodes["Background"].inputs[1].default_value = 0.1
 
 
+def low_sun(scene, **values):
+    world_sky(scene)
+    made = next(n for n in scene.world.node_tree.nodes if n.type == 'TEX_SKY')
+    for name, value in dict(sun_rotation=0.1, sun_intensity=0.3, sun_size=0.2, **values).items():
+        setattr(made, name, value)
+    camera((0, -6, 1), (1.7, 0, 0), lens=35)
+
+
+@case("world: low sun that the camera and a mirror see")
+def world_sun(scene):
+    low_sun(scene, sun_elevation=0.2)
+    dressed(surface('BsdfGlossy', Roughness=0)[0])
+
+
+@case("world: sun that the horizon cuts")
+def world_sunset(scene):
+    low_sun(scene, sun_elevation=0.02)
+
+
+@case("world: sky through nodes, under the noon's sun")
+def world_noon(scene):
+    world_sky(scene)
+    tree = scene.world.node_tree
+    made, hue = next(n for n in tree.nodes if n.type == 'TEX_SKY'), node(tree, 'ShaderNodeHueSaturation', Saturation=0.5, Value=0.7)
+    made.sun_elevation, made.sun_rotation = 1.4, -1
+    tree.links.new(made.outputs[0], hue.inputs['Color'])
+    tree.links.new(hue.outputs[0], tree.nodes["Background"].inputs[0])
+
+
+@case("world: sky with the sun, turned by nodes")
+def world_sky_turned(scene):
+    world_sky(scene)
+    tree = scene.world.node_tree
+    made = next(n for n in tree.nodes if n.type == 'TEX_SKY')
+    turn, where = node(tree, 'ShaderNodeMapping', Rotation=(0, 0, 0.7)), node(tree, 'ShaderNodeTexCoord')
+    tree.links.new(where.outputs['Generated'], turn.inputs['Vector'])
+    tree.links.new(turn.outputs[0], made.inputs[0])
+
+
 @case("world: backdrop other than the light")
 def world_backdrop(scene):
     tree = scene.world.node_tree

@@ -228,7 +228,8 @@ def main():
     lights.add(lamps, scene, flat, base, notes)
     flatten.leave_copies(flat)
     flatten.undress_others(flat)
-    environment, backdrop = world.write(scene, layer, flat.camera, base, what["sharp"], notes)
+    environment, backdrop, suns = world.write(scene, layer, flat.camera, base, what["sharp"], notes)
+    lights.add_suns(suns, flat)
     bpy.context.window.scene = flat
     path = base + what["suffix"]
     export(path)

@@ -45,6 +45,15 @@ def add(lamps, scene, flat, base, notes):
             _place(flat, o, light, matrix)
 
 
+def add_suns(suns, flat):
+    """Adds the suns of the world, which belong to the light group of all infinite lights."""
+    for light, matrix in suns:
+        made = bpy.data.objects.new("environment", light)
+        made.matrix_world = matrix
+        made["lull_source"] = "environment"
+        flat.collection.objects.link(made)
+
+
 def _place(flat, o, data, matrix):
     made = bpy.data.objects.new(o.name, data)
     made.matrix_world = matrix
