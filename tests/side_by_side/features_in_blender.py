@@ -194,6 +194,48 @@ def motion_blur(scene):
         the("ball").keyframe_insert("location", frame=frame)
 
 
+def keyed(owner, path, *values):
+    for frame, value in enumerate(values):
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+
+
+@case("motion blur of the camera, before a sky")
+def motion_of_camera(scene):
+    world_image(scene)
+    motion_blur(scene)
+    scene.cycles.motion_blur_position = 'START'
+    keyed(scene.camera, "rotation_euler", (1.25, 0, 0), (1.25, 0, 0), (1.35, 0, 0.2))
+
+
+@case("motion blur of copies that turn, and of a parent")
+def motion_of_copies(scene):
+    motion_blur(scene)
+    without("ball")
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    keyed(parent, "rotation_euler", (0, 0, 0), (0, 0, 0.4), (0, 0, 0.8))
+    first = cube(matte("box", (0.6, 0.2, 0.1, 1)), at=(0, 0, 0.7))
+    copies = [first, first.copy(), first.copy()]
+    for o, x in zip(copies, (-2, 0, 2)):
+        o.parent, o.location.x = parent, x
+        if o != first:
+            scene.collection.objects.link(o)
+
+
+@case("motion blur of what shines, of a lamp and of a shape")
+def motion_of_lamps(scene):
+    motion_blur(scene)
+    dressed(surface('Emission')[0])
+    keyed(the("key"), "location", (0.5, -2, 5), (1.5, -2, 5), (2.5, -2, 5))
+    o = cube(matte("box", (0.1, 0.2, 0.6, 1)), at=(2, 0, 0.5))
+    o.shape_key_add(name="Basis")
+    key = o.shape_key_add(name="up")
+    for point in key.data:
+        point.co.z *= 3
+    keyed(key, "value", 0, 0.5, 1)
+
+
 @case("percentage of the resolution")
 def percentage(scene):
     scene.render.resolution_percentage = 50

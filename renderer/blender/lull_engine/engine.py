@@ -93,6 +93,8 @@ def export(scene, layer, folder, stopped, name="scene", suffix=".gltf", is_sharp
 def arguments(scene, exported, size):
     """Returns the arguments of `lull render` for an exported scene of this size, as Blender's settings have it."""
     said = [exported["gltf"], "--resolution", "%dx%d" % size, *scene.lull.arguments()]
+    if exported["shutter"]:
+        said += ["--frame", "0", "--shutter", "%.9g" % exported["shutter"]]
     if exported["environment"]:
         said += ["--environment", exported["environment"]]
     if scene.render.film_transparent or exported["backdrop"]:

@@ -10,8 +10,8 @@ _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE'}
 
 
-def flatten(flat, wanted, override, notes):
-    """Fills an empty scene with the meshes of the objects `wanted`, all of the material `override` if there is one.
+def flatten(flat, wanted, override, moving, notes):
+    """Fills an empty scene with the meshes of the objects `wanted`, all of the material `override` if there is one, `moving` as they do.
 
     Returns: its objects. Lights and cameras are left to others.
     """
@@ -24,14 +24,17 @@ def flatten(flat, wanted, override, notes):
         source = instance.parent.original if instance.is_instance else o.original
         if source not in wanted or not (instance.is_instance or _shows_itself(instance, listed)):
             continue
+        before = len(made)
         if o.original.particle_systems and layer.use_strand:
             _place_hair(flat, instance, graph, override, meshes, made)
+            _mark(made[before:], moving, instance)
         if o.type == 'CURVES' and not layer.use_strand or o.type in _MESHES and not layer.use_solid:
             continue
         if o.type == 'CURVES' and (mesh := strands.of_curves(o)):
             if override:
                 mesh.materials[0] = override
             made.append(_place(flat, o.original, mesh, instance.matrix_world.copy()))
+            _mark(made[-1:], moving, instance)
             continue
         if o.type not in _MESHES:
             if o.type not in _UNSEEN:
@@ -44,12 +47,18 @@ def flatten(flat, wanted, override, notes):
             if instance.is_instance:
                 copied[key] = copied.get(key, 0) + 1
             made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
+            _mark(made[-1:], moving, instance)
             shown.add(o.original)
     if override is None:
         _note_copies({name for key, n in copied.items() if n > 1 for name in key[2] if name}, notes)
     for original in shown:
         _note_of(original, notes)
     return made
+
+
+def _mark(placed, moving, instance):
+    for o in placed:
+        moving.mark(o, instance)
 
 
 def _shows_itself(instance, listed):
