@@ -530,6 +530,12 @@ def world_rays(scene):
     scene.world.cycles_visibility.diffuse = False
 
 
+@case("world that the camera alone sees")
+def world_behind(scene):
+    for name in "diffuse", "glossy", "transmission", "scatter":
+        setattr(scene.world.cycles_visibility, name, False)
+
+
 @case("world: volume")
 def world_volume(scene):
     tree = scene.world.node_tree
@@ -541,6 +547,14 @@ def world_volume(scene):
 @case("object that the camera does not see")
 def unseen(scene):
     the("ball").visible_camera = False
+
+
+@case("object and lamp that no ray sees")
+def unseen_by_all(scene):
+    lamp('POINT', 500, (2, -2, 1), shadow_soft_size=0.1).name = "lamp"
+    for name in "camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow":
+        for o in "ball", "lamp":
+            setattr(the(o), "visible_" + name, False)
 
 
 @case("object without a shadow")
@@ -565,6 +579,16 @@ def indirect_only(scene):
     made.objects.link(the("ball"))
     scene.collection.objects.unlink(the("ball"))
     scene.view_layers[0].layer_collection.children["indirect"].indirect_only = True
+
+
+@case("background set, and a grease pencil")
+def background_set(scene):
+    other = bpy.data.scenes.new("set")
+    for name in "ball", "key":
+        other.collection.objects.link(the(name))
+        scene.collection.objects.unlink(the(name))
+    scene.background_set = other
+    bpy.ops.object.gpencil_add(location=(0, -1, 1), type='STROKE')
 
 
 @case("material override of a view layer")

@@ -55,9 +55,19 @@ def rendered_objects(layer_collection):
     return found
 
 
+def _set_objects(scene):
+    """Returns the objects that the background set of a scene shows, and the sets of that set."""
+    found, seen = set(), {scene}
+    while (scene := scene.background_set) and scene not in seen:
+        seen.add(scene)
+        layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+        found |= rendered_objects(layer.layer_collection)
+    return found
+
+
 def show_as_rendered(scene, layer):
     """Sets what the viewport shows, which can be read, to what a render does, also in collections that have copies alone."""
-    wanted = rendered_objects(layer.layer_collection)
+    wanted = rendered_objects(layer.layer_collection) | _set_objects(scene)
     for collection in _collections(layer.layer_collection):
         collection.hide_viewport = False
     for collection in bpy.data.collections:

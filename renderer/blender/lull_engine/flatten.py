@@ -7,7 +7,10 @@ import strands
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
-_UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE'}
+_UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE',
+           'GPENCIL'}  # which Blender draws over pictures of all engines
+_BOUNCES = "diffuse", "glossy", "transmission"
+_RAYS = "camera", "shadow", "volume_scatter", *_BOUNCES
 
 
 def flatten(flat, wanted, override, moving, notes):
@@ -22,7 +25,7 @@ def flatten(flat, wanted, override, moving, notes):
     for instance in graph.object_instances:
         o = instance.object
         source = instance.parent.original if instance.is_instance else o.original
-        if source not in wanted or not (instance.is_instance or _shows_itself(instance, listed)):
+        if source not in wanted or not _is_seen(o.original, _RAYS) or not (instance.is_instance or _shows_itself(instance, listed)):
             continue
         before = len(made)
         if o.original.particle_systems and layer.use_strand:
@@ -59,6 +62,11 @@ def flatten(flat, wanted, override, moving, notes):
 def _mark(placed, moving, instance):
     for o in placed:
         moving.mark(o, instance)
+
+
+def _is_seen(o, rays):
+    """Returns whether any of these kinds of rays see an object."""
+    return any(getattr(o, "visible_" + ray) for ray in rays)
 
 
 def _shows_itself(instance, listed):
@@ -180,5 +188,9 @@ def _note_of(original, notes):
         notes.add("subdivided as its modifier says, not adaptively", original.name)
     if original.is_shadow_catcher or original.is_holdout:
         notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
-    if not all(getattr(original, "visible_" + name, True) for name in ("camera", "diffuse", "glossy", "transmission", "shadow")):
-        notes.add("visible to all rays", original.name)
+    if not original.visible_camera:
+        notes.add("seen by the camera", original.name)
+    if not all(_is_seen(original, (ray,)) for ray in _BOUNCES):
+        notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
+    if not original.visible_shadow:
+        notes.add("casting shadows all the same", original.name)

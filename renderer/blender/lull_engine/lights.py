@@ -24,6 +24,8 @@ def add(lamps, scene, flat, base, notes):
     lacks. `base` begins the names of files beside that of the scene."""
     folded = {}
     for o, matrix in lamps:
+        if not any(getattr(o, "visible_" + ray) for ray in ("camera", "diffuse", "glossy", "transmission", "volume_scatter")):
+            continue
         light = folded.get(o.data)
         if light is None:
             light = folded[o.data] = _folded(o.data.copy(), "%s-profile%d.exr" % (base, len(folded)), notes)

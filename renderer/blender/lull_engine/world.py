@@ -31,14 +31,17 @@ def write(scene, layer, camera, base, is_sharp, notes):
     light = world.copy()
     asks = light.use_nodes and _answer_rays(light, notes)
     unseen = [name for name in _RAYS if not getattr(world.cycles_visibility, name)]
-    if unseen:
+    lights = len(unseen) < len(_RAYS)
+    if unseen and lights:
         notes.say(f"the world '{world.name}' lights all rays but those of the camera, whatever its visibility")
-    if world.cycles.max_bounces < 12:
+    if world.cycles.max_bounces < 12 and lights:
         notes.say(f"the world '{world.name}' lights after any number of bounces")
     backdrop = None
     is_sharp = is_sharp and world.use_nodes and not _background(world)
-    if not scene.render.film_transparent and (asks or not world.cycles_visibility.camera or is_sharp):
+    if not scene.render.film_transparent and (asks or not lights or not world.cycles_visibility.camera or is_sharp):
         backdrop = _photograph(scene, world, camera, base + ".backdrop.exr")
+    if not lights:
+        return None, backdrop, []
     light.cycles_visibility.camera = True
     suns = sun.take(light, lambda seen, size: _pixels(light, seen, size), notes) if world.use_nodes else []
     return _surround(light, base + ".world.exr"), backdrop, suns
