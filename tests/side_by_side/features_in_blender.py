@@ -32,7 +32,7 @@ def begin():
     """A ball on a floor, under a square lamp and a grey sky. Returns the scene."""
     scene, others = bpy.data.scenes.new("case"), list(bpy.data.scenes)
     for kind in ("objects", "meshes", "materials", "lights", "cameras", "worlds", "node_groups", "particles", "curves", "images",
-                 "texts", "collections"):
+                 "texts", "collections", "libraries"):
         blocks = getattr(bpy.data, kind)
         for block in list(blocks):
             blocks.remove(block)
@@ -412,6 +412,12 @@ def falloff(scene):
     tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Linear'], emission.inputs[1])
 
 
+@case("quadratic falloff of a lamp")
+def falloff_quadratic(scene):
+    tree, emission = noded(only('POINT', 50, (1, -2, 3), shadow_soft_size=0).data)
+    tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Quadratic'], emission.inputs[1])
+
+
 @case("IES profile")
 def ies(scene):
     tree, emission = noded(only('POINT', 30, (0, -1, 3), shadow_soft_size=0).data)
@@ -672,6 +678,26 @@ def viewport_values(scene):
     cube(matte("late", (0.1, 0.2, 0.6, 1)), 0.6, (-1, -1.5, 0.4)).modifiers.new("late", 'NODES').node_group = group
 
 
+@case("override of an object of a library, beside a local one of its name")
+def library(scene):
+    made = textured()[0]
+    dressed(made)
+    parts, path = bpy.data.collections.new("parts"), os.path.join(FOLDER, "library.blend")
+    parts.objects.link(the("ball"))
+    bpy.data.libraries.write(path, {parts})
+    without("ball")
+    bpy.data.collections.remove(parts)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.collections = ["parts"]
+    copy = bpy.data.objects.new("copy", None)
+    copy.instance_type, copy.instance_collection, copy.scale = 'COLLECTION', wanted.collections[0], (-1, 1, 1.2)
+    scene.collection.objects.link(copy)
+    source = copy.instance_collection.objects[0]
+    scene.collection.objects.link(source)
+    moved = source.override_create(remap_local_usages=True)
+    moved.location.x = -1.5
+
+
 @case("negative scale")
 def negative(scene):
     without("ball")
@@ -696,6 +722,14 @@ def faces(scene):
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=4, location=(0, 0, 0.3))
     carrier = dress(None)
     cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4).parent = carrier
+    carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
+
+
+@case("lamps on faces")
+def lamps_on_faces(scene):
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=2, size=4, location=(0, 0, 3))
+    carrier = bpy.context.object
+    lamp('POINT', 50, (0, 0, 0)).parent = carrier
     carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
 
 

@@ -72,9 +72,10 @@ def show_as_rendered(scene, layer):
         collection.hide_viewport = False
     for collection in bpy.data.collections:
         collection.hide_viewport = collection.hide_render
+    listed = set(layer.objects)  # objects of libraries may have the same names
     for o in bpy.data.objects:
         o.hide_viewport = o.hide_render
-        if o.name in layer.objects:
+        if o in listed:
             o.hide_set(o not in wanted)
         o.show_instancer_for_viewport = o.show_instancer_for_render
         for modifier in o.modifiers:

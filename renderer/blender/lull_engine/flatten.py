@@ -25,7 +25,7 @@ def flatten(flat, wanted, override, moving, notes):
     for instance in graph.object_instances:
         o = instance.object
         source = instance.parent.original if instance.is_instance else o.original
-        if source not in wanted or not _is_seen(o.original, _RAYS) or not (instance.is_instance or _shows_itself(instance, listed)):
+        if source not in wanted or not _is_seen(o.original, _RAYS) or not (instance.is_instance or shows_itself(instance, listed)):
             continue
         before = len(made)
         if o.original.particle_systems and layer.use_strand:
@@ -69,7 +69,8 @@ def _is_seen(o, rays):
     return any(getattr(o, "visible_" + ray) for ray in rays)
 
 
-def _shows_itself(instance, listed):
+def shows_itself(instance, listed):
+    """Returns whether an object is shown where it stands; `listed` are those of which a mesh is listed besides."""
     o = instance.object.original
     is_copied = o.parent is not None and o.parent.instance_type in ('VERTS', 'FACES')
     return instance.show_self and not is_copied and not (o.type in _CURVES and o in listed)

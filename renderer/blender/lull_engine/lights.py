@@ -6,6 +6,7 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
+import flatten
 import ies
 import surfaces
 from versions import principled_input
@@ -16,7 +17,7 @@ def find(scene, wanted):
     graph = bpy.context.evaluated_depsgraph_get()
     return [(i.object.original, i.matrix_world.copy()) for i in graph.object_instances
             if i.object.type == 'LIGHT' and not _is_portal(i.object.original.data)
-            and (i.parent.original if i.is_instance else i.object.original) in wanted]
+            and (i.is_instance or flatten.shows_itself(i, ())) and (i.parent.original if i.is_instance else i.object.original) in wanted]
 
 
 def add(lamps, scene, flat, base, notes):
@@ -114,6 +115,8 @@ def _fold_nodes(light, profile, notes):
             notes.add("shining in the plain colour, without nodes", light.name, "lights")
     if strength.links and strength.links[0].from_node.type == 'VALUE':
         light.energy *= strength.links[0].from_socket.default_value
+    elif strength.links and strength.links[0].from_node.type == 'LIGHT_FALLOFF':
+        _fold_falloff(light, strength.links[0].from_socket, notes)
     elif strength.links and _fold_profile(light, strength.links[0].from_node, profile):
         if light.shadow_soft_size > 0:
             notes.add("casting hard shadows, having an IES profile", light.name, "lights")
@@ -122,6 +125,15 @@ def _fold_nodes(light, profile, notes):
     else:
         light.energy *= strength.default_value
     light.color = [a * b for a, b in zip(light.color, shown)]
+
+
+def _fold_falloff(light, output, notes):
+    inputs = output.node.inputs
+    light.energy *= inputs['Strength'].default_value
+    if output.name != 'Quadratic' or inputs['Smooth'].links or inputs['Smooth'].default_value > 0:
+        notes.add("dimming with the square of the distance, whatever its falloff", light.name, "lights")
+    if inputs['Strength'].links:
+        notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
 
 
 def _fold_profile(light, node, path):
