@@ -531,6 +531,12 @@ def world_unseen(scene):
     scene.world.cycles_visibility.camera = False
 
 
+@case("world without nodes that the camera does not see")
+def world_plain(scene):
+    scene.world.use_nodes, scene.world.color = False, (0.3, 0.33, 0.4)
+    scene.world.cycles_visibility.camera = False
+
+
 @case("world without diffuse light")
 def world_rays(scene):
     scene.world.cycles_visibility.diffuse = False

@@ -4,8 +4,8 @@ The last argument is a JSON object: the file, the names of scene, view layer and
 null), the frame, the size of baked images, whether slabs of glass become sheets and whether
 the world is photographed where one image of all directions is less sharp, the number of bounces, the output folder, the
 name of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
-of the background of a world that has another light, or null), `groups` (light groups by the names that lull takes), `shutter` (seconds
-that it is open, 0: nothing moves),
+of the background of a world that has another light, or null), `groups` (light groups by the names that lull takes), `shutter`
+(seconds that it is open, 0: nothing moves),
 `objects` and `materials` (pass indices by name), `warnings`, and `remarks` on Cycles' usual settings.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its

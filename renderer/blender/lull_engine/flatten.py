@@ -14,7 +14,8 @@ _RAYS = "camera", "shadow", "volume_scatter", *_BOUNCES
 
 
 def flatten(flat, wanted, override, moving, notes):
-    """Fills an empty scene with the meshes of the objects `wanted`, all of the material `override` if there is one, `moving` as they do.
+    """Fills an empty scene with the meshes of the objects `wanted`, all of the material `override` if there is one, and marks
+    those that are `moving`.
 
     Returns: its objects. Lights and cameras are left to others.
     """

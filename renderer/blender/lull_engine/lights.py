@@ -17,7 +17,8 @@ def find(scene, wanted):
     graph = bpy.context.evaluated_depsgraph_get()
     return [(i.object.original, i.matrix_world.copy()) for i in graph.object_instances
             if i.object.type == 'LIGHT' and not _is_portal(i.object.original.data)
-            and (i.is_instance or flatten.shows_itself(i, ())) and (i.parent.original if i.is_instance else i.object.original) in wanted]
+            and (i.is_instance or flatten.shows_itself(i, ()))
+            and (i.parent.original if i.is_instance else i.object.original) in wanted]
 
 
 def add(lamps, scene, flat, base, notes):

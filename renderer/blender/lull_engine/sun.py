@@ -31,7 +31,7 @@ def take(world, photograph, notes):
 
 def discs(world):
     """Returns the nodes of skies with the sun."""
-    return [n for n in world.node_tree.nodes
+    return [n for n in (world.node_tree.nodes if world.use_nodes else ())
             if n.type == 'TEX_SKY' and n.sky_type == 'NISHITA' and n.sun_disc and n.outputs[0].links]
 
 

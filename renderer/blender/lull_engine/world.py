@@ -43,7 +43,7 @@ def write(scene, layer, camera, base, is_sharp, notes):
     if not lights:
         return None, backdrop, []
     light.cycles_visibility.camera = True
-    suns = sun.take(light, lambda seen, size: _pixels(light, seen, size), notes) if world.use_nodes else []
+    suns = sun.take(light, lambda seen, size: _pixels(light, seen, size), notes)
     return _surround(light, base + ".world.exr"), backdrop, suns
 
 
