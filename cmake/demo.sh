@@ -9,7 +9,7 @@ exec </dev/null
 
 install_packages $build_packages
 
-cmake --preset release -DCMAKE_UNITY_BUILD=ON -DBUILD_TESTING=OFF
+cmake --preset release -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=32 -DBUILD_TESTING=OFF
 cmake --build --preset release --target lull blender_addon
 
 mkdir -p out

@@ -3,6 +3,7 @@
 
 Pictures are compared with those of Cycles, as means of the whole and of blocks of 10x10 pixels: small,
 with a fixed seed on both sides. `--keep FOLDER` leaves them there to look at."""
+import base64
 import json
 import os
 import pathlib
@@ -272,9 +273,11 @@ bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
     def test_exports_one_file(self):
         path = self.folder / "one" / "passes.glb"
         path.parent.mkdir()
+        path.with_suffix(".blend").write_bytes(b"the user's")
         said = self.blender(*self.command("passes", SAMPLES + f"bpy.ops.lull.export(filepath={str(path)!r})")[:-2])
         command = next(line[line.index("lull render"):] for line in said.splitlines() if "lull render" in line)
-        self.assertEqual(sorted(f.name for f in path.parent.iterdir()), ["passes.glb", "passes.world.exr"])
+        self.assertEqual(sorted(f.name for f in path.parent.iterdir()), ["passes.blend", "passes.glb", "passes.world.exr"])
+        self.assertEqual(path.with_suffix(".blend").read_bytes(), b"the user's")
         picture = path.with_name("picture.exr")
         subprocess.run(shlex.split(command) + ["-o", picture, "--quiet"], env=self.environment, check=True,
                        stdout=subprocess.DEVNULL)
@@ -296,6 +299,26 @@ bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
         self.assertEqual((first["mesh"], second["mesh"]), (cube["mesh"], cube["mesh"]))
         self.assertEqual([first["translation"][0], second["translation"][0]], [3, 6])
         self.assertNotIn("lull_mesh", str(nodes))
+
+    def test_exports_what_moves_while_the_shutter_is_open(self):
+        path = self.folder / "moving.gltf"
+        said = self.blender(*self.command("factory", SAMPLES + f"""
+scene.render.use_motion_blur, scene.render.motion_blur_shutter, scene.render.fps = True, 0.5, 25
+cube = bpy.data.objects['Cube']
+for frame in 0, 2:
+    cube.location.x = 4 * frame
+    cube.keyframe_insert('location', frame=frame)
+cube.animation_data.action.fcurves[0].keyframe_points[0].interpolation = 'LINEAR'
+scene.frame_set(1)
+bpy.ops.lull.export(filepath={str(path)!r})""")[:-2])
+        self.assertIn("--frame 0 --shutter 0.02 ", said)
+        root = json.loads(path.read_text())
+        animation, = root["animations"]
+        self.assertEqual({root["nodes"][c["target"]["node"]]["name"] for c in animation["channels"]}, {"Cube"})
+        channel = next(c for c in animation["channels"] if c["target"]["path"] == "translation")
+        view = root["bufferViews"][root["accessors"][animation["samplers"][channel["sampler"]]["output"]]["bufferView"]]
+        keys = base64.b64decode(root["buffers"][view["buffer"]]["uri"].split(",")[1])[view["byteOffset"]:][:view["byteLength"]]
+        np.testing.assert_allclose(np.frombuffer(keys, "<f4").reshape(2, 3)[:, 0], (3, 5), atol=1e-5)
 
     def test_warns_by_name(self):
         _, said = self.render("factory", SAMPLES + """

@@ -11,7 +11,7 @@ namespace lull {
 
 namespace {
 
-constexpr int kWidth = 64, kHeight = 32;
+constexpr int kMapWidth = 64, kMapHeight = 32;
 constexpr double kAlbedo = 0.5;
 
 // A grey map of latitudes and longitudes, the row around +z first.
@@ -19,11 +19,11 @@ using Map = std::vector<float>;
 
 // Writes the map in PFM, which has its last row first.
 void WriteMap(const Map& map, const TemporaryDirectory& directory) {
-    std::string bytes = fmt::format("PF\n{} {}\n-1.0\n", kWidth, kHeight);
-    for (int y = kHeight - 1; y >= 0; --y)
-        for (int x = 0; x < kWidth; ++x)
+    std::string bytes = fmt::format("PF\n{} {}\n-1.0\n", kMapWidth, kMapHeight);
+    for (int y = kMapHeight - 1; y >= 0; --y)
+        for (int x = 0; x < kMapWidth; ++x)
             for (int c = 0; c < 3; ++c)
-                bytes.append(reinterpret_cast<const char*>(&map[size_t(y) * kWidth + x]), 4);
+                bytes.append(reinterpret_cast<const char*>(&map[size_t(y) * kMapWidth + x]), 4);
     directory.Write("map.pfm", bytes);
 }
 
@@ -33,20 +33,21 @@ double RadianceOfFloor(const Map& map) {
     constexpr int kSteps = 1000;  // in a row
     const auto rowMean = [&](int y) {
         double sum = 0;
-        for (int x = 0; x < kWidth; ++x) {
-            const float texel = map[size_t((y + kHeight) % kHeight) * kWidth + x];
-            sum += std::isfinite(texel) && texel > 0 ? texel / double(kWidth) : 0;
+        for (int x = 0; x < kMapWidth; ++x) {
+            const float texel = map[size_t((y + kMapHeight) % kMapHeight) * kMapWidth + x];
+            sum += std::isfinite(texel) && texel > 0 ? texel / double(kMapWidth) : 0;
         }
         return sum;
     };
     double irradiance = 0;
-    for (int i = kHeight / 2 * kSteps; i < kHeight * kSteps; ++i) {
-        const double y = (i + 0.5) / kSteps - 0.5, theta = (y + 0.5) * std::numbers::pi / kHeight;
+    for (int i = kMapHeight / 2 * kSteps; i < kMapHeight * kSteps; ++i) {
+        const double y = (i + 0.5) / kSteps - 0.5,
+                     theta = (y + 0.5) * std::numbers::pi / kMapHeight;
         const int y0 = int(std::floor(y));
         const double row = (y0 + 1 - y) * rowMean(y0) + (y - y0) * rowMean(y0 + 1);
         irradiance += row * -std::cos(theta) * std::sin(theta);
     }
-    return kAlbedo * irradiance * 2 * std::numbers::pi / kHeight / kSteps;
+    return kAlbedo * irradiance * 2 * std::numbers::pi / kMapHeight / kSteps;
 }
 
 HardCaseResult FloorUnder(const Map& map, int samples, const HardCaseOptions& options) {
@@ -61,13 +62,13 @@ HardCaseResult FloorUnder(const Map& map, int samples, const HardCaseOptions& op
 }
 
 HardCaseResult OneTexelSun(const HardCaseOptions& options) {
-    Map map(size_t(kWidth) * kHeight, 0.01f);
-    map[24 * kWidth + 9] = 1e9f;
+    Map map(size_t(kMapWidth) * kMapHeight, 0.01f);
+    map[24 * kMapWidth + 9] = 1e9f;
     return FloorUnder(map, options.isLong ? 100'000 : 4000, options);
 }
 
 HardCaseResult BrokenTexels(const HardCaseOptions& options) {
-    Map map(size_t(kWidth) * kHeight, 1);
+    Map map(size_t(kMapWidth) * kMapHeight, 1);
     const float broken[] = {std::nanf(""), std::numeric_limits<float>::infinity(),
                             -std::numeric_limits<float>::infinity(), -1};
     for (size_t i = 0; i < map.size(); i += 7) map[i] = broken[i / 7 % 4];
@@ -75,7 +76,7 @@ HardCaseResult BrokenTexels(const HardCaseOptions& options) {
 }
 
 HardCaseResult BlackSky(const HardCaseOptions& options) {
-    return FloorUnder(Map(size_t(kWidth) * kHeight, 0), 100, options);
+    return FloorUnder(Map(size_t(kMapWidth) * kMapHeight, 0), 100, options);
 }
 
 // A square lamp 1e-6 wide, 1 above the floor: L A / pi of the albedo.

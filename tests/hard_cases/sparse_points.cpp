@@ -15,7 +15,7 @@ namespace lull {
 
 namespace {
 
-constexpr int kSide = 100, kCap = 4000, kPass = 20;
+constexpr int kBlockSide = 100, kMostSpp = 4000, kPassSpp = 20;
 constexpr double kHitRate = 0.02;  // of the paths of a point, those that find its light
 constexpr double kContrast = 30;   // of a point, in L*
 // Peak noise that may be left: that which rules accept, 1.6, as halves estimate it.
@@ -28,7 +28,7 @@ class PointsBlock {
         : random(seed),
           base(float(LuminanceOf(lightness))),
           light(float((LuminanceOf(std::min(100.0, lightness + kContrast)) - base) / kHitRate)),
-          isPoint(kSide * kSide),
+          isPoint(kBlockSide * kBlockSide),
           sums(isPoint.size()),
           halfSums(isPoint.size()) {
         for (int placed = 0; placed < points;) {
@@ -41,13 +41,13 @@ class PointsBlock {
     void AddPass() {
         for (size_t i = 0; i < sums.size(); ++i)
             for (int half = 0; half < 2; ++half) {
-                float sum = base * (kPass / 2) * (1 + 0.02f * (random.Float() - 0.5f));
-                for (int k = 0; isPoint[i] && k < kPass / 2; ++k)
+                float sum = base * (kPassSpp / 2) * (1 + 0.02f * (random.Float() - 0.5f));
+                for (int k = 0; isPoint[i] && k < kPassSpp / 2; ++k)
                     sum += random.Float() < kHitRate ? light : 0;
                 sums[i] += sum;
                 if (half == 1) halfSums[i] += sum;
             }
-        spp += kPass;
+        spp += kPassSpp;
     }
 
     // Returns means of grey pixels.
@@ -77,15 +77,15 @@ class PointsBlock {
 // Returns the root of the mean fourth power of the error that is left where a rule stops.
 HardCaseResult ErrorAtStop(const std::string& rule, double lightness, int points, uint64_t seed) {
     PointsBlock block(lightness, points, seed);
-    const auto criterion = MakeCriterion(ParseRule(rule, {.passSpp = kPass}));
+    const auto criterion = MakeCriterion(ParseRule(rule, {.passSpp = kPassSpp}));
     Decision decision;
-    while (!decision.stop && block.spp < kCap) {
+    while (!decision.stop && block.spp < kMostSpp) {
         block.AddPass();
         const std::vector<float> mean = block.Mean(), half = block.HalfMean();
-        decision = criterion->Observe({kSide, kSide, block.spp, mean, half});
+        decision = criterion->Observe({kBlockSide, kBlockSide, block.spp, mean, half});
     }
     const std::vector<float> mean = block.Mean(), truth = block.Truth();
-    LightnessNoise error = ComputeLightnessNoise({kSide, kSide, block.spp, mean, truth});
+    LightnessNoise error = ComputeLightnessNoise({kBlockSide, kBlockSide, block.spp, mean, truth});
     const std::vector<float> right = DisplayedLightness(truth);
     for (size_t i = 0; i < right.size(); ++i) error.halfNoise[i] = error.lightness[i] - right[i];
     return {0, PeakNoise(error), kAccepted,

@@ -10,8 +10,8 @@ namespace lull {
 namespace structure_cases {
 namespace {
 
-constexpr int kWidth = 140, kHeight = 110, kBorder = 10;
-constexpr double kLevel = 0.3;
+constexpr int kPatternWidth = 140, kPatternHeight = 110, kPatternBorder = 10;
+constexpr double kPatternLevel = 0.3;
 
 // What is added to a grey wall.
 using Pattern = std::function<double(double x, double y)>;
@@ -29,19 +29,20 @@ double FromLine(double x, double y, double x0, double y0, double angle) {
 // `noise` is that of a pixel of the mean.
 HardCaseResult Left(const Pattern& pattern, double noise, double tolerance,
                     const HardCaseOptions& o) {
-    const Planes truth =
-        MakePlanes(kWidth, kHeight, 3, [&](int, int x, int y) { return kLevel + pattern(x, y); });
+    const Planes truth = MakePlanes(kPatternWidth, kPatternHeight, 3, [&](int, int x, int y) {
+        return kPatternLevel + pattern(x, y);
+    });
     double left = 0;
     const int trials = o.isLong ? 8 : 2;
     for (int trial = 0; trial < trials; ++trial) {
-        const Planes picture = Denoise(AddNoise(truth, FlatFeatures(kWidth, kHeight),
+        const Planes picture = Denoise(AddNoise(truth, FlatFeatures(kPatternWidth, kPatternHeight),
                                                 noise * std::sqrt(2.0), unsigned(o.seed) + trial))
                                    .picture;
         double both = 0, whole = 0;
-        for (int y = kBorder; y < kHeight - kBorder; ++y)
-            for (int x = kBorder; x < kWidth - kBorder; ++x) {
+        for (int y = kPatternBorder; y < kPatternHeight - kPatternBorder; ++y)
+            for (int x = kPatternBorder; x < kPatternWidth - kPatternBorder; ++x) {
                 const double p = pattern(x, y);
-                both += p * (double(picture.Row(1, y)[x]) - kLevel);
+                both += p * (double(picture.Row(1, y)[x]) - kPatternLevel);
                 whole += p * p;
             }
         left += both / whole / trials;

@@ -32,7 +32,7 @@ def begin():
     """A ball on a floor, under a square lamp and a grey sky. Returns the scene."""
     scene, others = bpy.data.scenes.new("case"), list(bpy.data.scenes)
     for kind in ("objects", "meshes", "materials", "lights", "cameras", "worlds", "node_groups", "particles", "curves", "images",
-                 "texts", "collections"):
+                 "texts", "collections", "libraries"):
         blocks = getattr(bpy.data, kind)
         for block in list(blocks):
             blocks.remove(block)
@@ -192,6 +192,48 @@ def motion_blur(scene):
     for frame, x in (0, -1), (1, 0), (2, 1):
         the("ball").location.x = x
         the("ball").keyframe_insert("location", frame=frame)
+
+
+def keyed(owner, path, *values):
+    for frame, value in enumerate(values):
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+
+
+@case("motion blur of the camera, before a sky")
+def motion_of_camera(scene):
+    world_image(scene)
+    motion_blur(scene)
+    scene.cycles.motion_blur_position = 'START'
+    keyed(scene.camera, "rotation_euler", (1.25, 0, 0), (1.25, 0, 0), (1.35, 0, 0.2))
+
+
+@case("motion blur of copies that turn, and of a parent")
+def motion_of_copies(scene):
+    motion_blur(scene)
+    without("ball")
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    keyed(parent, "rotation_euler", (0, 0, 0), (0, 0, 0.4), (0, 0, 0.8))
+    first = cube(matte("box", (0.6, 0.2, 0.1, 1)), at=(0, 0, 0.7))
+    copies = [first, first.copy(), first.copy()]
+    for o, x in zip(copies, (-2, 0, 2)):
+        o.parent, o.location.x = parent, x
+        if o != first:
+            scene.collection.objects.link(o)
+
+
+@case("motion blur of what shines, of a lamp and of a shape")
+def motion_of_lamps(scene):
+    motion_blur(scene)
+    dressed(surface('Emission')[0])
+    keyed(the("key"), "location", (0.5, -2, 5), (1.5, -2, 5), (2.5, -2, 5))
+    o = cube(matte("box", (0.1, 0.2, 0.6, 1)), at=(2, 0, 0.5))
+    o.shape_key_add(name="Basis")
+    key = o.shape_key_add(name="up")
+    for point in key.data:
+        point.co.z *= 3
+    keyed(key, "value", 0, 0.5, 1)
 
 
 @case("percentage of the resolution")
@@ -370,6 +412,12 @@ def falloff(scene):
     tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Linear'], emission.inputs[1])
 
 
+@case("quadratic falloff of a lamp")
+def falloff_quadratic(scene):
+    tree, emission = noded(only('POINT', 50, (1, -2, 3), shadow_soft_size=0).data)
+    tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Quadratic'], emission.inputs[1])
+
+
 @case("IES profile")
 def ies(scene):
     tree, emission = noded(only('POINT', 30, (0, -1, 3), shadow_soft_size=0).data)
@@ -419,6 +467,45 @@ def world_sky(scene):
     scene.world.node_tree.nodes["Background"].inputs[1].default_value = 0.1
 
 
+def low_sun(scene, **values):
+    world_sky(scene)
+    made = next(n for n in scene.world.node_tree.nodes if n.type == 'TEX_SKY')
+    for name, value in dict(sun_rotation=0.1, sun_intensity=0.3, sun_size=0.2, **values).items():
+        setattr(made, name, value)
+    camera((0, -6, 1), (1.7, 0, 0), lens=35)
+
+
+@case("world: low sun that the camera and a mirror see")
+def world_sun(scene):
+    low_sun(scene, sun_elevation=0.2)
+    dressed(surface('BsdfGlossy', Roughness=0)[0])
+
+
+@case("world: sun that the horizon cuts")
+def world_sunset(scene):
+    low_sun(scene, sun_elevation=0.02)
+
+
+@case("world: sky through nodes, under the noon's sun")
+def world_noon(scene):
+    world_sky(scene)
+    tree = scene.world.node_tree
+    made, hue = next(n for n in tree.nodes if n.type == 'TEX_SKY'), node(tree, 'ShaderNodeHueSaturation', Saturation=0.5, Value=0.7)
+    made.sun_elevation, made.sun_rotation = 1.4, -1
+    tree.links.new(made.outputs[0], hue.inputs['Color'])
+    tree.links.new(hue.outputs[0], tree.nodes["Background"].inputs[0])
+
+
+@case("world: sky with the sun, turned by nodes")
+def world_sky_turned(scene):
+    world_sky(scene)
+    tree = scene.world.node_tree
+    made = next(n for n in tree.nodes if n.type == 'TEX_SKY')
+    turn, where = node(tree, 'ShaderNodeMapping', Rotation=(0, 0, 0.7)), node(tree, 'ShaderNodeTexCoord')
+    tree.links.new(where.outputs['Generated'], turn.inputs['Vector'])
+    tree.links.new(turn.outputs[0], made.inputs[0])
+
+
 @case("world: backdrop other than the light")
 def world_backdrop(scene):
     tree = scene.world.node_tree
@@ -444,9 +531,21 @@ def world_unseen(scene):
     scene.world.cycles_visibility.camera = False
 
 
+@case("world without nodes that the camera does not see")
+def world_plain(scene):
+    scene.world.use_nodes, scene.world.color = False, (0.3, 0.33, 0.4)
+    scene.world.cycles_visibility.camera = False
+
+
 @case("world without diffuse light")
 def world_rays(scene):
     scene.world.cycles_visibility.diffuse = False
+
+
+@case("world that the camera alone sees")
+def world_behind(scene):
+    for name in "diffuse", "glossy", "transmission", "scatter":
+        setattr(scene.world.cycles_visibility, name, False)
 
 
 @case("world: volume")
@@ -460,6 +559,14 @@ def world_volume(scene):
 @case("object that the camera does not see")
 def unseen(scene):
     the("ball").visible_camera = False
+
+
+@case("object and lamp that no ray sees")
+def unseen_by_all(scene):
+    lamp('POINT', 500, (2, -2, 1), shadow_soft_size=0.1).name = "lamp"
+    for name in "camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow":
+        for o in "ball", "lamp":
+            setattr(the(o), "visible_" + name, False)
 
 
 @case("object without a shadow")
@@ -484,6 +591,16 @@ def indirect_only(scene):
     made.objects.link(the("ball"))
     scene.collection.objects.unlink(the("ball"))
     scene.view_layers[0].layer_collection.children["indirect"].indirect_only = True
+
+
+@case("background set, and a grease pencil")
+def background_set(scene):
+    other = bpy.data.scenes.new("set")
+    for name in "ball", "key":
+        other.collection.objects.link(the(name))
+        scene.collection.objects.unlink(the(name))
+    scene.background_set = other
+    bpy.ops.object.gpencil_add(location=(0, -1, 1), type='STROKE')
 
 
 @case("material override of a view layer")
@@ -567,6 +684,26 @@ def viewport_values(scene):
     cube(matte("late", (0.1, 0.2, 0.6, 1)), 0.6, (-1, -1.5, 0.4)).modifiers.new("late", 'NODES').node_group = group
 
 
+@case("override of an object of a library, beside a local one of its name")
+def library(scene):
+    made = textured()[0]
+    dressed(made)
+    parts, path = bpy.data.collections.new("parts"), os.path.join(FOLDER, "library.blend")
+    parts.objects.link(the("ball"))
+    bpy.data.libraries.write(path, {parts})
+    without("ball")
+    bpy.data.collections.remove(parts)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.collections = ["parts"]
+    copy = bpy.data.objects.new("copy", None)
+    copy.instance_type, copy.instance_collection, copy.scale = 'COLLECTION', wanted.collections[0], (-1, 1, 1.2)
+    scene.collection.objects.link(copy)
+    source = copy.instance_collection.objects[0]
+    scene.collection.objects.link(source)
+    moved = source.override_create(remap_local_usages=True)
+    moved.location.x = -1.5
+
+
 @case("negative scale")
 def negative(scene):
     without("ball")
@@ -591,6 +728,14 @@ def faces(scene):
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=4, location=(0, 0, 0.3))
     carrier = dress(None)
     cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4).parent = carrier
+    carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
+
+
+@case("lamps on faces")
+def lamps_on_faces(scene):
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=2, size=4, location=(0, 0, 3))
+    carrier = bpy.context.object
+    lamp('POINT', 50, (0, 0, 0)).parent = carrier
     carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
 
 

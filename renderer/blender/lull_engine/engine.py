@@ -67,15 +67,15 @@ def export(scene, layer, folder, stopped, name="scene", suffix=".gltf", is_sharp
 
     Returns: the result of export.py; None if `stopped` has returned true. Raises: Failure.
     """
-    blend, said = os.path.join(folder, name + ".blend"), os.path.join(folder, name + ".json")
-    override = scene.view_layers[layer].material_override
-    bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
-    what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
-            "folder": folder, "name": name, "suffix": suffix, "frame": scene.frame_current, "subframe": scene.frame_subframe,
-            "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "sharp": is_sharp,
-            "said": said}
-    scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
-    try:
+    with tempfile.TemporaryDirectory(prefix="lull-") as scratch:  # the folder may have a NAME.blend of its own
+        blend, said = os.path.join(scratch, "scene.blend"), os.path.join(scratch, "said.json")
+        override = scene.view_layers[layer].material_override
+        bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
+        what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
+                "folder": folder, "name": name, "suffix": suffix, "frame": scene.frame_current, "subframe": scene.frame_subframe,
+                "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "sharp": is_sharp,
+                "said": said}
+        scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
         code, output, ended = run(
             [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",
              "--enable-autoexec" if scripts else "--disable-autoexec", "--python-exit-code", "1",
@@ -88,15 +88,13 @@ def export(scene, layer, folder, stopped, name="scene", suffix=".gltf", is_sharp
             raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "exit code %d" % code))
         with open(said, encoding="utf-8") as f:
             return json.load(f)
-    finally:
-        for file in blend, said:
-            if os.path.exists(file):
-                os.remove(file)
 
 
 def arguments(scene, exported, size):
     """Returns the arguments of `lull render` for an exported scene of this size, as Blender's settings have it."""
     said = [exported["gltf"], "--resolution", "%dx%d" % size, *scene.lull.arguments()]
+    if exported["shutter"]:
+        said += ["--frame", "0", "--shutter", "%.9g" % exported["shutter"]]
     if exported["environment"]:
         said += ["--environment", exported["environment"]]
     if scene.render.film_transparent or exported["backdrop"]:

@@ -4,7 +4,8 @@ The last argument is a JSON object: the file, the names of scene, view layer and
 null), the frame, the size of baked images, whether slabs of glass become sheets and whether
 the world is photographed where one image of all directions is less sharp, the number of bounces, the output folder, the
 name of the files in it, its suffix (.gltf or .glb), and the file of the result: `gltf`, `environment` (or null), `backdrop` (a picture
-of the background of a world that has another light, or null), `groups` (light groups by the names that lull takes),
+of the background of a world that has another light, or null), `groups` (light groups by the names that lull takes), `shutter`
+(seconds that it is open, 0: nothing moves),
 `objects` and `materials` (pass indices by name), `warnings`, and `remarks` on Cycles' usual settings.
 
 Blender's own exporter writes the file, of a scene of plain meshes: all that a render shows, with its
@@ -22,6 +23,7 @@ import bake  # noqa: E402
 import flatten  # noqa: E402
 import gltf  # noqa: E402
 import lights  # noqa: E402
+import motion  # noqa: E402
 import panes  # noqa: E402
 import strands  # noqa: E402
 import surfaces  # noqa: E402
@@ -53,16 +55,27 @@ def rendered_objects(layer_collection):
     return found
 
 
+def _set_objects(scene):
+    """Returns the objects that the background set of a scene shows, and the sets of that set."""
+    found, seen = set(), {scene}
+    while (scene := scene.background_set) and scene not in seen:
+        seen.add(scene)
+        layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+        found |= rendered_objects(layer.layer_collection)
+    return found
+
+
 def show_as_rendered(scene, layer):
     """Sets what the viewport shows, which can be read, to what a render does, also in collections that have copies alone."""
-    wanted = rendered_objects(layer.layer_collection)
+    wanted = rendered_objects(layer.layer_collection) | _set_objects(scene)
     for collection in _collections(layer.layer_collection):
         collection.hide_viewport = False
     for collection in bpy.data.collections:
         collection.hide_viewport = collection.hide_render
+    listed = set(layer.objects)  # objects of libraries may have the same names
     for o in bpy.data.objects:
         o.hide_viewport = o.hide_render
-        if o.name in layer.objects:
+        if o in listed:
             o.hide_set(o not in wanted)
         o.show_instancer_for_viewport = o.show_instancer_for_render
         for modifier in o.modifiers:
@@ -95,8 +108,6 @@ def _deny_viewport(tree):
 
 
 def note_film(scene, notes):
-    if scene.render.use_motion_blur:
-        notes.say("there is no motion blur")
     if scene.render.use_multiview:
         notes.say("all views have the same picture")
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
@@ -158,7 +169,7 @@ def check_camera(scene):
         raise SystemExit(f"camera '{scene.camera.name}' is panoramic, which glTF does not support")
 
 
-def add_camera(scene, flat, notes):
+def add_camera(scene, flat, moving, notes):
     """Copies the camera, with the properties that glTF lacks as `extras`."""
     camera = scene.camera
     data = camera.data
@@ -184,6 +195,7 @@ def add_camera(scene, flat, notes):
     made = bpy.data.objects.new(camera.name, data.copy())
     made.data["lull"] = lens
     made.matrix_world = camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+    moving.mark(made, camera.evaluated_get(bpy.context.evaluated_depsgraph_get()))
     flat.collection.objects.link(made)
     flat.camera = made
     for name in "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y":
@@ -211,12 +223,13 @@ def main():
     flat = bpy.data.scenes.new('lull')
     # A pose is evaluated at the frame only in a graph that is up to date.
     bpy.context.evaluated_depsgraph_get()
+    moving = motion.Motion(scene, what["frame"] + what["subframe"], notes)
     scene.frame_set(what["frame"], subframe=what["subframe"])
     check_camera(scene)
     note_film(scene, notes)
-    made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], notes)
+    made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], moving, notes)
     lamps = lights.find(scene, wanted)
-    add_camera(scene, flat, notes)
+    add_camera(scene, flat, moving, notes)
     baker = bake.Baker(what["texture"], flat)
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])
@@ -228,15 +241,20 @@ def main():
     lights.add(lamps, scene, flat, base, notes)
     flatten.leave_copies(flat)
     flatten.undress_others(flat)
-    environment, backdrop = world.write(scene, layer, flat.camera, base, what["sharp"], notes)
+    is_sharp = what["sharp"] and not moving.moves(scene.camera)
+    environment, backdrop, suns = world.write(scene, layer, flat.camera, base, is_sharp, notes)
+    if backdrop and moving.moves(scene.camera):
+        notes.say("the background is sharp although the camera moves")
+    lights.add_suns(suns, flat)
     bpy.context.window.scene = flat
     path = base + what["suffix"]
     export(path)
-    groups = gltf.patch(path, [g.name for g in layer.lightgroups], notes)
+    groups, is_blurred = gltf.patch(path, [g.name for g in layer.lightgroups], moving.shutter, notes)
     if environment and scene.world.lightgroup in layer.lightgroups:
         groups[scene.world.lightgroup] = "environment"
     with open(what["said"], "w", encoding="utf-8") as f:
         json.dump({"gltf": path, "environment": environment, "backdrop": backdrop, "groups": groups,
+                   "shutter": moving.shutter if is_blurred else 0,
                    "objects": indices(wanted), "materials": indices(bpy.data.materials), "warnings": notes.lines(),
                    "remarks": limits(scene, what["depth"])}, f)
 

@@ -7,11 +7,15 @@ import strands
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
-_UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE'}
+_UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE',
+           'GPENCIL'}  # which Blender draws over pictures of all engines
+_BOUNCES = "diffuse", "glossy", "transmission"
+_RAYS = "camera", "shadow", "volume_scatter", *_BOUNCES
 
 
-def flatten(flat, wanted, override, notes):
-    """Fills an empty scene with the meshes of the objects `wanted`, all of the material `override` if there is one.
+def flatten(flat, wanted, override, moving, notes):
+    """Fills an empty scene with the meshes of the objects `wanted`, all of the material `override` if there is one, and marks
+    those that are `moving`.
 
     Returns: its objects. Lights and cameras are left to others.
     """
@@ -22,16 +26,19 @@ def flatten(flat, wanted, override, notes):
     for instance in graph.object_instances:
         o = instance.object
         source = instance.parent.original if instance.is_instance else o.original
-        if source not in wanted or not (instance.is_instance or _shows_itself(instance, listed)):
+        if source not in wanted or not _is_seen(o.original, _RAYS) or not (instance.is_instance or shows_itself(instance, listed)):
             continue
+        before = len(made)
         if o.original.particle_systems and layer.use_strand:
             _place_hair(flat, instance, graph, override, meshes, made)
+            _mark(made[before:], moving, instance)
         if o.type == 'CURVES' and not layer.use_strand or o.type in _MESHES and not layer.use_solid:
             continue
         if o.type == 'CURVES' and (mesh := strands.of_curves(o)):
             if override:
                 mesh.materials[0] = override
             made.append(_place(flat, o.original, mesh, instance.matrix_world.copy()))
+            _mark(made[-1:], moving, instance)
             continue
         if o.type not in _MESHES:
             if o.type not in _UNSEEN:
@@ -44,6 +51,7 @@ def flatten(flat, wanted, override, notes):
             if instance.is_instance:
                 copied[key] = copied.get(key, 0) + 1
             made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
+            _mark(made[-1:], moving, instance)
             shown.add(o.original)
     if override is None:
         _note_copies({name for key, n in copied.items() if n > 1 for name in key[2] if name}, notes)
@@ -52,7 +60,18 @@ def flatten(flat, wanted, override, notes):
     return made
 
 
-def _shows_itself(instance, listed):
+def _mark(placed, moving, instance):
+    for o in placed:
+        moving.mark(o, instance)
+
+
+def _is_seen(o, rays):
+    """Returns whether any of these kinds of rays see an object."""
+    return any(getattr(o, "visible_" + ray) for ray in rays)
+
+
+def shows_itself(instance, listed):
+    """Returns whether an object is shown where it stands; `listed` are those of which a mesh is listed besides."""
     o = instance.object.original
     is_copied = o.parent is not None and o.parent.instance_type in ('VERTS', 'FACES')
     return instance.show_self and not is_copied and not (o.type in _CURVES and o in listed)
@@ -171,5 +190,9 @@ def _note_of(original, notes):
         notes.add("subdivided as its modifier says, not adaptively", original.name)
     if original.is_shadow_catcher or original.is_holdout:
         notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
-    if not all(getattr(original, "visible_" + name, True) for name in ("camera", "diffuse", "glossy", "transmission", "shadow")):
-        notes.add("visible to all rays", original.name)
+    if not original.visible_camera:
+        notes.add("seen by the camera", original.name)
+    if not all(_is_seen(original, (ray,)) for ray in _BOUNCES):
+        notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
+    if not original.visible_shadow:
+        notes.add("casting shadows all the same", original.name)

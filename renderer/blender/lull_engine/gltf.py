@@ -3,6 +3,8 @@ import json
 import math
 import struct
 
+import motion
+
 _MAGIC, _JSON = b"glTF", 0x4E4F534A
 _MOST_GROUPS = 16  # that lull renders
 
@@ -148,10 +150,10 @@ def _patch_nodes(root, groups, notes):
     return found
 
 
-def patch(path, groups, notes):
-    """Corrects a file; `groups` are the names of the light groups that a view layer has.
+def patch(path, groups, shutter, notes):
+    """Corrects a file; `groups` are the names of the light groups that a view layer has, the `shutter` is open for so many seconds.
 
-    Returns: the names that `lull render --light-groups` takes for those that shine.
+    Returns: the names that `lull render --light-groups` takes for those that shine, and whether anything is blurred by its motion.
     """
     root, rest = _read(path)
     for material in root.get("materials", []):
@@ -161,5 +163,6 @@ def patch(path, groups, notes):
     if used:
         root["extensionsUsed"] = sorted({*root.get("extensionsUsed", []), *used})
     found = _patch_nodes(root, groups, notes)
+    is_blurred = motion.animate(root, shutter, notes, lambda node: _shines(root, node))
     _write(path, root, rest)
-    return found
+    return found, is_blurred

@@ -6,6 +6,7 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
+import flatten
 import ies
 import surfaces
 from versions import principled_input
@@ -16,6 +17,7 @@ def find(scene, wanted):
     graph = bpy.context.evaluated_depsgraph_get()
     return [(i.object.original, i.matrix_world.copy()) for i in graph.object_instances
             if i.object.type == 'LIGHT' and not _is_portal(i.object.original.data)
+            and (i.is_instance or flatten.shows_itself(i, ()))
             and (i.parent.original if i.is_instance else i.object.original) in wanted]
 
 
@@ -24,6 +26,8 @@ def add(lamps, scene, flat, base, notes):
     lacks. `base` begins the names of files beside that of the scene."""
     folded = {}
     for o, matrix in lamps:
+        if not any(getattr(o, "visible_" + ray) for ray in ("camera", "diffuse", "glossy", "transmission", "volume_scatter")):
+            continue
         light = folded.get(o.data)
         if light is None:
             light = folded[o.data] = _folded(o.data.copy(), "%s-profile%d.exr" % (base, len(folded)), notes)
@@ -43,6 +47,15 @@ def add(lamps, scene, flat, base, notes):
             _add_area(flat, o, light, matrix)
         else:
             _place(flat, o, light, matrix)
+
+
+def add_suns(suns, flat):
+    """Adds the suns of the world, which belong to the light group of all infinite lights."""
+    for light, matrix in suns:
+        made = bpy.data.objects.new("environment", light)
+        made.matrix_world = matrix
+        made["lull_source"] = "environment"
+        flat.collection.objects.link(made)
 
 
 def _place(flat, o, data, matrix):
@@ -103,6 +116,8 @@ def _fold_nodes(light, profile, notes):
             notes.add("shining in the plain colour, without nodes", light.name, "lights")
     if strength.links and strength.links[0].from_node.type == 'VALUE':
         light.energy *= strength.links[0].from_socket.default_value
+    elif strength.links and strength.links[0].from_node.type == 'LIGHT_FALLOFF':
+        _fold_falloff(light, strength.links[0].from_socket, notes)
     elif strength.links and _fold_profile(light, strength.links[0].from_node, profile):
         if light.shadow_soft_size > 0:
             notes.add("casting hard shadows, having an IES profile", light.name, "lights")
@@ -111,6 +126,15 @@ def _fold_nodes(light, profile, notes):
     else:
         light.energy *= strength.default_value
     light.color = [a * b for a, b in zip(light.color, shown)]
+
+
+def _fold_falloff(light, output, notes):
+    inputs = output.node.inputs
+    light.energy *= inputs['Strength'].default_value
+    if output.name != 'Quadratic' or inputs['Smooth'].links or inputs['Smooth'].default_value > 0:
+        notes.add("dimming with the square of the distance, whatever its falloff", light.name, "lights")
+    if inputs['Strength'].links:
+        notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
 
 
 def _fold_profile(light, node, path):

@@ -83,6 +83,20 @@ class LULL_RENDER_PT_film(_Panel, bpy.types.Panel):
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
+class LULL_RENDER_PT_motion_blur(_Panel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        render, layout = context.scene.render, self.layout
+        layout.use_property_split, layout.active = True, render.use_motion_blur
+        layout.prop(context.scene.cycles, "motion_blur_position", text="Position")
+        layout.prop(render, "motion_blur_shutter")
+
+
 class LULL_RENDER_PT_performance(_Panel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = {'DEFAULT_CLOSED'}
@@ -141,5 +155,6 @@ class LULL_MATERIAL_PT_settings(_Panel, bpy.types.Panel):
         layout.prop(material if hasattr(material, "displacement_method") else material.cycles, "displacement_method")
 
 
-CLASSES = (LULL_RENDER_PT_stopping, LULL_RENDER_PT_sampling, LULL_RENDER_PT_film, LULL_RENDER_PT_performance,
-           LULL_VIEWLAYER_PT_passes, LULL_OBJECT_PT_lightgroup, LULL_WORLD_PT_lightgroup, LULL_MATERIAL_PT_settings)
+CLASSES = (LULL_RENDER_PT_stopping, LULL_RENDER_PT_sampling, LULL_RENDER_PT_film, LULL_RENDER_PT_motion_blur,
+           LULL_RENDER_PT_performance, LULL_VIEWLAYER_PT_passes, LULL_OBJECT_PT_lightgroup, LULL_WORLD_PT_lightgroup,
+           LULL_MATERIAL_PT_settings)

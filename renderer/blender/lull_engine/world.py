@@ -1,41 +1,50 @@
 """The world as an image, whatever its nodes are."""
 import math
+import os
+import tempfile
 
 import bpy
+import numpy as np
 
 import groups
+import sun
 from versions import panorama
 
 _RAYS = "diffuse", "glossy", "transmission"
 _SMALLEST, _LARGEST = 16, 4096  # pixels across: of a plain colour, and of any world
 _USUAL = 1024
-_SPP, _BLURRED_SPP = 4, 64  # over a pixel each, so that no light is lost between pixels; with depth of field
+_SPP, _FINE_SPP = 4, 64  # over a pixel each, so that no light is lost between pixels; with depth of field or the sun
 
 
 def write(scene, layer, camera, base, is_sharp, notes):
     """Renders the world with Cycles, as it lights the scene of a view layer from all directions, to BASE.world.exr.
 
-    Returns: that path, None for a black world; and BASE.backdrop.exr, where the camera sees another world, or one that `is_sharp`
-    wants finer than all directions, else None.
+    Returns: that path, None for a black world; BASE.backdrop.exr, where the camera sees another world, or one that `is_sharp`
+    wants finer than all directions, else None; and the suns of its skies, lights and their matrices, which the image lacks.
     """
     world = scene.world
     if world is None or _is_black(world) or not layer.use_sky:
-        return None, None
+        return None, None, []
     if world.use_nodes and any(link.to_socket.name == 'Volume' for link in world.node_tree.links
                                if link.to_node.type == 'OUTPUT_WORLD'):
         notes.say(f"the volume of world '{world.name}' is left out")
     light = world.copy()
     asks = light.use_nodes and _answer_rays(light, notes)
     unseen = [name for name in _RAYS if not getattr(world.cycles_visibility, name)]
-    if unseen:
+    lights = len(unseen) < len(_RAYS)
+    if unseen and lights:
         notes.say(f"the world '{world.name}' lights all rays but those of the camera, whatever its visibility")
-    if world.cycles.max_bounces < 12:
+    if world.cycles.max_bounces < 12 and lights:
         notes.say(f"the world '{world.name}' lights after any number of bounces")
     backdrop = None
     is_sharp = is_sharp and world.use_nodes and not _background(world)
-    if not scene.render.film_transparent and (asks or not world.cycles_visibility.camera or is_sharp):
+    if not scene.render.film_transparent and (asks or not lights or not world.cycles_visibility.camera or is_sharp):
         backdrop = _photograph(scene, world, camera, base + ".backdrop.exr")
-    return _surround(light, base + ".world.exr"), backdrop
+    if not lights:
+        return None, backdrop, []
+    light.cycles_visibility.camera = True
+    suns = sun.take(light, lambda seen, size: _pixels(light, seen, size), notes)
+    return _surround(light, base + ".world.exr"), backdrop, suns
 
 
 def _answer_rays(world, notes):
@@ -63,7 +72,21 @@ def _photograph(scene, world, camera, path):
     room.collection.objects.link(room.camera)
     for name in "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y":
         setattr(room.render, name, getattr(scene.render, name))
-    return _render(room, world, path, _BLURRED_SPP if room.camera.data.dof.use_dof else _SPP)
+    return _render(room, world, path, _FINE_SPP if room.camera.data.dof.use_dof or sun.discs(world) else _SPP)
+
+
+def _pixels(world, camera, size):
+    """Returns the R, G, B of a square photograph."""
+    room = bpy.data.scenes.new('lull sun')
+    room.camera = camera
+    room.collection.objects.link(camera)
+    room.render.resolution_x = room.render.resolution_y = size
+    pixels = np.empty(size * size * 4, np.float32)
+    with tempfile.TemporaryDirectory(prefix="lull-") as folder:
+        image = bpy.data.images.load(_render(room, world, os.path.join(folder, "sun.exr"), _SPP))
+        image.pixels.foreach_get(pixels)
+        bpy.data.images.remove(image)
+    return pixels.reshape(size, size, 4)[:, :, :3].astype(float)
 
 
 def _surround(world, path):
@@ -78,7 +101,6 @@ def _surround(world, path):
     width = _width(world)
     r = room.render
     r.resolution_x, r.resolution_y, r.resolution_percentage = width, width // 2, 100
-    world.cycles_visibility.camera = True
     return _render(room, world, path, _SPP)
 
 

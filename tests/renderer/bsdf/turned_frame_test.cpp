@@ -8,12 +8,12 @@
 namespace lull::test {
 namespace {
 
-const Rgb kWhite(1, 1, 1);
+const Rgb kNoLoss(1, 1, 1);
 
 Lobe Metal(float roughness) {
     const float alpha = Sqr(roughness);
-    if (roughness == 0) return ThinSpecular{kWhite, 1, Rgb(Rgb::Zero()), InterfaceAbove{0, 0}, 0};
-    return LayeredReflection(Rgb::Zero(), kWhite, 1, alpha, InterfaceAbove{0, 0}, 0);
+    if (roughness == 0) return ThinSpecular{kNoLoss, 1, Rgb(Rgb::Zero()), InterfaceAbove{0, 0}, 0};
+    return LayeredReflection(Rgb::Zero(), kNoLoss, 1, alpha, InterfaceAbove{0, 0}, 0);
 }
 
 // The surface lies in the plane z = 0; its map tilts the normal.
@@ -64,7 +64,7 @@ TEST(TurnedFrame, BasesReflectAllLight) {
     for (const float alpha : {0.1f, 1.f})
         for (const float tilt : {0.f, 30.f, 50.f})
             for (const float azimuth : {0.f, 90.f, 180.f}) {
-                const Lobe lobe = LayeredReflection(kWhite, Rgb::Constant(0.04f), 1, alpha,
+                const Lobe lobe = LayeredReflection(kNoLoss, Rgb::Constant(0.04f), 1, alpha,
                                                     InterfaceAbove{0.04f, 1}, 0);
                 const Bsdf bsdf = Tilted(lobe, FromAngles(tilt));
                 const Vec3f wo = FromAngles(50, azimuth);

@@ -8,7 +8,7 @@
 namespace lull {
 namespace {
 
-constexpr int kSide = 120;
+constexpr int kImageSide = 120;
 PixelRect Whole(int side) { return {{0, 0}, {side, side}}; }
 
 VisibleError ErrorOf(const DenoisedPicture& denoised) {
@@ -21,19 +21,20 @@ TEST(VisibleError, IsKnownWithoutAReference) {
     std::mt19937 generator(1);
     std::normal_distribution<double> gauss(0, 0.015);
     const Planes texture =
-        MakePlanes(kSide, kSide, 1, [&](int, int, int) { return gauss(generator); });
-    const Planes truth = MakePlanes(kSide, kSide, 3, [&](int, int x, int y) {
-        return 0.4 + 0.1 * std::sin(x * 0.15) + (x < kSide / 2 ? 0 : texture.Row(0, y)[x]);
+        MakePlanes(kImageSide, kImageSide, 1, [&](int, int, int) { return gauss(generator); });
+    const Planes truth = MakePlanes(kImageSide, kImageSide, 3, [&](int, int x, int y) {
+        return 0.4 + 0.1 * std::sin(x * 0.15) + (x < kImageSide / 2 ? 0 : texture.Row(0, y)[x]);
     });
     int above = 0, count = 0;
     double last = 1e9;
     for (const double noise : {0.2, 0.1, 0.04, 0.01})
         for (unsigned seed = 1; seed <= 2; ++seed, ++count) {
             const DenoisedPicture denoised =
-                Denoise(AddNoise(truth, FlatFeatures(kSide, kSide), noise, seed));
+                Denoise(AddNoise(truth, FlatFeatures(kImageSide, kImageSide), noise, seed));
             const VisibleError error = ErrorOf(denoised);
-            const double expected = PooledDifference(FindVisibleDifference(
-                Interleaved(denoised.picture), Interleaved(truth), kSide, kSide, DisplayModel()));
+            const double expected = PooledDifference(
+                FindVisibleDifference(Interleaved(denoised.picture), Interleaved(truth), kImageSide,
+                                      kImageSide, DisplayModel()));
             EXPECT_NEAR(std::log2(error.estimate / expected), 0, 1) << noise << " " << expected;
             EXPECT_LE(error.estimate, error.upper);
             if (seed == 1) {

@@ -38,8 +38,8 @@ TEST(History, FindsNothingFarAway) {
     History<float> history;
     history.Add({20, {}});
     EXPECT_FALSE(history.Nearest(20, 1.6));  // only what comes before the last
-    EXPECT_EQ(history.At(20), &history.States()[0]);
-    EXPECT_FALSE(history.At(40));
+    EXPECT_EQ(history.EntropiesAt(20), &history.States()[0]);
+    EXPECT_FALSE(history.EntropiesAt(40));
     history.Add({60, {}});
     EXPECT_EQ(history.Nearest(20, 1.6), &history.States()[0]);
     EXPECT_FALSE(history.Nearest(50, 1.6));
@@ -54,16 +54,16 @@ TEST(History, ForgetsWhatItIsToldTo) {
 }
 
 // Entropies of two sub-blocks to which noise adds 1 / n.
-std::vector<double> At(int spp) { return {0.2 + 1.0 / spp, 0.4 + 4.0 / spp}; }
+std::vector<double> EntropiesAt(int spp) { return {0.2 + 1.0 / spp, 0.4 + 4.0 / spp}; }
 
 TEST(LatestDrop, ComparesWithHalfOfTheSamples) {
     History<float> history;
     const std::vector<double> weights = {1, 1};
     EXPECT_FALSE(LatestDrop(history, weights));
-    AddEntropies(20, At(20), &history);
+    AddEntropies(20, EntropiesAt(20), &history);
     EXPECT_FALSE(LatestDrop(history, weights));
     for (int spp = 60; spp <= 10000; spp += 40) {
-        AddEntropies(spp, At(spp), &history);
+        AddEntropies(spp, EntropiesAt(spp), &history);
         const auto drop = LatestDrop(history, weights);
         ASSERT_TRUE(drop) << spp;
         EXPECT_NEAR((*drop)[0] * std::sqrt(spp), 1, 0.02) << spp;
@@ -74,8 +74,8 @@ TEST(LatestDrop, ComparesWithHalfOfTheSamples) {
 
 TEST(History, RefusesWhatDoesNotFit) {
     History<float> history;
-    AddEntropies(60, At(60), &history);
-    EXPECT_THROW(AddEntropies(60, At(60), &history), std::invalid_argument);
+    AddEntropies(60, EntropiesAt(60), &history);
+    EXPECT_THROW(AddEntropies(60, EntropiesAt(60), &history), std::invalid_argument);
     EXPECT_THROW(AddEntropies(100, std::vector<double>{1}, &history), std::invalid_argument);
     const std::vector<double> broken = {0.1, std::numeric_limits<double>::quiet_NaN()};
     EXPECT_THROW(AddEntropies(100, broken, &history), std::invalid_argument);
@@ -86,14 +86,15 @@ TEST(History, RefusesWhatDoesNotFit) {
 TEST(History, GoesOnAfterARestart) {
     History<float> first, second;
     const std::vector<double> weights = {1, 1};
-    for (int spp = 20; spp <= 820; spp += 40) AddEntropies(spp, At(spp), &first);
+    for (int spp = 20; spp <= 820; spp += 40) AddEntropies(spp, EntropiesAt(spp), &first);
     StateWriter writer;
     first.Save(&writer);
     StateReader reader(writer.bytes);
     second.Restore(&reader, 2);
     reader.Finish();
     for (int spp = 860; spp <= 2000; spp += 40) {
-        for (History<float>* history : {&first, &second}) AddEntropies(spp, At(spp), history);
+        for (History<float>* history : {&first, &second})
+            AddEntropies(spp, EntropiesAt(spp), history);
         EXPECT_EQ(*LatestDrop(second, weights), *LatestDrop(first, weights));
     }
 
