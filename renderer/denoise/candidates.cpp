@@ -9,7 +9,7 @@ namespace {
 constexpr int kErrorRadius = 5, kChoiceRadius = 6;  // pixels over which both are smoothed
 static_assert(kErrorRadius + kChoiceRadius == kChoiceReach);
 constexpr float kDarkest = 1e-3f;  // squared luminance below which errors are no longer relative
-constexpr float kLeastVariance = 1e-4f;  // relative, squared; below it, pixels count alike
+constexpr float kAlikeVariance = 1e-4f;  // relative, squared; below it, pixels count alike
 constexpr float kDoubt = 2;              // standard deviations
 
 // Scale and weights of all candidates' errors.
@@ -32,7 +32,7 @@ ErrorScale MakeErrorScale(const Halves& smooth, const Planes& variance) {
         const float y = (LuminanceOf(smooth.a, i) + LuminanceOf(smooth.b, i)) / 2;
         scale.ofSquares.values[i] = 1 / (kDarkest + y * y);
         const float noise = SumOfColours(variance, i) * scale.ofSquares.values[i];
-        scale.weight.values[i] = 1 / (noise * noise + kLeastVariance);
+        scale.weight.values[i] = 1 / (noise * noise + kAlikeVariance);
     }
     scale.weights = SumAround(scale.weight);
     return scale;

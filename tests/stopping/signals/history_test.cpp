@@ -38,8 +38,8 @@ TEST(History, FindsNothingFarAway) {
     History<float> history;
     history.Add({20, {}});
     EXPECT_FALSE(history.Nearest(20, 1.6));  // only what comes before the last
-    EXPECT_EQ(history.EntropiesAt(20), &history.States()[0]);
-    EXPECT_FALSE(history.EntropiesAt(40));
+    EXPECT_EQ(history.At(20), &history.States()[0]);
+    EXPECT_FALSE(history.At(40));
     history.Add({60, {}});
     EXPECT_EQ(history.Nearest(20, 1.6), &history.States()[0]);
     EXPECT_FALSE(history.Nearest(50, 1.6));
