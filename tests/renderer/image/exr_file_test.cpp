@@ -144,9 +144,11 @@ TEST(ExrFile, KnowsOtherPrimaries) {
         Imf::Chromaticities primaries;
         if (isOther) primaries.red = {0.7347f, 0.2653f};  // ACES
         Imf::addChromaticities(file.header, primaries);
-        Imf::OutputFile out(file.path.c_str(), file.header);
-        out.setFrameBuffer(file.Frame(Imf::FLOAT, file.values.data()));
-        out.writePixels(5);
+        {
+            Imf::OutputFile out(file.path.c_str(), file.header);
+            out.setFrameBuffer(file.Frame(Imf::FLOAT, file.values.data()));
+            out.writePixels(5);
+        }  // the file is whole once it is closed
         EXPECT_EQ(ReadExr(file.path).attributes.contains("chromaticities"), isOther);
     }
 }
