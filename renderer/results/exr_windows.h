@@ -12,12 +12,11 @@ namespace lull {
 PixelRect DataWindow(const ExrImage&);
 
 // Returns the window of the picture that a file shows: of our own renders the part that was
-// rendered
-// (--crop), of other programs' the display window. Throws Error with `file` where that needs more
-// memory than there is.
+// rendered (--crop), of other programs' the display window. Throws Error with `file` where that
+// needs more memory than there is.
 PixelRect ShownWindow(const ExrImage&, const std::string& file);
 
-// Returns adjacent channels of a window as those of another: 0 where there are no data.
+// Returns interleaved channels of the data window, moved to another window; 0 where data lack.
 std::vector<float> MovedTo(const PixelRect& window, const PixelRect& data, int channels,
                            const std::vector<float>& values);
 

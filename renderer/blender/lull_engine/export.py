@@ -194,8 +194,9 @@ def add_camera(scene, flat, moving, notes):
             notes.say(f"the aperture of camera '{camera.name}' is round")
     made = bpy.data.objects.new(camera.name, data.copy())
     made.data["lull"] = lens
-    made.matrix_world = camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
-    moving.mark(made, camera.evaluated_get(bpy.context.evaluated_depsgraph_get()))
+    evaluated = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    made.matrix_world = evaluated.matrix_world
+    moving.mark(made, evaluated)
     flat.collection.objects.link(made)
     flat.camera = made
     for name in "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y":

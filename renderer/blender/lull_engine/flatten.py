@@ -10,7 +10,7 @@ _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE',
            'GPENCIL'}  # which Blender draws over pictures of all engines
 _BOUNCES = "diffuse", "glossy", "transmission"
-_RAYS = "camera", "shadow", "volume_scatter", *_BOUNCES
+SEEING_RAYS = "camera", "volume_scatter", *_BOUNCES
 
 
 def flatten(flat, wanted, override, moving, notes):
@@ -26,7 +26,9 @@ def flatten(flat, wanted, override, moving, notes):
     for instance in graph.object_instances:
         o = instance.object
         source = instance.parent.original if instance.is_instance else o.original
-        if source not in wanted or not _is_seen(o.original, _RAYS) or not (instance.is_instance or shows_itself(instance, listed)):
+        if source not in wanted or not is_seen(o.original, ("shadow", *SEEING_RAYS)):
+            continue
+        if not instance.is_instance and not shows_itself(instance, listed):
             continue
         before = len(made)
         if o.original.particle_systems and layer.use_strand:
@@ -65,13 +67,13 @@ def _mark(placed, moving, instance):
         moving.mark(o, instance)
 
 
-def _is_seen(o, rays):
+def is_seen(o, rays):
     """Returns whether any of these kinds of rays see an object."""
     return any(getattr(o, "visible_" + ray) for ray in rays)
 
 
 def shows_itself(instance, listed):
-    """Returns whether an object is shown where it stands; `listed` are those of which a mesh is listed besides."""
+    """Returns whether an object is shown where it stands; `listed`: the objects whose meshes are instances, too."""
     o = instance.object.original
     is_copied = o.parent is not None and o.parent.instance_type in ('VERTS', 'FACES')
     return instance.show_self and not is_copied and not (o.type in _CURVES and o in listed)
@@ -192,7 +194,7 @@ def _note_of(original, notes):
         notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
     if not original.visible_camera:
         notes.add("seen by the camera", original.name)
-    if not all(_is_seen(original, (ray,)) for ray in _BOUNCES):
+    if not all(is_seen(original, (ray,)) for ray in _BOUNCES):
         notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
     if not original.visible_shadow:
         notes.add("casting shadows all the same", original.name)

@@ -151,7 +151,7 @@ def _patch_nodes(root, groups, notes):
 
 
 def patch(path, groups, shutter, notes):
-    """Corrects a file; `groups` are the names of the light groups that a view layer has, the `shutter` is open for so many seconds.
+    """Corrects a file; `groups`: the names of the view layer's light groups; `shutter`: the time that it is open, seconds.
 
     Returns: the names that `lull render --light-groups` takes for those that shine, and whether anything is blurred by its motion.
     """

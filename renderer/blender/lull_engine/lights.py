@@ -26,7 +26,7 @@ def add(lamps, scene, flat, base, notes):
     lacks. `base` begins the names of files beside that of the scene."""
     folded = {}
     for o, matrix in lamps:
-        if not any(getattr(o, "visible_" + ray) for ray in ("camera", "diffuse", "glossy", "transmission", "volume_scatter")):
+        if not flatten.is_seen(o, flatten.SEEING_RAYS):
             continue
         light = folded.get(o.data)
         if light is None:

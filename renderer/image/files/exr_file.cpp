@@ -50,7 +50,7 @@ const Imf::Channel& ChannelOf(const Imf::Header& header, const std::string& name
     return header.channels()[name.c_str()];
 }
 
-// Returns the chromaticities of colours as text, "" for those of Rec. 709.
+// Returns chromaticities as text, "" for Rec. 709.
 std::string OtherPrimaries(const Imf::Chromaticities& given) {
     constexpr float kSlack = 0.005f;  // usual figures have two to four digits
     const Imf::Chromaticities usual;

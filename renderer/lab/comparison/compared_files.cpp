@@ -60,6 +60,26 @@ ComparedFile ReadDisplayFile(const std::string& path, const std::string& name) {
     return file;
 }
 
+void MoveTo(const PixelRect& window, ComparedFile* file) {
+    file->image.image = {window.Width(), window.Height(),
+                         MovedTo(window, file->region, 3, file->image.image.values)};
+    if (!file->spp.empty()) file->spp = MovedTo(window, file->region, 1, file->spp);
+    file->region = window;
+}
+
+bool IsPlaced(const ComparedFile& file) { return !file.image.isDisplay; }
+
+// Moves images to the window of the picture if they have data of different regions.
+void UseOneWindow(std::vector<ComparedFile>* files) {
+    const auto first = std::ranges::find_if(*files, IsPlaced);
+    const auto isElsewhere = [&](const ComparedFile& file) {
+        return IsPlaced(file) && !(file.region == first->region);
+    };
+    if (std::ranges::none_of(*files, isElsewhere)) return;
+    for (ComparedFile& file : *files)
+        if (IsPlaced(file)) MoveTo(file.shown, &file);
+}
+
 }  // namespace
 
 bool IsDisplayFile(const std::string& path) {
@@ -97,30 +117,6 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name) 
             file.image.wallSeconds = double(*seconds);
     return file;
 }
-
-namespace {
-
-void MoveTo(const PixelRect& window, ComparedFile* file) {
-    file->image.image = {window.Width(), window.Height(),
-                         MovedTo(window, file->region, 3, file->image.image.values)};
-    if (!file->spp.empty()) file->spp = MovedTo(window, file->region, 1, file->spp);
-    file->region = window;
-}
-
-bool IsPlaced(const ComparedFile& file) { return !file.image.isDisplay; }
-
-// Moves images to the window of the picture if they have data of different regions.
-void UseOneWindow(std::vector<ComparedFile>* files) {
-    const auto first = std::ranges::find_if(*files, IsPlaced);
-    const auto isElsewhere = [&](const ComparedFile& file) {
-        return IsPlaced(file) && !(file.region == first->region);
-    };
-    if (std::ranges::none_of(*files, isElsewhere)) return;
-    for (ComparedFile& file : *files)
-        if (IsPlaced(file)) MoveTo(file.shown, &file);
-}
-
-}  // namespace
 
 RgbImage ReadShownPicture(const std::string& path) {
     ComparedFile file = ReadComparedFile(path, path);
