@@ -29,16 +29,17 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
             if (light && end > first) light->Begin(pixel);
             double sum = 0, squares = 0;  // of luminance
+            PathCounts counts;
             for (uint32_t k = first; k < end; ++k) {
-                const PathSample sample = take(sampler, pixel, k);
+                const PathSample sample = take(sampler, pixel, k, spread ? &counts : nullptr);
                 sums.Add(sample.radiance, sample.rejected);
                 ++samples;
                 if (!spread) continue;
                 const double y = double(Luminance(sample.radiance));
                 sum += y;
                 squares += Sqr(y);
-                spread->vertices += sample.vertices;
-                spread->connected += Sqr(y * double(sample.connected));
+                spread->vertices += counts.vertices;
+                spread->connected += Sqr(y * double(counts.connected));
                 ++spread->samples;
             }
             if (light && end > first) {
@@ -159,8 +160,8 @@ int64_t Executor::TakeSamples(const Tile& tile) {
         return RenderTile(take, tile, sampler, film, spread, &light);
     };
     if (film->layers.IsEmpty()) {
-        const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index) {
-            return context.source(s, pixel, index, {});
+        const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index, PathCounts* counts) {
+            return context.source(s, pixel, index, {.counts = counts});
         };
         return render(alone);
     }
@@ -168,9 +169,12 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     std::optional<GroupRadiance> groups;
     if (wanted.Count() > 0) groups.emplace(wanted);
     const auto withLayers = [&, asks = film->layers.NeedFirstHits()](Sampler& s, const Vec2i& pixel,
-                                                                     uint32_t index) {
+                                                                     uint32_t index,
+                                                                     PathCounts* counts) {
         LayerSample summed{.index = index, .groups = groups ? &*groups : nullptr};
-        const SampleDetail detail{asks ? &summed.hit : nullptr, groups ? &*groups : nullptr};
+        const SampleDetail detail{.firstHit = asks ? &summed.hit : nullptr,
+                                  .groups = groups ? &*groups : nullptr,
+                                  .counts = counts};
         const PathSample sample = context.source(s, pixel, index, detail);
         summed.radiance = sample.radiance;
         film->layers.Add(pixel, summed);

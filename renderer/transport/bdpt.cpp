@@ -395,8 +395,8 @@ double LightPathCount(const Scene& scene, const BdptShares& shares) {
     return std::ceil(double(shares.lightPaths) * double(size.x()) * double(size.y()));
 }
 
-PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOptions& options,
-              Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
+Rgb Li(const BdptIntegrator& integrator, const Scene& scene, const PathOptions& options,
+       Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const Context context{scene,
                           integrator,
                           sampler,
@@ -405,10 +405,11 @@ PathSample Li(const BdptIntegrator& integrator, const Scene& scene, const PathOp
                           double(options.shares.connections)};
     Rgb connected = Rgb::Zero();
     const auto follow = [&](auto recorder) {
-        PathSample sample{Follow(context, start, recorder, &connected), false};
-        const float luminance = Luminance(sample.radiance);
-        if (luminance > 0) sample.connected = Luminance(connected) / luminance;
-        return sample;
+        const Rgb L = Follow(context, start, recorder, &connected);
+        const float luminance = Luminance(L);
+        if (detail.counts && luminance > 0)
+            detail.counts->connected = Luminance(connected) / luminance;
+        return L;
     };
     if (!detail.firstHit && !detail.groups) return follow(NoRecorder());
     FirstHit unseen;

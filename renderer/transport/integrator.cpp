@@ -8,10 +8,10 @@ namespace lull {
 namespace {
 
 // Gives groups the weights of a sample whose radiance was `found`. Out of the way of all others.
-[[gnu::noinline]] void Weigh(const Scene& scene, const SampleStart& start, const PathSample& found,
+[[gnu::noinline]] void Weigh(const Scene& scene, const SampleStart& start, const Rgb& found,
                              bool isRejected, GroupRadiance* groups) {
     if (isRejected) groups->Clear();
-    groups->Scale(LimitOf(scene, Luminance(found.radiance)));
+    groups->Scale(LimitOf(scene, Luminance(found)));
     groups->Scale(WeightOf(scene, start));
 }
 
@@ -24,15 +24,16 @@ PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler&
         *detail.firstHit = {.weight = start.filter.weight,
                             .offset2 = start.filter.offset.squaredNorm()};
     if (detail.groups) detail.groups->Clear();
+    if (detail.counts) *detail.counts = {};
     if (start.cameraWeight == 0) return {Rgb::Zero(), false};
     const auto li = [&](const auto& integrator) {
         return Li(integrator, scene, options, sampler, start, detail);
     };
-    const PathSample found = Visit(scene.integrator, li);
+    const Rgb found = Visit(scene.integrator, li);
     const PathSample sample = Weighted(scene, start, found);
     if (detail.firstHit) {
         Rgb& emission = detail.firstHit->emission;
-        emission *= LimitOf(scene, Luminance(found.radiance)) * WeightOf(scene, start);
+        emission *= LimitOf(scene, Luminance(found)) * WeightOf(scene, start);
         if (sample.rejected || !IsFinite(emission)) emission = Rgb::Zero();
     }
     if (detail.groups) Weigh(scene, start, found, sample.rejected, detail.groups);

@@ -59,12 +59,8 @@ struct PathOptions {
 };
 
 struct PathSample {
-    Rgb radiance;      // filter weight and film scale applied: the pixel is the mean of these
-    bool rejected;     // was NaN, infinite or of negative luminance, and counts as black
-    int vertices = 0;  // of the path, without the camera; of guided paths alone
-    // The share of the luminance that connections to subpaths from lights have found; of
-    // BdptIntegrator alone.
-    float connected = 0;
+    Rgb radiance;   // filter weight and film scale applied: the pixel is the mean of these
+    bool rejected;  // was NaN, infinite or of negative luminance, and counts as black
 };
 
 // What learns from paths. Its pointees must outlive it; null: not wanted.
@@ -77,6 +73,12 @@ struct PathRecords {
     float usualForDirections = 1, usualForLights = 1;
 };
 
+// The work and the worth of what learners choose, in one sample.
+struct PathCounts {
+    int vertices = 0;     // of a path that a guide may continue, without the camera
+    float connected = 0;  // share of the luminance from connections to subpaths from lights
+};
+
 // What receives the data of a sample besides its radiance, which they do not change; null: not
 // wanted.
 struct SampleDetail {
@@ -86,6 +88,7 @@ struct SampleDetail {
     // The radiance by groups of lights, with the same weights.
     GroupRadiance* groups = nullptr;
     const PathRecords* records = nullptr;
+    PathCounts* counts = nullptr;
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,

@@ -39,22 +39,21 @@ inline float WeightOf(const Scene& scene, const SampleStart& start) {
 
 // Rejects invalid radiance, limits it, and applies the weights.
 [[gnu::always_inline]] inline PathSample Weighted(const Scene& scene, const SampleStart& start,
-                                                  PathSample sample) {
-    Rgb& L = sample.radiance;
+                                                  Rgb L) {
     const float luminance = Luminance(L);
     const bool isRadiance = IsFinite(L) && !(luminance < -1e-5f);
     L *= LimitOf(scene, luminance);
     L *= WeightOf(scene, start);
     // The scale of the film may be 2^100.
-    if (!isRadiance || !IsFinite(L)) return {Rgb::Zero(), true, sample.vertices};
-    return sample;
+    if (!isRadiance || !IsFinite(L)) return {Rgb::Zero(), true};
+    return {L, false};
 }
 
 // Return an estimate of the radiance along the camera's ray, without these weights, as those of
 // the groups are, which are added to. A FirstHit gets all except the data of the sample itself.
-PathSample Li(const PathIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
-              const SampleDetail&);
-PathSample Li(const BdptIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
-              const SampleDetail&);
+Rgb Li(const PathIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
+       const SampleDetail&);
+Rgb Li(const BdptIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
+       const SampleDetail&);
 
 }  // namespace lull

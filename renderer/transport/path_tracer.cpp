@@ -213,8 +213,8 @@ template <typename Media, typename Guiding, typename Recorder>
 
 // Chooses the loop that the options and the recorder need.
 template <typename Media>
-PathSample TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
-                     const SampleDetail& detail) {
+Rgb TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
+              const SampleDetail& detail) {
     const auto trace = [&](auto& guiding) {
         if (!detail.firstHit && !detail.groups) {
             NoRecorder nobodyAsks;
@@ -229,18 +229,19 @@ PathSample TracePath(const PathContext<Media>& context, const PathOptions& optio
     };
     if (!options.guide) {
         Unguided unguided;
-        return {trace(unguided), false};
+        return trace(unguided);
     }
     const PathRecords records = detail.records ? *detail.records : PathRecords();
     Guided guided(*options.guide, records.directions, records.usualForDirections);
     const Rgb L = trace(guided);
-    return {L, false, guided.Vertices()};
+    if (detail.counts) detail.counts->vertices = guided.Vertices();
+    return L;
 }
 
 }  // namespace
 
-PathSample Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& options,
-              Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
+Rgb Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& options,
+       Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const auto trace = [&]<typename Media>(const Media& media) {
         return TracePath<Media>(
             {scene, integrator, options.estimator, sampler, start.camera, media,
@@ -271,7 +272,7 @@ PathLog LogSample(const Scene& scene, Estimator estimator, Sampler& sampler, con
     const Rgb L = scene.isVolumetric ? trace(Media(scene))
                   : scene.hasPanes   ? trace(NoMediaButPanes(scene))
                                      : trace(NoMedia(scene));
-    log.sample = Weighted(scene, start, {L, false});
+    log.sample = Weighted(scene, start, L);
     return log;
 }
 
