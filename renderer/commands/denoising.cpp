@@ -20,7 +20,8 @@ void KeepDecisions(const RenderResult& result, DenoisedImage* denoised) {
     }
 }
 
-int DoubtBlocks(const RenderResult& result, const PixelRect& region, DenoisedImage* denoised) {
+int RemoveUnknownErrors(const RenderResult& result, const PixelRect& region,
+                        DenoisedImage* denoised) {
     int count = 0;
     for (size_t i = 0; i < result.blocks.size(); ++i) {
         if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;

@@ -25,7 +25,7 @@ void KeepDecisions(const RenderResult&, DenoisedImage*);
 
 // Removes the error estimates of blocks with too few samples for one, and sets the error of their
 // pixels to the largest. Returns the number of these blocks.
-int DoubtBlocks(const RenderResult&, const PixelRect& region, DenoisedImage*);
+int RemoveUnknownErrors(const RenderResult&, const PixelRect& region, DenoisedImage*);
 
 // Prints how long denoising took and how clean the picture is, unless `quiet`.
 void PrintDenoised(const DenoisedImage&, double seconds, bool quiet, const Talk& = {});

@@ -284,7 +284,7 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
         denoised = DenoisePreview(film);
-        DoubtBlocks(result, film.Region(), &*denoised);
+        RemoveUnknownErrors(result, film.Region(), &*denoised);
     }
     ResultFiles written(Rescue::None);
     WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance},
@@ -342,11 +342,11 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     made.image = hasGroups ? DenoiseWithReports(std::move(lights), region, p.blocks, style, how)
                            : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
-    if (const int doubted = DoubtBlocks(result, region, &*made.image); doubted > 0)
+    if (const int unknown = RemoveUnknownErrors(result, region, &*made.image); unknown > 0)
         talk.Warn(fmt::format(
             "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
             "the true image is unknown",
-            doubted, result.blocks.size(), kLeastDenoisedSpp));
+            unknown, result.blocks.size(), kLeastDenoisedSpp));
     PrintDenoised(*made.image, SecondsSince(start), settings.quiet, talk);
     if (p.display) p.display->ShowDenoised(region, made.image->image.values);
     return made;

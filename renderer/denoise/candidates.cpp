@@ -10,7 +10,7 @@ constexpr int kErrorRadius = 5, kChoiceRadius = 6;  // pixels over which both ar
 static_assert(kErrorRadius + kChoiceRadius == kChoiceReach);
 constexpr float kDarkest = 1e-3f;  // squared luminance below which errors are no longer relative
 constexpr float kAlikeVariance = 1e-4f;  // relative, squared; below it, pixels count alike
-constexpr float kDoubt = 2;              // standard deviations
+constexpr float kChanceDeviations = 2;   // of chance that a candidate must be better by
 
 // Scale and weights of all candidates' errors.
 struct ErrorScale {
@@ -61,17 +61,18 @@ Planes ErrorOf(const Planes& made, const Planes& other, const Planes& reference,
 // Returns the squared error of the samples, which is their variance, and the chance error of the
 // others' estimates.
 Planes ErrorOfNoise(const Planes& variance, const ErrorScale& scale) {
-    Planes error(variance.width, variance.height, 1), doubt = error;
+    Planes error(variance.width, variance.height, 1), chance = error;
     for (size_t i = 0; i < error.Area(); ++i) {
         const float noise = SumOfColours(variance, i) * scale.ofSquares.values[i];
         const float weighted = noise * scale.weight.values[i];
         error.values[i] = noise / 2;
-        doubt.values[i] = weighted * weighted / 2;
+        chance.values[i] = weighted * weighted / 2;
     }
     error = BoxMean(std::move(error), kErrorRadius);
-    doubt = SumAround(std::move(doubt));
+    chance = SumAround(std::move(chance));
     for (size_t i = 0; i < error.Area(); ++i)
-        error.values[i] += kDoubt * std::sqrt(doubt.values[i]) / scale.weights.values[i];
+        error.values[i] +=
+            kChanceDeviations * std::sqrt(chance.values[i]) / scale.weights.values[i];
     return error;
 }
 

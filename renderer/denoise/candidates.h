@@ -15,7 +15,7 @@ inline constexpr int kChoiceReach = 11;  // pixels, from which a choice depends 
 // unbiased, but noisy, so that it is averaged over some pixels, weighted by inverse noise. The
 // half that judges the result (visible_error.h) so has no part in the choice, which would
 // underestimate the error. The samples themselves are chosen only where all others are worse
-// beyond doubt.
+// beyond chance.
 Halves ChooseCandidates(std::vector<Halves> candidates, const Halves& noisy,
                         const Planes& variance);
 

@@ -16,7 +16,7 @@ constexpr double kCommon = 9;          // times the variance that halves differ 
 constexpr double kShare = 0.98;        // of the tiles
 constexpr double kSpectrum = 0.08;     // by which correlations of noise of one spectrum may differ
 constexpr double kOneSided = 0.15;     // of the variance that halves differ by
-constexpr double kShareDoubt = 3;      // standard errors
+constexpr double kShareErrors = 3;     // standard errors
 
 // White noise, filtered by HighPassed(), correlates so with the pixel beside.
 constexpr double kWhite = -2.0 / 3;
@@ -140,7 +140,7 @@ std::string DependenceOf(const Halves& halves) {
         return "both halves have the same noise, and hardly differ otherwise; render one of "
                "them with another seed";
     if (shareOfA.count < kLeastTiles) return "";
-    const double most = 1 - kOneSided + kShareDoubt * shareOfA.StandardError();
+    const double most = 1 - kOneSided + kShareErrors * shareOfA.StandardError();
     const bool isInA = shareOfA.Value() > most, isInB = 1 - shareOfA.Value() > most;
     if (isInA != isInB)
         return std::string("the noise by which the halves differ is all in ") +

@@ -16,20 +16,21 @@ namespace {
 constexpr int kSide = 10;         // sub-blocks a side
 constexpr double kUpper = 1.645;  // standard deviations, of a one-sided 95 %
 constexpr int kSmoothRadius = kErrorReach;
-constexpr double kLeastDoubt = 0.01;  // of the mean doubt
+constexpr double kLeast = 0.01;  // of the mean deviation
 // Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
 // 10 degrees, 40 pixels a degree): people see blotches of 4, 8, 16 pixels 2.2, 2.0, 1.4 times as
-// well as noise that changes from pixel to pixel. With these they count 1.5, 1.8, 1.9 times.
+// well as noise that changes from pixel to pixel. By these constants they count 1.5, 1.8, 1.9
+// times.
 constexpr int kCoarseRadius = 3;  // pixels
 constexpr float kCoarseGain = 1;
-constexpr float kSeenDoubt = 1.13f;  // times the standard deviation of a sum of products of noise
+constexpr float kVisible = 1.13f;  // times the standard deviation of a sum of products of noise
 // Total error / difference of the halves, and its standard deviation, over 53 pictures of nine
 // scenes (tests/measurements/denoising.md).
 constexpr double kUsual = 1.27;
-constexpr double kUsualDoubt = 0.25;
+constexpr double kUsualDeviation = 0.25;
 // Standard deviation of the logarithm of the true error about its estimate, beyond the variances of
 // the samples and of the usual ratio.
-constexpr double kModelDoubt = 0.2;
+constexpr double kModelDeviation = 0.2;
 // The bound is not below this fraction of the samples' own bound, because of errors hidden under
 // the noise of unusual pictures.
 constexpr double kTrust = 0.8;
@@ -68,7 +69,7 @@ Squares SquaresOf(const Sums& sums) {
 }
 
 // An estimate of the square of the mean of roots.
-struct Belief {
+struct Estimate {
     double mean = 0, variance = 0;
 
     double Root(double deviations) const {
@@ -80,14 +81,14 @@ struct Belief {
 // s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s).
 // Little is known of s itself, but much of its variances, which are correlated with it; noisier
 // sub-blocks get smaller weights, so that their uncertainty does not dominate.
-Belief FromSamples(std::span<const Squares> all) {
+Estimate FromSamples(std::span<const Squares> all) {
     const double n = double(all.size());
-    double doubts = 0;
-    for (const Squares& s : all) doubts += std::sqrt(s.variance) / n;
+    double deviations = 0;
+    for (const Squares& s : all) deviations += std::sqrt(s.variance) / n;
     double inverse = 0, mean = 0, variance = 0;
     for (const Squares& s : all) {
-        const double doubt = std::max({std::sqrt(s.variance), kLeastDoubt * doubts, 1e-12});
-        const double w = 1 / std::sqrt(doubt);
+        const double deviation = std::max({std::sqrt(s.variance), kLeast * deviations, 1e-12});
+        const double w = 1 / std::sqrt(deviation);
         inverse += 1 / (w * n);
         mean += w * s.estimate / n;
         variance += w * w * s.variance / (n * n);
@@ -96,22 +97,22 @@ Belief FromSamples(std::span<const Squares> all) {
 }
 
 // Returns the usual error for this difference of the denoised halves.
-Belief Usual(double least) {
+Estimate Usual(double least) {
     const double mean = Sqr(kUsual * least);
-    return {mean, Sqr(2 * kUsualDoubt * mean)};
+    return {mean, Sqr(2 * kUsualDeviation * mean)};
 }
 
 // Returns the combination of both, weighted by inverse variance. Where the samples contradict the
 // usual ratio beyond chance, this picture is an unusual one, and the usual ratio gets the larger
 // variance (DerSimonian and Laird's estimate for two studies).
-Belief Together(const Belief& samples, Belief usual) {
+Estimate Together(const Estimate& samples, Estimate usual) {
     usual.variance +=
         std::max(0.0, Sqr(samples.mean - usual.mean) - samples.variance - usual.variance);
     const double both = samples.variance + usual.variance;
     if (both <= 0) return samples;
     const double share = usual.variance / both;  // of the samples
     const double mean = share * samples.mean + (1 - share) * usual.mean;
-    return {mean, share * samples.variance + Sqr(2 * kModelDoubt * mean)};
+    return {mean, share * samples.variance + Sqr(2 * kModelDeviation * mean)};
 }
 
 Planes LuminancesOf(const Planes& image) {
@@ -149,7 +150,7 @@ EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
         for (int c = 0; c < kColours; ++c) deviations[c] = std::sqrt(denoised.variance.Plane(c)[i]);
         const float deviation = Luminance(deviations);  // the colours of a path go together
         error.lightness.values[i] = at.lightness;
-        error.deviation.values[i] = (asSeen ? kSeenDoubt : 1) * Sqr(at.slope * deviation);
+        error.deviation.values[i] = (asSeen ? kVisible : 1) * Sqr(at.slope * deviation);
         slope.values[i] = at.slope;
     }
     const auto add = [&](const Planes& a, const Planes& b, float share, Planes* sum) {
@@ -225,9 +226,10 @@ LightnessError MeasureLightnessError(const EstimatedError& error, const PixelRec
             all.push_back(SquaresOf(sums));
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
         }
-    const Belief samples = FromSamples(all), belief = Together(samples, Usual(result.least));
-    result.estimate = std::max(belief.Root(0), result.least);
-    result.upper = std::max({belief.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
+    const Estimate samples = FromSamples(all), combined = Together(samples, Usual(result.least));
+    result.estimate = std::max(combined.Root(0), result.least);
+    result.upper =
+        std::max({combined.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
     return result;
 }
 

@@ -24,7 +24,7 @@ constexpr int kResidualReach = kKernelReach + kBoxRadius + kAroundReach;
 static_assert(kResidualReach == kStructureReach);
 constexpr int kRestoreRounds = 3;
 // Standard deviations from which on a mean is structure, and is so for certain.
-constexpr float kDoubtful = 4.5f, kCertain = 5.5f;
+constexpr float kPossible = 4.5f, kCertain = 5.5f;
 constexpr float kHeaviest = 1e4f;        // of a mean among others
 constexpr float kLeastDeviation = 0.1f;  // in lightness, of a pixel: less is not seen
 // The variance of normal noise over the square of its mean distance from 0.
@@ -170,7 +170,7 @@ KernelSum SumOver(const Residual& residual, const Kernel& kernel, int x, int y) 
 // Appends the structure found in the pixels [x, x + kLanes) of a row, those below `end`.
 void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x, int y, int end,
             std::vector<Found>* found) {
-    KernelSum best{Lanes::Zero(), Lanes::Constant(Sqr(kDoubtful))};
+    KernelSum best{Lanes::Zero(), Lanes::Constant(Sqr(kPossible))};
     Eigen::Array<int, kLanes, 1> kernelOfBest = Eigen::Array<int, kLanes, 1>::Constant(-1);
     for (size_t k = 0; k < kernels.size(); ++k) {
         const KernelSum sum = SumOver(residual, kernels[k], x, y);
@@ -183,7 +183,7 @@ void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x,
     for (int i = 0; i < std::min(kLanes, end - x); ++i) {
         if (kernelOfBest[i] < 0) continue;
         const size_t k = size_t(kernelOfBest[i]);
-        const float share = (std::sqrt(best.squared[i]) - kDoubtful) / (kCertain - kDoubtful);
+        const float share = (std::sqrt(best.squared[i]) - kPossible) / (kCertain - kPossible);
         found->push_back({x + i, y, k, best.value[i] / float(kernels[k].Count()),
                           std::min(share, 1.f), std::min(best.squared[i], kHeaviest)});
     }

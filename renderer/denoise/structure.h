@@ -21,7 +21,7 @@ inline constexpr int kStructureReach = 10;  // pixels, from which what is found 
 void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* picture);
 
 // Returns that mean in lightness, which the picture lacks, where it is structure; elsewhere 0.
-// Where it is doubtful, its square counts in part.
+// Where that is uncertain, its square counts in part.
 Planes StructureLeft(const Halves& noisy, const Planes& variance, const Halves& picture);
 
 }  // namespace lull

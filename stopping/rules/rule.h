@@ -116,8 +116,8 @@ double PeakOverLimit(const Rule& rule, double peakNoise, int spp, double varianc
 // follow it.
 double WithPeak(const Rule& rule, double number, double peakOverLimit);
 
-// The limit of rules that are not trained, over their threshold: that of people's mean over
-// viewpoints (docs/entropy.md).
+// Limit of peak noise / threshold, for rules that are not trained: the mean ratio of viewpoints at
+// human thresholds (docs/entropy.md).
 inline constexpr double kPeakOverThreshold = 2;
 
 // Returns the rule that stops blocks at `stopAt`.

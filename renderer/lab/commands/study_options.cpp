@@ -112,7 +112,7 @@ void AddOptions(CLI::App& app, Options* s) {
     app.add_flag("--questions", s->study.questions,
                  "Ask observers for their age, and whether they see well and tell colours apart");
     app.add_option("--descending", s->study.descending,
-                   "Share of the blocks that are also asked from above, by adjustment")
+                   "Fraction of the blocks shown from above, too, by adjustment")
         ->check(Between(0.0, 1.0))
         ->type_name("X")
         ->capture_default_str();

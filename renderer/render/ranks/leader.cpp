@@ -13,8 +13,8 @@ namespace lull {
 
 namespace {
 
-constexpr double kLeastGain = 1.1;  // of dealing out tiles anew, so that it is worth a pause
-constexpr double kLeastRun = 20;    // until the next pause: times the last pause
+constexpr double kLeastGain = 1.1;  // speedup by other shares of the tiles that is worth a pause
+constexpr double kLeastRun = 20;    // until the next pause, in lengths of the last
 
 class Leader {
   public:

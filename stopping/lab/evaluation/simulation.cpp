@@ -199,7 +199,7 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
         return ThresholdsSimulator(ArgumentOf(text));
     if (const RuleEntry* entry = FindRule(text); entry && entry->replay == Replay::Unknown)
         throw std::invalid_argument("stopping rule '" + Printable(text) +
-                                    "': recordings have no denoised pictures, nor their features; "
+                                    "': recordings do not contain denoised images; "
                                     "evaluate the thresholds file of a render instead");
     const auto rule = std::make_shared<const Rule>(ParseRule(text, context));
     const Replay replay = FindRule(text)->replay;
