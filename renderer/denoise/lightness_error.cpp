@@ -25,7 +25,7 @@ constexpr int kCoarseRadius = 3;  // pixels
 constexpr float kCoarseGain = 1;
 constexpr float kVisible = 1.13f;  // times the standard deviation of a sum of products of noise
 // Total error / difference of the halves, and its standard deviation, over 53 pictures of nine
-// scenes (tests/measurements/denoising.md).
+// scenes (tests/measurements/renderer.md).
 constexpr double kUsual = 1.27;
 constexpr double kUsualDeviation = 0.25;
 // Standard deviation of the logarithm of the true error about its estimate, beyond the variances of
