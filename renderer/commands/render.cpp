@@ -111,25 +111,22 @@ FilmOptions FilmOf(const PreparedRender& p) {
             .layers = layers};
 }
 
-// Returns the sampler of an image: a denoised one has the points of least noise that leave halves
-// independent, whatever the scene asks for, unless the user does.
-SamplerKind ChooseSampler(const RenderRequest& request, const Scene& scene) {
-    const RenderSettings& settings = request.render;
+// Returns the sampler of an image, unless the user has chosen one: that of least noise with
+// independent halves, from which noise is estimated. pbrt-v3's noise needs the scene's.
+SamplerKind ChooseSampler(const RenderSettings& settings, const Scene& scene) {
     if (settings.sampler) return *settings.sampler;
-    const bool isFree =
-        (request.denoise || request.denoiseLayers) && settings.estimator == Estimator::Combined;
-    return isFree ? SamplerKind::SobolHalves : scene.sampler;
+    return settings.estimator == Estimator::Combined ? SamplerKind::SobolHalves : scene.sampler;
 }
 
 void SetProvenance(const PreparedRender& p, Provenance* provenance) {
-    provenance->sampler = ChooseSampler(p.request, *p.render.scene);
+    provenance->sampler = ChooseSampler(p.request.render, *p.render.scene);
     if (provenance->sampler != p.render.scene->sampler &&
         p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
         !p.request.render.quiet && p.render.Leads())
         TalkOf(p.request.render)
             .Note(
-                "the denoiser's samples are those of \"sobol-halves\", which has less noise than "
-                "the scene's Sampler \"random\"; --sampler random keeps that");
+                "the samples are those of \"sobol-halves\", which has less noise than the scene's "
+                "Sampler \"random\"; --sampler random keeps that");
     p.render.CheckSampler(provenance->sampler);
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
@@ -387,8 +384,8 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
 ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();
-    PrintPath(request.path, render.settings, render.provenance.sampler, render.input.description,
-              *render.scene);
+    PrintPath(request.path, render.settings, ChooseSampler(request.render, *render.scene),
+              render.input.description, *render.scene);
     return kDone;
 }
 

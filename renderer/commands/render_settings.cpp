@@ -48,7 +48,8 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
 
     if (withSampler)
         AddChoiceOption(app, "--sampler", &s->sampler,
-                        "Choose the sampler [the scene's; render --denoise: sobol-halves]")
+                        "Choose the sampler [the scene's; render, unless by --estimator pbrt-v3:\n"
+                        "sobol-halves]")
             ->group("Sampling");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Seed the random numbers")

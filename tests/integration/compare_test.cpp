@@ -38,11 +38,10 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
         EXPECT_TRUE(std::filesystem::exists(directory.File(file))) << file;
     }
 
-    RunLull(directory,
-            std::string("render scene.pbrt") + kSize + "--stop dammertz:0.02 --cap 160 -o a.exr");
-    RunLull(directory, std::string("render scene.pbrt") + kSize +
-                           "--stop thresholds:human.csv:a --cap 160 -o h.exr");
-    RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp 160 -o r.exr");
+    const std::string render = std::string("render scene.pbrt --sampler random") + kSize;
+    RunLull(directory, render + "--stop dammertz:0.02 --cap 160 -o a.exr");
+    RunLull(directory, render + "--stop thresholds:human.csv:a --cap 160 -o h.exr");
+    RunLull(directory, render + "--spp 160 -o r.exr");
     EXPECT_EQ(Green(directory, "room.automatic.exr"), Green(directory, "a.exr"));
     EXPECT_EQ(Green(directory, "room.human.exr"), Green(directory, "h.exr"));
     EXPECT_EQ(Green(directory, "room.reference.exr"), Green(directory, "r.exr"));
@@ -114,8 +113,8 @@ TEST(Compare, TakesPicturesForDisplays) {
     const SceneDirectory directory;
     const std::string part = " --crop 0.25,1,0,1 ";
     for (const char* spp : {"20", "160"})
-        RunLull(directory, std::string("render scene.pbrt") + kSize + part + "--spp " + spp +
-                               " -o at" + spp + ".exr");
+        RunLull(directory, std::string("render scene.pbrt --sampler random") + kSize + part +
+                               "--spp " + spp + " -o at" + spp + ".exr");
     const std::string files = "compare --block 40 ";
     const Outcome exr =
         ExpectSuccess(directory, files + "--automatic at20.exr --reference at160.exr -o exr");

@@ -194,7 +194,7 @@ TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
     EXPECT_EQ(ReadExr(directory.File("a.exr")).Find("G")->values,
               ReadExr(directory.File("plain.exr")).Find("G")->values);
     EXPECT_EQ(ReadBytes(directory.File("a.png")), ReadBytes(directory.File("plain.png")));
-    Render("--spp 40 --sampler random --denoise --aov albedo -o denoised.exr " + groups);
+    Render("--spp 40 --denoise --aov albedo -o denoised.exr " + groups);
     ExpectSum("denoised.exr", {"bulb", "key", "rest"});
     EXPECT_EQ(ReadExr(directory.File("denoised.exr")).Find("noisy.G")->values,
               ReadExr(directory.File("plain.exr")).Find("G")->values);
@@ -210,7 +210,7 @@ TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
               ReadExr(directory.File("e.exr")).Find("G")->values);
     for (const char* group : {"light.bulb.G", "light.key.G", "light.rest.G"})
         EXPECT_NEAR(MeanOf("f.exr", group) / MeanOf("a.exr", group), 1, 0.05) << group;
-    Render("--spp 40 --integrator bdpt --sampler random --denoise -o g.exr " + groups);
+    Render("--spp 40 --integrator bdpt --denoise -o g.exr " + groups);
     ExpectSum("g.exr", {"bulb", "key", "rest"});
     Render("--spp 40 --exr-half -o d.exr " + groups);
     ExpectSum("d.exr", {"bulb", "key", "rest"}, 2e-3f);

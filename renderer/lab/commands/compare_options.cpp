@@ -13,9 +13,9 @@ namespace {
 constexpr const char* kFooter =
     R"(With a scene and --snapshots, one render to the cap gives three images: "automatic", with blocks as
 stopped by RULE, "human", with blocks at their human thresholds, and the "reference" at the cap.
-Sample k of a pixel is always the same, so that three renders would give the same bits. With
---reference instead, each block is rendered to the larger of the two thresholds. Without a scene,
-existing images are compared.
+Sample k of a pixel is always the same, so that three renders by this --sampler would give the same
+bits. With --reference instead, each block is rendered to the larger of the two thresholds. Without a
+scene, existing images are compared.
 
 With --images the three images are made of another renderer's pictures. A block comes from the picture
 at which RULE stopped it, or from the first at or above its human threshold; the last picture is the
