@@ -117,14 +117,20 @@ def _mesh(o, is_instance, graph, override):
     return mesh
 
 
-def _place(flat, original, mesh, matrix):
-    """Adds an object. glTF's nodes cannot shear, so that vertices do."""
-    location, rotation, scale = matrix.decompose()
-    apart = Matrix.LocRotScale(location, rotation, scale) - matrix
+def is_sheared(matrix):
+    """Returns whether a matrix is no rotation and scale, as glTF's nodes are."""
+    apart = Matrix.LocRotScale(*matrix.decompose()) - matrix
     size = max(abs(v) for row in matrix.to_3x3() for v in row)
-    if max(abs(v) for row in apart for v in row) > 1e-5 * max(size, 1e-9):
+    return max(abs(v) for row in apart for v in row) > 1e-5 * max(size, 1e-9)
+
+
+def _place(flat, original, mesh, matrix):
+    """Adds an object. Where it is sheared, its vertices are."""
+    if is_sheared(matrix):
         mesh = mesh.copy()
         mesh.transform(matrix)
+        if matrix.determinant() < 0:
+            mesh.flip_normals()
         matrix = Matrix.Identity(4)
     o = bpy.data.objects.new(original.name, mesh)
     o.matrix_world = matrix
@@ -196,5 +202,7 @@ def _note_of(original, notes):
         notes.add("seen by the camera", original.name)
     if not all(is_seen(original, (ray,)) for ray in _BOUNCES):
         notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
+    if original.cycles.shadow_terminator_offset > 0 and any(p.use_smooth for p in getattr(original.data, "polygons", ())):
+        notes.add("brighter near the edge of its own shadow, without its Shading Offset", original.name)
     if not original.visible_shadow:
         notes.add("casting shadows all the same", original.name)
