@@ -47,7 +47,8 @@ class AddOn(unittest.TestCase):
         os.makedirs(user / "scripts/addons")
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
-        for frame, spp, names in ((1, 4 * SPP, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur"]),
+        for frame, spp, names in ((1, 4 * SPP, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur",
+                                                 "cards"]),
                                   (11, 4 * SPP, ["skin"]), (1, 0, ["doubtful"])):
             what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": spp, "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
@@ -151,6 +152,11 @@ class AddOn(unittest.TestCase):
     def test_hair_leaves_and_what_cameras_see(self):
         passes, said = self.render("fur")
         self.assert_close("fur", passes, 0.02, 0.04)
+        self.assertNotIn("Warning", said)
+
+    def test_images_and_colours_as_cycles_reads_them(self):
+        passes, said = self.render("cards")
+        self.assert_close("cards", passes, 0.01, 0.02)
         self.assertNotIn("Warning", said)
 
     def test_passes_of_view_layers(self):
@@ -346,6 +352,9 @@ bpy.data.lights['Light'].use_shadow = False""")
                 "1 material is of the same transmission everywhere: 'patchy'",
                 "1 material is occluded by the same object alone: 'shaded'",
                 "1 material is without properties of objects: 'named'",
+                "1 material is brighter where light falls flat, as normals lean far: 'leaning'",
+                "1 object is brighter near the edge of its own shadow, without its Shading Offset: 'soft'",
+                "1 light is shining in another direction, being sheared: 'askew'",
                 "passes that lull lacks are missing: cryptomatte above 6 levels",
                 "1 material is without anisotropic: 'brushed'",
                 "blurred, by images of 64 pixels over whole meshes (Texture Size): 'fine'",

@@ -8,6 +8,8 @@ import numpy as np
 
 import displacement
 import groups
+import images
+import normals
 import solids
 from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 
@@ -61,11 +63,11 @@ def prepare(made, baker, notes):
 
 
 def _is_empty(material):
-    """Returns whether a material has nothing on its surface, as fog has."""
+    """Returns whether a material has a volume and nothing on its surface, as fog has."""
     if material is None or not material.use_nodes:
         return False
     output = material.node_tree.get_output_node('CYCLES')
-    return output is not None and not output.inputs['Surface'].links
+    return output is not None and not output.inputs['Surface'].links and bool(output.inputs['Volume'].links)
 
 
 def _convert(material, meshes, baker, notes):
@@ -76,6 +78,9 @@ def _convert(material, meshes, baker, notes):
         return _of_viewport(material)
     if _is_empty(material):
         return material
+    output = material.node_tree.get_output_node('CYCLES')
+    if output is None or _source(output.inputs['Surface']) is None:
+        return _of_colour(material.name, (0, 0, 0))
     surface = _Surface(material, meshes, notes)
     if surface.parameters is None:
         return _of_viewport(material)
@@ -155,7 +160,8 @@ def _place_of(socket):
             if used != ['UV']:
                 return 'mesh'
         if node.type == 'TEX_IMAGE':
-            if node.projection != 'FLAT' or node.extension != 'REPEAT' or node.image and node.image.source == 'TILED':
+            if node.projection != 'FLAT' or node.extension != 'REPEAT' or node.image and node.image.source == 'TILED' or \
+                    _has_own_mapping(node):
                 return 'mesh'
             place = 'uv'
         if node.type == 'MAPPING':
@@ -178,6 +184,7 @@ class _Surface:
         self.copy["lull_name"] = material.name
         self.tree = self.copy.node_tree
         groups.inline(self.tree)
+        images.prepare(self.tree, self.name, notes)
         output = self.tree.get_output_node('CYCLES')
         self.absorbs = self._absorption(output)
         self.parameters = self._closure(output.inputs['Surface'])
@@ -217,7 +224,7 @@ class _Surface:
         """Leaves to the written file the values that the exporter cannot write."""
         p = self.parameters
         plain = {n: v for n, v in p.items() if not self._is_output(v)}
-        if p['Alpha'] == 0 and p['Tint'] != (1, 1, 1):
+        if p['Alpha'] == 0 and (p['Tint'] != (1, 1, 1) or p['Radiance'] != (0, 0, 0)):
             p.update({'Alpha': 1, 'Base Color': p['Tint'], 'Transmission': 1, 'Roughness': 0})
             self.copy["lull_air"] = True
         elif HAS_ADDED_INTERFACE and node.type == 'BSDF_PRINCIPLED' and {'Roughness', 'Specular'} <= set(plain) and \
@@ -467,14 +474,14 @@ class _Surface:
             nodes = [n for n in nodes if n != value.node]
         if any(n.type not in _KNOWN for n in nodes):
             return False
-        images = [n for n in nodes if n.type == 'TEX_IMAGE']
-        if not images:
+        shown = [n for n in nodes if n.type == 'TEX_IMAGE']
+        if not shown:
             return name == 'Base Color' and value.node.type == 'VERTEX_COLOR'
-        if len(images) > 1 or any(not _is_plain(n) for n in images):
+        if len(shown) > 1 or any(not _is_plain(n) for n in shown):
             return False
-        if name in _EVEN or images[0].image.is_float:
+        if name in _EVEN or shown[0].image.is_float:
             return False
-        if name != 'Alpha' and not _is_encoded(images[0].image, name in ('Base Color', 'Radiance')):
+        if name != 'Alpha' and not _is_encoded(shown[0].image, name in ('Base Color', 'Radiance')):
             return False
         if name == 'Alpha':
             return value.node.type == 'TEX_IMAGE' and value.name == 'Alpha'
@@ -530,7 +537,8 @@ class _Surface:
 
     def _write_base(self, new):
         colour, alpha = self.parameters['Base Color'], self.parameters['Alpha']
-        are_apart = self._is_output(alpha) and self._is_output(colour) and alpha.node != colour.node
+        # Where it reads the alpha of an image alone, the exporter writes its colours as well.
+        are_apart = self._is_output(alpha) and not (self._is_output(colour) and alpha.node == colour.node)
         if self._are_known(('Base Color', 'Alpha')) and not are_apart:
             self._link(new, 'Base Color'), self._link(new, 'Alpha')
         else:
@@ -610,7 +618,7 @@ class _Surface:
         image = bpy.data.images.new(f"{self.name} {what}", width, height, alpha=pixels.shape[2] == 4)
         image.colorspace_settings.name = 'sRGB' if is_colour else 'Non-Color'
         if is_colour:
-            full[:, :, :3] = _encoded(full[:, :, :3])
+            full[:, :, :3] = images.encoded(full[:, :, :3])
         image.pixels.foreach_set(full.ravel())
         image.update()
         image.pack()
@@ -682,14 +690,30 @@ class _Surface:
         if value is None:
             return
         if self._is_known_normal(value):
+            self._write_known_normal(value)
             self.tree.links.new(value, new.inputs['Normal'])
             return
         pixels = self._over_mesh(value, 'NORMAL')
+        self._note_leaning(pixels)
         image = self._image(pixels, 'normal', False)
         node = self.tree.nodes.new('ShaderNodeNormalMap')
         node.uv_map = "lull"
         self.tree.links.new(image.outputs['Color'], node.inputs['Color'])
         self.tree.links.new(node.outputs[0], new.inputs['Normal'])
+
+    def _write_known_normal(self, value):
+        strength, shown = value.node.inputs['Strength'], _source(value.node.inputs['Color']).node
+        pixels = images.numbers_of(shown.image)
+        self._note_leaning(pixels, strength.default_value)
+        if 0 < strength.default_value < 1:
+            shown.image = normals.weakened(pixels, shown.image.name, strength.default_value)
+            strength.default_value = 1
+
+    def _note_leaning(self, pixels, strength=1):
+        p = self.parameters
+        is_diffuse = all(self._is_output(p[n]) or p[n] < 1 for n in ('Metallic', 'Transmission'))
+        if is_diffuse and normals.dimmed(pixels, strength) > normals.MOST:
+            self.notes.add("brighter where light falls flat, as normals lean far", self.name, "materials")
 
 
 def _ior_of(factor):
@@ -715,8 +739,15 @@ def _triple(value):
 
 def _is_plain(node):
     """Returns whether glTF's samplers read an image as its node does."""
-    return (node.image is not None and node.image.size[0] > 0 and node.projection == 'FLAT' and
+    return (node.image is not None and node.image.size[0] > 0 and node.projection == 'FLAT' and not _has_own_mapping(node) and
             node.extension in ('REPEAT', 'EXTEND') and node.image.source in ('FILE', 'GENERATED'))
+
+
+def _has_own_mapping(node):
+    """Returns whether the node of a texture has a mapping of its own, as files of old versions have."""
+    own = node.texture_mapping
+    return (own.mapping, own.mapping_x, own.mapping_y, own.mapping_z) != ('FLAT', 'X', 'Y', 'Z') or own.use_min or own.use_max or \
+        any(tuple(v) != (plain,) * 3 for v, plain in ((own.translation, 0), (own.rotation, 0), (own.scale, 1)))
 
 
 def _is_encoded(image, is_colour):
@@ -755,10 +786,6 @@ def _resized(image, shape):
     return image[rows][:, columns]
 
 
-def _encoded(linear):
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
-
-
 def _keep_used_colours(mesh):
     """Leaves the colours that its materials read: glTF multiplies by any."""
     wanted = set()
@@ -767,6 +794,8 @@ def _keep_used_colours(mesh):
         source = _source(principled_input(node, 'Base Color')) if node else None
         if source is not None:
             wanted |= {n.layer_name for n in _upstream(source) if n.type == 'VERTEX_COLOR'}
-    for layer in list(mesh.color_attributes):
-        if layer.name not in wanted and not ("" in wanted and layer == mesh.color_attributes.active_color):
-            mesh.color_attributes.remove(layer)
+    layers = mesh.color_attributes
+    if "" in wanted and 0 <= layers.render_color_index < len(layers):
+        wanted.add(layers[layers.render_color_index].name)
+    for name in [layer.name for layer in layers if layer.name not in wanted]:
+        layers.remove(layers[name])
