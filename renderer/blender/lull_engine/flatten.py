@@ -9,6 +9,7 @@ _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE',
            'GPENCIL'}  # which Blender draws over pictures of all engines
+_PARENT = "lull parent"
 _BOUNCES = "diffuse", "glossy", "transmission"
 SEEING_RAYS = "camera", "volume_scatter", *_BOUNCES
 
@@ -125,19 +126,36 @@ def is_sheared(matrix):
 
 
 def _place(flat, original, mesh, matrix):
-    """Adds an object. Where it is sheared, its vertices are."""
-    if is_sheared(matrix):
-        mesh = mesh.copy()
-        mesh.transform(matrix)
-        if matrix.determinant() < 0:
-            mesh.flip_normals()
-        matrix = Matrix.Identity(4)
+    """Adds an object. Where it is sheared it has a parent until move_sheared(), as textures are baked over its own coordinates."""
     o = bpy.data.objects.new(original.name, mesh)
+    if is_sheared(matrix):
+        o.parent = bpy.data.objects.get(_PARENT) or bpy.data.objects.new(_PARENT, None)
+        o.matrix_parent_inverse = matrix
+        o["lull_matrix"] = [v for row in matrix for v in row]
     o.matrix_world = matrix
     o["lull_source"], o["lull_group"] = original.name, original.lightgroup
     o.color, o.pass_index = original.color, original.pass_index
     flat.collection.objects.link(o)
     return o
+
+
+def move_sheared(made):
+    """Moves the vertices of objects that are sheared: nodes of glTF cannot be so."""
+    for o in made:
+        values = o.get("lull_matrix")
+        if values is None:
+            continue
+        del o["lull_matrix"]
+        matrix = Matrix([values[i:i + 4] for i in range(0, 16, 4)])
+        o.data = o.data.copy()
+        o.data.transform(matrix)
+        if matrix.determinant() < 0:
+            o.data.flip_normals()
+        o.parent = None
+        o.matrix_world = Matrix.Identity(4)
+        if moves := o.get("lull_moves"):
+            places = [Matrix([moves[i:i + 4] for i in range(j, j + 16, 4)]) for j in (0, 16)]
+            o["lull_moves"] = [v for place in places for row in place @ matrix.inverted() for v in row]
 
 
 def leave_copies(flat):

@@ -3,6 +3,7 @@ import bpy
 import numpy as np
 
 _SIDES = 3
+_WIDER = np.pi / (_SIDES * np.sin(np.pi / _SIDES))  # so that tubes are as wide as round ones, on average
 _RADIUS = 0.005  # of curves that have none, as in Cycles
 
 
@@ -92,7 +93,7 @@ def _tubes(name, points, radii, material, uvs):
     other = np.cross(along, side)
     angles = 2 * np.pi * np.arange(_SIDES) / _SIDES
     ring = side[..., None, :] * np.cos(angles)[:, None] + other[..., None, :] * np.sin(angles)[:, None]
-    vertices = points[..., None, :] + radii[..., None, None] * ring
+    vertices = points[..., None, :] + _WIDER * radii[..., None, None] * ring
     number = np.arange(count * steps * _SIDES).reshape(count, steps, _SIDES)
     low, high = number[:, :-1], number[:, 1:]
     quads = np.stack([low, np.roll(low, -1, 2), np.roll(high, -1, 2), high], -1).reshape(-1, 4)

@@ -27,7 +27,7 @@ _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT
 _INPUTS = ('Base Color', 'Metallic', 'Roughness', 'Specular', 'Transmission', 'IOR', 'Alpha', 'Clearcoat', 'Clearcoat Roughness')
 _DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specular': 0, 'Transmission': 0, 'IOR': 1.45,
              'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0),
-             'Tint': (1, 1, 1)}
+             'Tint': (1, 1, 1), 'Shine': 0, 'Shine Color': (1, 1, 1)}  # the latter are of a Glossy surface that is added to the base
 # Values of Specular, and the differences of albedos.
 _MORE_THAN_SCHLICK = (0, 0.1, 0.25, 0.5, 0.75, 1), (0, -0.0116, -0.0008, 0.0061, 0.0084, 0.0087)
 _FINE = 0.005  # difference of neighbouring pixels, on average, from which an image has details of their size
@@ -335,12 +335,36 @@ class _Surface:
                     self.notes.add("without colour where they are transparent", self.name, "materials")
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
+        if not self._is_output(factor):
+            self._keep_highlights(mixed, a, b, factor)
         if 'Normal' in a or 'Normal' in b:
             reflect = all(p['Base Color'] != (0, 0, 0) for p in (a, b))
             if reflect and a.get('Normal') != b.get('Normal'):
                 self.notes.add("with the normals of the first of mixed surfaces that has any", self.name, "materials")
             mixed['Normal'] = a.get('Normal', b.get('Normal'))
         return mixed
+
+    def _keep_highlights(self, mixed, a, b, factor):
+        """Gives a mixture by a number the roughness of what reflects, and its own base to what scatters."""
+        shares = ((a, 1 - factor), (b, factor))
+        reflecting = [(p, share) for p, share in shares if self._reflects(p)]
+        if len(reflecting) == 2 and not any(self._is_output(p['Roughness']) for p in (a, b)) and \
+                abs(a['Roughness'] - b['Roughness']) > 0.1:
+            self.notes.add("reflecting by one roughness, between those of mixed surfaces", self.name, "materials")
+        if len(reflecting) != 1:
+            return
+        (shiny, share), = reflecting
+        base = b if shiny is a else a
+        mixed['Roughness'] = shiny['Roughness']
+        if self._is_metal(shiny):
+            mixed.update({'Metallic': 0, 'Base Color': self._times(1 - share, base['Base Color']), 'Shine': share,
+                          'Shine Color': shiny['Base Color']})
+
+    def _reflects(self, p):
+        return any(self._is_output(p[name]) or p[name] > 0 for name in ('Metallic', 'Specular', 'Transmission', 'Shine', 'Clearcoat'))
+
+    def _is_metal(self, p):
+        return p['Metallic'] == 1 and p['Transmission'] == 0 and not self._is_output(p['Base Color'])
 
     def _half(self, found, socket):
         """Returns the parameters of a half of a mixture: black where nothing is linked, as in Cycles."""
@@ -357,7 +381,7 @@ class _Surface:
         kinds = {n.type for n in _upstream(factor)}
         is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
         if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
-            return dict(a, Specular=0.5, Roughness=b['Roughness'])
+            return self._coated(a, b, factor)
         clear, other = (a, b) if a['Alpha'] == 0 else (b, a)
         is_glass = clear['Alpha'] == 0 and other['Alpha'] == 1 and (other['Metallic'] == 1 or other['Transmission'] == 1)
         if is_glass and is_by_angle and not is_ray:
@@ -368,6 +392,16 @@ class _Surface:
         if is_ray:
             return b if factor.name == 'Is Camera Ray' and a['Radiance'] == (0, 0, 0) else a
         return other if clear['Alpha'] == 0 else a
+
+    def _coated(self, base, shine, factor):
+        """Returns a surface under a coat that reflects as a factor says."""
+        ior = _ior_of(factor)
+        specular = ((ior - 1) / (ior + 1)) ** 2 / 0.08 if ior else 0.5
+        if ior is None or specular > 1:
+            self.notes.add("reflecting as a clear coat does", self.name, "materials")
+        if self._is_output(shine['Base Color']) or min(shine['Base Color']) < 0.75:
+            self.notes.add("reflecting white light", self.name, "materials")
+        return dict(base, Specular=min(specular, 1), Roughness=shine['Roughness'])
 
     def _pane(self, clear, shine, factor):
         """Returns a sheet of glass, for a clear surface that shines as a factor says, None for one that is not known."""
@@ -400,6 +434,12 @@ class _Surface:
         a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[0]), (b, node.inputs[1])))
         shines = a['Base Color'] == (0, 0, 0) and a['Radiance'] != (0, 0, 0)
         first, other = (b, a) if shines else (a, b)
+        if self._is_metal(first) and not self._reflects(other):
+            first, other = other, first
+        if self._is_metal(other) and not self._reflects(first) and max(other['Base Color']) > 0:
+            most = max(other['Base Color'])
+            return dict(first, **{'Shine': most, 'Shine Color': tuple(c / most for c in other['Base Color']), 'Roughness': other['Roughness'],
+                                  'Radiance': self._plus(first['Radiance'], other['Radiance'])})
         if other['Base Color'] != (0, 0, 0):
             self.notes.add("without the second of added surfaces", self.name, "materials")
         return dict(first, Radiance=self._plus(first['Radiance'], other['Radiance']))
@@ -515,6 +555,9 @@ class _Surface:
         self._write_normal(new)
         for name in _EVEN:
             self._set(principled_input(new, name), self._even(name))
+        if self._is_output(self.parameters['Shine']) or self.parameters['Shine'] > 0:
+            colour = self._pixels('Shine Color').reshape(-1, 3).mean(0)
+            self.copy["lull_shine"] = [self._even('Shine'), *(float(c) for c in colour)]
         self._write_radiance(new)
         self._write_metal(new)
         self._write_base(new)
@@ -760,9 +803,10 @@ def _is_known_mapping(node):
     if node.type == 'TEX_COORD':
         return [o.name for o in node.outputs if o.links] == ['UV']
     if node.type == 'MAPPING':
-        turn = node.inputs['Rotation'].default_value
-        return node.vector_type in ('POINT', 'TEXTURE') and abs(turn[0]) + abs(turn[1]) < 1e-6 and \
-            not any(s.links for s in node.inputs[1:])
+        turn, scale = node.inputs['Rotation'].default_value, node.inputs['Scale'].default_value
+        # Of a texture that is moved, glTF has no scale after the rotation.
+        is_known = node.vector_type == 'POINT' or node.vector_type == 'TEXTURE' and (turn[2] == 0 or scale[0] == scale[1])
+        return is_known and abs(turn[0]) + abs(turn[1]) < 1e-6 and not any(s.links for s in node.inputs[1:])
     return True
 
 
