@@ -386,6 +386,44 @@ def cards(folder):
     camera((0, -7, 2.2), (1.4, 0, 0), lens=32)
 
 
+def mixtures(folder):
+    """Diffuse and Glossy, mixed and added; Generated coordinates on a sheared box; an image moved by a Mapping of the kind Texture."""
+    floor(matte())
+    lamp('AREA', 300, (1.5, -2, 5), (0.35, 0, 0.26), size=1)
+    for x, kind in (-2, 'MixShader'), (-0.5, 'AddShader'):
+        made = matte("both", (0.1, 0.3, 0.6, 1))
+        tree = made.node_tree
+        both, shine = tree.nodes.new('ShaderNode' + kind), tree.nodes.new('ShaderNodeBsdfGlossy')
+        shine.inputs['Color'].default_value, shine.inputs['Roughness'].default_value = (0.5, 0.4, 0.3, 1), 0.3
+        for a, b in zip((tree.nodes[1].outputs[0], shine.outputs[0]), (i for i in both.inputs if i.type == 'SHADER')):
+            tree.links.new(a, b)
+        tree.links.new(both.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])
+        sphere(made, (x, 0, 0.7))
+
+    made = matte("generated")
+    place = made.node_tree.nodes.new('ShaderNodeTexCoord')
+    made.node_tree.links.new(place.outputs['Generated'], made.node_tree.nodes[1].inputs['Color'])
+    wide = bpy.data.objects.new("wide", None)
+    wide.scale = (2, 1, 1)
+    bpy.context.collection.objects.link(wide)
+    bpy.ops.mesh.primitive_cube_add(size=0.8, location=(0.5, 0, 0.4), rotation=(0, 0, 0.7))
+    dress(made).parent = wide
+
+    made = matte("moved")
+    tree = made.node_tree
+    place, turn, shown = (tree.nodes.new('ShaderNode' + kind) for kind in ('TexCoord', 'Mapping', 'TexImage'))
+    shown.image = stored(folder, "steps", [[(0.1 + 0.2 * x, 0.2 * y, 0.3) for x in range(4)] for y in range(4)])
+    turn.vector_type = 'TEXTURE'
+    turn.inputs['Rotation'].default_value, turn.inputs['Scale'].default_value = (0, 0, 0.6), (1.5, 0.4, 1)
+    for a, b in ((place.outputs['UV'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]), (shown.outputs[0], tree.nodes[1].inputs['Color'])):
+        tree.links.new(a, b)
+    bpy.ops.mesh.primitive_plane_add(size=1.6, location=(2.5, 0.5, 0.8), rotation=(math.pi / 2, 0, 0))
+    dress(made)
+    world = bpy.context.scene.world = bpy.data.worlds.new("grey")
+    world.use_nodes = True
+    camera((0, -7, 2.2), (1.4, 0, 0), lens=32)
+
+
 def doubtful(folder):
     """What differs, with a warning: a material each, lamps and copies."""
     scene = bpy.context.scene
@@ -431,6 +469,8 @@ def doubtful(folder):
     next(n for n in named.node_tree.nodes if n.type == 'ATTRIBUTE').attribute_type = 'OBJECT'
     sphere(named, (0, 2, 0.4), 0.4)
     floor(fed("fine", 'Base Color', 'TexNoise', 1, Scale=500)).scale = (10, 10, 1)
+    facing, _ = mixed("facing", 'BsdfDiffuse', 'BsdfGlossy', 'LayerWeight', 1)
+    sphere(facing, (2, 2, 0.4), 0.4)
     leaning = fed("leaning", 'Normal', 'NormalMap')
     tree = leaning.node_tree
     leant = shader(leaning, 'TexImage')
