@@ -1320,7 +1320,7 @@ def bevel(scene):
     cube(made)
 
 
-# Further ones
+# More of textures and surfaces
 
 def link(tree, *pairs):
     for a, b in pairs:
@@ -1425,7 +1425,8 @@ def own_mapping(scene):
 def mappings(scene):
     for x, kind in (-1.2, 'TEXTURE'), (0, 'VECTOR'), (1.2, 'NORMAL'):
         made, shown, _, tree = textured(checks()[:, ::-1] * np.linspace(0.2, 1, 64)[:, None, None])
-        turn, where = node(tree, 'ShaderNodeMapping', vector_type=kind, Rotation=(0, 0, 0.3), Scale=(0.5, 0.3, 1)), tree.nodes.new('ShaderNodeTexCoord')
+        turn = node(tree, 'ShaderNodeMapping', vector_type=kind, Rotation=(0, 0, 0.3), Scale=(0.5, 0.3, 1))
+        where = tree.nodes.new('ShaderNodeTexCoord')
         if 'Location' in turn.inputs and turn.inputs['Location'].enabled:
             turn.inputs['Location'].default_value = (0.2, 0.1, 0)
         link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]))
@@ -1546,7 +1547,8 @@ def hair_by_group(scene):
 @case("two-sided material by Backfacing")
 def two_sided(scene):
     made, front, tree = surface('BsdfDiffuse', Color=(0.8, 0.1, 0.1, 1))
-    behind, mix, where = node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.8, 1)), tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeNewGeometry')
+    behind = node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.8, 1))
+    mix, where = tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeNewGeometry')
     link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (front.outputs[0], mix.inputs[1]), (behind.outputs[0], mix.inputs[2]))
     cover(mix, tree)
     wall(made).rotation_euler.z = math.pi
@@ -1620,7 +1622,8 @@ def glass_by_math(scene):
 @case("Mix of Refraction and Glossy by Fresnel")
 def built_glass(scene):
     made, base, tree = surface('BsdfRefraction', Roughness=0, IOR=1.45)
-    shine, fresnel, mix = node(tree, 'ShaderNodeBsdfGlossy', Roughness=0), node(tree, 'ShaderNodeFresnel', IOR=1.45), tree.nodes.new('ShaderNodeMixShader')
+    shine, fresnel = node(tree, 'ShaderNodeBsdfGlossy', Roughness=0), node(tree, 'ShaderNodeFresnel', IOR=1.45)
+    mix = tree.nodes.new('ShaderNodeMixShader')
     link(tree, (fresnel.outputs[0], mix.inputs[0]), (base.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2]))
     cover(mix, tree)
     dressed(made)
@@ -1631,7 +1634,8 @@ def leaf_cut(scene):
     leaf(scene)
     tree = the("wall").data.materials[0].node_tree
     inner = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
-    shown, clear, mix = node(tree, 'ShaderNodeTexImage', image=image(np.repeat(np.repeat(half(), 8, 0), 8, 1))), tree.nodes.new('ShaderNodeBsdfTransparent'), tree.nodes.new('ShaderNodeMixShader')
+    shown = node(tree, 'ShaderNodeTexImage', image=image(np.repeat(np.repeat(half(), 8, 0), 8, 1)))
+    clear, mix = tree.nodes.new('ShaderNodeBsdfTransparent'), tree.nodes.new('ShaderNodeMixShader')
     link(tree, (shown.outputs[1], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (inner.outputs[0], mix.inputs[2]))
     cover(mix, tree)
 
@@ -1688,21 +1692,23 @@ def node_attribute(scene):
     group = bpy.data.node_groups.new("paint", 'GeometryNodeTree')
     group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
     inlet, outlet, store, dressing, place, parts = (group.nodes.new(k) for k in (
-        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeSetMaterial', 'GeometryNodeInputPosition', 'ShaderNodeSeparateXYZ'))
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeSetMaterial', 'GeometryNodeInputPosition',
+        'ShaderNodeSeparateXYZ'))
     store.inputs['Name'].default_value, dressing.inputs['Material'].default_value = "height", made
     value = next(s for s in store.inputs if s.type == 'VALUE' and s.enabled)
-    link(group, (inlet.outputs[0], store.inputs[0]), (place.outputs[0], parts.inputs[0]), (parts.outputs[2], value), (store.outputs[0], dressing.inputs[0]),
-         (dressing.outputs[0], outlet.inputs[0]))
+    link(group, (inlet.outputs[0], store.inputs[0]), (place.outputs[0], parts.inputs[0]), (parts.outputs[2], value),
+         (store.outputs[0], dressing.inputs[0]), (dressing.outputs[0], outlet.inputs[0]))
     the("ball").modifiers.new("paint", 'NODES').node_group = group
 
 
-# Further lamps, cameras and layers
+# More of lamps, cameras, layers and worlds
 
 @case("instanced collection with lamps in it, scaled and mirrored")
 def lamps_in_collection(scene):
     without("key")
     parts = bpy.data.collections.new("parts")
-    for made in lamp('AREA', 100, (1, 0, 2), (0.4, 0, 0), size=0.5, shape='ELLIPSE', size_y=1), lamp('SPOT', 200, (-1, -1, 2), (0.5, 0, 0), shadow_soft_size=0.1, spot_size=1):
+    for made in (lamp('AREA', 100, (1, 0, 2), (0.4, 0, 0), size=0.5, shape='ELLIPSE', size_y=1),
+                 lamp('SPOT', 200, (-1, -1, 2), (0.5, 0, 0), shadow_soft_size=0.1, spot_size=1)):
         parts.objects.link(made)
         scene.collection.objects.unlink(made)
     for x, scale in (-1.5, (1, 1, 1)), (1.5, (-1.5, 1, 1.2)):
@@ -1714,7 +1720,8 @@ def lamps_in_collection(scene):
 @case("lamps whose size, colour and energy are animated, and a driver")
 def animated_lamps(scene):
     light = the("key").data
-    keyed(light, "size", 1, 1, 0.2, 2), keyed(light, "energy", 1, 1, 200, 400), keyed(light, "color", (1, 1, 1), (1, 1, 1), (1, 0.5, 0.5), (1, 0.2, 0.2))
+    keyed(light, "size", 1, 1, 0.2, 2), keyed(light, "energy", 1, 1, 200, 400)
+    keyed(light, "color", (1, 1, 1), (1, 1, 1), (1, 0.5, 0.5), (1, 0.2, 0.2))
     driver = the("ball").driver_add("location", 0).driver
     driver.expression = "frame / 2"
     scene.frame_set(2)
@@ -1727,7 +1734,7 @@ def sun_nodes(scene):
     emission.inputs[1].default_value = 2.5
 
 
-@case("strength of a lamp by a Math node and a group")
+@case("strength of a lamp by a Math node")
 def lamp_math(scene):
     tree, emission = noded(the("key").data)
     times = node(tree, 'ShaderNodeMath', operation='MULTIPLY')
@@ -1735,13 +1742,13 @@ def lamp_math(scene):
     link(tree, (times.outputs[0], emission.inputs[1]))
 
 
-@case("spot lamp that is scaled, of 150 degrees")
+@case("spot lamp that is scaled")
 def spot_scaled(scene):
     o = only('SPOT', 800, (1, -2, 3), (0.4, 0, 0.3), shadow_soft_size=0, spot_size=1, spot_blend=0.2)
     o.scale = (2, 1, 1)
 
 
-@case("lamps that are scaled: point with a radius, sun, sheared area")
+@case("point lamp with a radius that is scaled, and a sheared area lamp")
 def lamps_scaled(scene):
     only('POINT', 100, (1, -2, 3), shadow_soft_size=0.2).scale = (2, 2, 2)
     parent = bpy.data.objects.new("parent", None)
@@ -1829,7 +1836,7 @@ def terminator(scene):
     only('SUN', 3, (0, 0, 9), (0.9, 0.9, 0), angle=0)
 
 
-@case("curve with a profile and a taper, and two materials")
+@case("curve with the profile of another, and an image texture")
 def curves(scene):
     without("ball")
     bpy.ops.curve.primitive_bezier_circle_add(radius=0.3, location=(0, 50, 0))
@@ -1840,7 +1847,7 @@ def curves(scene):
     o.data.materials.append(textured()[0])
 
 
-@case("text whose curves have materials, over their UVs")
+@case("text with an image texture")
 def text_uvs(scene):
     without("ball")
     bpy.ops.object.text_add(location=(-1.5, 0, 0.2), rotation=(1.2, 0, 0))
@@ -1937,9 +1944,10 @@ def one_sided_light(scene):
 @case("waves, Musgrave and magic on a scaled object")
 def scaled_textures(scene):
     made, bsdf, tree = principled()
-    where, wave, magic, mix = tree.nodes.new('ShaderNodeTexCoord'), node(tree, 'ShaderNodeTexWave', Scale=2), node(tree, 'ShaderNodeTexMagic', Scale=3), tree.nodes.new('ShaderNodeMixRGB')
-    link(tree, (where.outputs['Object'], wave.inputs[0]), (where.outputs['Object'], magic.inputs[0]), (wave.outputs[0], mix.inputs[1]), (magic.outputs[0], mix.inputs[2]),
-         (node(tree, 'ShaderNodeTexMusgrave', Scale=3).outputs[0], mix.inputs[0]), (mix.outputs[0], bsdf.inputs['Base Color']))
+    where, mix = tree.nodes.new('ShaderNodeTexCoord'), tree.nodes.new('ShaderNodeMixRGB')
+    wave, magic = node(tree, 'ShaderNodeTexWave', Scale=2), node(tree, 'ShaderNodeTexMagic', Scale=3)
+    link(tree, (where.outputs['Object'], wave.inputs[0]), (where.outputs['Object'], magic.inputs[0]), (wave.outputs[0], mix.inputs[1]),
+         (magic.outputs[0], mix.inputs[2]), (node(tree, 'ShaderNodeTexMusgrave', Scale=3).outputs[0], mix.inputs[0]), (mix.outputs[0], bsdf.inputs['Base Color']))
     dressed(made)
     the("ball").scale = (-1.5, 0.8, 1)
 
@@ -1997,7 +2005,7 @@ def particle_collection(scene):
               use_rotations=True, rotation_factor_random=0.8, phase_factor_random=2)
 
 
-@case("hair with simple children, and one with interpolated ones")
+@case("hair with interpolated children")
 def hair_children(scene):
     particles(lawn(), count=100, hair_length=0.6, root_radius=5, child_type='INTERPOLATED', rendered_child_count=10)
 
@@ -2047,7 +2055,7 @@ def water(scene):
     dress(surface('BsdfGlass', Roughness=0, IOR=1.33, Color=(0.5, 0.7, 1, 1))[0], smooth=True)
 
 
-@case("Mix by Fresnel of 2.5, and by Facing: Diffuse and Glossy")
+@case("Mix by Fresnel of an index of 2.5: Diffuse and Glossy")
 def coats(scene):
     coated(scene)
     next(n for n in the("ball").data.materials[0].node_tree.nodes if n.type == 'FRESNEL').inputs[0].default_value = 2.5
@@ -2076,7 +2084,7 @@ def three_mixed(scene):
     cover(mix, tree)
 
 
-@case("emission of a picture, and Principled emission of an image times a number")
+@case("Principled: emission of an image times a number")
 def screens(scene):
     made, bsdf, tree = principled(Emission_Strength=2, Base_Color=(0.1, 0.1, 0.1, 1))
     link(tree, (node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.5, 0.2), "screen")).outputs[0], bsdf.inputs['Emission']))
@@ -2097,16 +2105,17 @@ def shade(scene):
     lamp('POINT', 80, (0, 0, 1), shadow_soft_size=0.1)
 
 
-@case("Preetham's sky, and Nishita's without a disc, mixed")
+@case("world: Preetham's sky, and Nishita's without a disc, mixed")
 def skies(scene):
     tree = scene.world.node_tree
     mix = node(tree, 'ShaderNodeMixRGB', Fac=0.5)
     link(tree, (node(tree, 'ShaderNodeTexSky', sky_type='PREETHAM').outputs[0], mix.inputs[1]),
-         (node(tree, 'ShaderNodeTexSky', sky_type='NISHITA', sun_disc=False).outputs[0], mix.inputs[2]), (mix.outputs[0], tree.nodes["Background"].inputs[0]))
+         (node(tree, 'ShaderNodeTexSky', sky_type='NISHITA', sun_disc=False).outputs[0], mix.inputs[2]),
+         (mix.outputs[0], tree.nodes["Background"].inputs[0]))
     tree.nodes["Background"].inputs[1].default_value = 0.1
 
 
-@case("ortho camera with depth of field")
+@case("orthographic camera with depth of field")
 def orthographic_focus(scene):
     orthographic(scene)
     dof = scene.camera.data.dof
