@@ -47,7 +47,8 @@ class AddOn(unittest.TestCase):
         os.makedirs(user / "scripts/addons")
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
-        for frame, spp, names in ((1, 4 * SPP, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur"]),
+        for frame, spp, names in ((1, 4 * SPP, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur",
+                                                 "cards", "mixtures"]),
                                   (11, 4 * SPP, ["skin"]), (1, 0, ["doubtful"])):
             what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": spp, "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
@@ -152,6 +153,20 @@ class AddOn(unittest.TestCase):
         passes, said = self.render("fur")
         self.assert_close("fur", passes, 0.02, 0.04)
         self.assertNotIn("Warning", said)
+
+    def test_images_and_colours_as_cycles_reads_them(self):
+        passes, said = self.render("cards")
+        self.assert_close("cards", passes, 0.01, 0.02)
+        self.assertNotIn("Warning", said)
+
+    def test_mixtures_and_places_of_textures(self):
+        passes, said = self.render("mixtures")
+        self.assert_close("mixtures", passes, 0.01, 0.02)
+        self.assertNotIn("Warning", said)
+
+    def test_keeps_an_orthographic_camera(self):
+        _, said = self.render("factory", SAMPLES + "d = scene.camera.data; d.type, d.dof.use_dof = 'ORTHO', True")
+        self.assertIn("the orthographic camera 'Camera' is sharp at all distances", said)
 
     def test_passes_of_view_layers(self):
         passes, said = self.render("passes")
@@ -346,6 +361,10 @@ bpy.data.lights['Light'].use_shadow = False""")
                 "1 material is of the same transmission everywhere: 'patchy'",
                 "1 material is occluded by the same object alone: 'shaded'",
                 "1 material is without properties of objects: 'named'",
+                "1 material is reflecting as a clear coat does: 'facing'",
+                "1 material is brighter where light falls flat, as normals lean far: 'leaning'",
+                "1 object is brighter near the edge of its own shadow, without its Shading Offset: 'soft'",
+                "1 light is shining in another direction, being sheared: 'askew'",
                 "passes that lull lacks are missing: cryptomatte above 6 levels",
                 "1 material is without anisotropic: 'brushed'",
                 "blurred, by images of 64 pixels over whole meshes (Texture Size): 'fine'",

@@ -324,6 +324,106 @@ def fur(folder):
     camera((0, -7, 2), (1.35, 0, 0), lens=35, clip_start=2)
 
 
+def stored(folder, name, rows, colours='sRGB'):
+    """Returns a PNG of rows of encoded pixels, the lowest first."""
+    image = bpy.data.images.new(name, len(rows[0]), len(rows), alpha=len(rows[0][0]) == 4)
+    image.colorspace_settings.name = colours
+    image.pixels = [v for row in rows for pixel in row for v in (*pixel, 1)[:4]]
+    image.filepath_raw, image.file_format = os.path.join(folder, name + ".png"), 'PNG'
+    image.save()
+    return image
+
+
+def cards(folder):
+    """Upright rectangles: an image of few pixels that differ much; one with an alpha that no node asks for; its alpha on a plain
+    colour; an image with a mapping in its own node; colours of vertices that are not the first; light added to a
+    transparent surface; nothing on the surface."""
+    floor(matte())
+    lamp('SUN', 2, (0, 0, 5), (0.9, 0.2, 0), angle=0)
+    contrast = stored(folder, "contrast", [[((x + y) % 2 * 0.9,) * 3 for x in range(4)] for y in range(4)])
+    veiled = stored(folder, "veiled", [[(0.9, 0.2, 0.1, x // 4) for x in range(8)] for _ in range(8)])
+
+    def card(x, made):
+        mesh = bpy.data.meshes.new("card")
+        mesh.from_pydata([(x - 0.45, 0, 0), (x + 0.45, 0, 0), (x + 0.45, 0, 2), (x - 0.45, 0, 2)], [], [(0, 1, 2, 3)])
+        for loop, uv in zip(mesh.uv_layers.new(name="UVMap").data, ((0, 0), (1, 0), (1, 1), (0, 1))):
+            loop.uv = uv
+        mesh.materials.append(made)
+        bpy.context.collection.objects.link(bpy.data.objects.new("card", mesh))
+        return mesh
+
+    def fed(kind, image=None, made=None, socket='Color', output=0):
+        made = made or matte("card")
+        source = made.node_tree.nodes.new('ShaderNode' + kind)
+        if image:
+            source.image = image
+        made.node_tree.links.new(source.outputs[output], made.node_tree.nodes[1].inputs[socket])
+        return made, source
+
+    card(-3, fed('TexImage', contrast)[0])
+    card(-2, fed('TexImage', veiled)[0])
+    card(-1, fed('TexImage', veiled, material("cut", 'BsdfPrincipled'), 'Alpha', 1)[0])
+    made, source = fed('TexImage', contrast)
+    source.texture_mapping.scale = (0.4, 0.4, 1)
+    card(0, made)
+    colours = card(1, fed('VertexColor')[0]).color_attributes
+    for name, colour in ("red", (0.8, 0.1, 0.1, 1)), ("green", (0.1, 0.8, 0.1, 1)):
+        for one in colours.new(name, 'FLOAT_COLOR', 'POINT').data:
+            one.color = colour
+    colours.active_color_index, colours.render_color_index = 0, 1
+    made = material("glow", 'Emission', Strength=0.5)
+    tree = made.node_tree
+    clear, add = (tree.nodes.new('ShaderNode' + kind) for kind in ('BsdfTransparent', 'AddShader'))
+    for a, b in ((tree.nodes[1].outputs[0], add.inputs[0]), (clear.outputs[0], add.inputs[1]),
+                 (add.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])):
+        tree.links.new(a, b)
+    card(2, made)
+    made = matte("nothing")
+    made.node_tree.nodes.remove(made.node_tree.nodes[1])
+    card(3, made)
+    world = bpy.context.scene.world = bpy.data.worlds.new("grey")
+    world.use_nodes = True
+    camera((0, -7, 2.2), (1.4, 0, 0), lens=32)
+
+
+def mixtures(folder):
+    """Diffuse and Glossy, mixed and added; Generated coordinates on a sheared box; an image moved by a Mapping of the kind Texture."""
+    floor(matte())
+    lamp('AREA', 300, (1.5, -2, 5), (0.35, 0, 0.26), size=1)
+    for x, kind in (-2, 'MixShader'), (-0.5, 'AddShader'):
+        made = matte("both", (0.1, 0.3, 0.6, 1))
+        tree = made.node_tree
+        both, shine = tree.nodes.new('ShaderNode' + kind), tree.nodes.new('ShaderNodeBsdfGlossy')
+        shine.inputs['Color'].default_value, shine.inputs['Roughness'].default_value = (0.5, 0.4, 0.3, 1), 0.3
+        for a, b in zip((tree.nodes[1].outputs[0], shine.outputs[0]), (i for i in both.inputs if i.type == 'SHADER')):
+            tree.links.new(a, b)
+        tree.links.new(both.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])
+        sphere(made, (x, 0, 0.7))
+
+    made = matte("generated")
+    place = made.node_tree.nodes.new('ShaderNodeTexCoord')
+    made.node_tree.links.new(place.outputs['Generated'], made.node_tree.nodes[1].inputs['Color'])
+    wide = bpy.data.objects.new("wide", None)
+    wide.scale = (2, 1, 1)
+    bpy.context.collection.objects.link(wide)
+    bpy.ops.mesh.primitive_cube_add(size=0.8, location=(0.5, 0, 0.4), rotation=(0, 0, 0.7))
+    dress(made).parent = wide
+
+    made = matte("moved")
+    tree = made.node_tree
+    place, turn, shown = (tree.nodes.new('ShaderNode' + kind) for kind in ('TexCoord', 'Mapping', 'TexImage'))
+    shown.image = stored(folder, "steps", [[(0.1 + 0.2 * x, 0.2 * y, 0.3) for x in range(4)] for y in range(4)])
+    turn.vector_type = 'TEXTURE'
+    turn.inputs['Rotation'].default_value, turn.inputs['Scale'].default_value = (0, 0, 0.6), (1.5, 0.4, 1)
+    for a, b in ((place.outputs['UV'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]), (shown.outputs[0], tree.nodes[1].inputs['Color'])):
+        tree.links.new(a, b)
+    bpy.ops.mesh.primitive_plane_add(size=1.6, location=(2.5, 0.5, 0.8), rotation=(math.pi / 2, 0, 0))
+    dress(made)
+    world = bpy.context.scene.world = bpy.data.worlds.new("grey")
+    world.use_nodes = True
+    camera((0, -7, 2.2), (1.4, 0, 0), lens=32)
+
+
 def doubtful(folder):
     """What differs, with a warning: a material each, lamps and copies."""
     scene = bpy.context.scene
@@ -369,6 +469,15 @@ def doubtful(folder):
     next(n for n in named.node_tree.nodes if n.type == 'ATTRIBUTE').attribute_type = 'OBJECT'
     sphere(named, (0, 2, 0.4), 0.4)
     floor(fed("fine", 'Base Color', 'TexNoise', 1, Scale=500)).scale = (10, 10, 1)
+    facing, _ = mixed("facing", 'BsdfDiffuse', 'BsdfGlossy', 'LayerWeight', 1)
+    sphere(facing, (2, 2, 0.4), 0.4)
+    leaning = fed("leaning", 'Normal', 'NormalMap')
+    tree = leaning.node_tree
+    leant = shader(leaning, 'TexImage')
+    leant.image = stored(folder, "leant", [[(0.8, 0.5, 0.9)] * 4] * 4, 'Non-Color')
+    tree.links.new(leant.outputs[0], next(n for n in tree.nodes if n.type == 'NORMAL_MAP').inputs['Color'])
+    sphere(leaning, (1, 2, 0.4), 0.4).cycles.shadow_terminator_offset = 0.5
+    bpy.context.object.name = "soft"
 
     parts = bpy.data.collections.new("parts")
     bpy.ops.mesh.primitive_cube_add(size=0.3)
@@ -385,6 +494,10 @@ def doubtful(folder):
     lamp('POINT', -10, (0, 0, 4)).name = "dark"
     edge = lamp('AREA', 10, (-5, 0, 1.5), (0, -math.pi / 4, 0), size=5)
     edge.name, edge.visible_camera = "edge", False
+    askew = lamp('AREA', 10, (0, 0, 1.5), (0.5, 0, 0.5))
+    askew.name, askew.parent = "askew", bpy.data.objects.new("wide", None)
+    askew.parent.scale.x = 2
+    scene.collection.objects.link(askew.parent)
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
     scene.render.use_simplify = scene.cycles.use_camera_cull = edge.cycles.use_camera_cull = True
     scene.view_layers[0].pass_cryptomatte_depth, scene.view_layers[0].use_pass_cryptomatte_object = 8, True

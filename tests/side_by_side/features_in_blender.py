@@ -1320,6 +1320,808 @@ def bevel(scene):
     cube(made)
 
 
+# More of textures and surfaces
+
+def link(tree, *pairs):
+    for a, b in pairs:
+        tree.links.new(a, b)
+
+
+@case("image texture over the UV map that is chosen for renders")
+def uv_for_renders(scene):
+    layers = wall(textured()[0]).data.uv_layers
+    layer = layers.new(name="small")
+    for loop, uv in zip(layer.data, ((0, 0), (1, 0), (1, 1), (0, 1))):
+        loop.uv = [0.2 * v for v in uv]
+    layer.active_render, layers.active_index = True, 0
+
+
+@case("colours of vertices that are chosen for renders")
+def colours_for_renders(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeVertexColor').outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+    attributes = the("ball").data.color_attributes
+    for name, colour in ("red", (0.8, 0.1, 0.1, 1)), ("green", (0.1, 0.8, 0.1, 1)):
+        for one in attributes.new(name, 'FLOAT_COLOR', 'POINT').data:
+            one.color = colour
+    attributes.active_color_index, attributes.render_color_index = 0, 1
+
+
+@case("Attribute nodes: colours of points, and UVs")
+def attributes(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="mask").outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+    for i, one in enumerate(the("ball").data.color_attributes.new("mask", 'FLOAT_COLOR', 'POINT').data):
+        one.color = (0.8, 0.2, 0.1 + 0.5 * (i % 2), 1)
+    made, shown, _, tree = textured()
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="UVMap").outputs['Vector'], shown.inputs[0]))
+    dressed(made, "floor")
+
+
+@case("transparent image whose alpha is not linked")
+def alpha_unused(scene):
+    wall(textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))[0])
+
+
+@case("transparent image with an alpha that is linked, on instances")
+def leaves(scene):
+    made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+    link(tree, (shown.outputs[1], bsdf.inputs['Alpha']))
+    one = wall(made, 0.3, z=0.6)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=3, location=(0, 0, 0.1))
+    one.parent = dress(matte("lawn", (0.1, 0.3, 0.1, 1)))
+    one.parent.instance_type = 'VERTS'
+
+
+@case("image texture through hue, gamma, contrast and Invert")
+def corrected(scene):
+    made, shown, bsdf, tree = textured()
+    made_of = [node(tree, 'ShaderNodeHueSaturation', Hue=0.6, Saturation=1.5, Value=0.8), node(tree, 'ShaderNodeGamma', Gamma=1.4),
+               node(tree, 'ShaderNodeBrightContrast', Bright=0.05, Contrast=0.2), node(tree, 'ShaderNodeInvert', Fac=0.3)]
+    source = shown.outputs[0]
+    for one in made_of:
+        link(tree, (source, one.inputs['Color']))
+        source = one.outputs[0]
+    link(tree, (source, bsdf.inputs['Base Color']))
+    dressed(made)
+
+
+@case("two images mixed by a third, with a mapping each")
+def mixed_images(scene):
+    made, shown, bsdf, tree = textured()
+    other = node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.3, 0.2), "other"))
+    mask = node(tree, 'ShaderNodeTexImage', image=image(waves(), "mask", 'Non-Color'))
+    mix, where = node(tree, 'ShaderNodeMixRGB'), tree.nodes.new('ShaderNodeTexCoord')
+    for i, one in enumerate((other, mask)):
+        turn = node(tree, 'ShaderNodeMapping', Scale=(1.5 + i, 2, 1), Rotation=(0, 0, 0.3 + i), Location=(0.2, 0.1, 0))
+        link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], one.inputs[0]))
+    link(tree, (mask.outputs[0], mix.inputs[0]), (shown.outputs[0], mix.inputs[1]), (other.outputs[0], mix.inputs[2]),
+         (mix.outputs[0], bsdf.inputs['Base Color']))
+    wall(made)
+
+
+@case("image texture mirrored by nodes")
+def mirrored(scene):
+    made, shown, _, tree = textured(checks() * np.linspace(0.2, 1, 64)[None, :, None])
+    where, parts, back = (tree.nodes.new('ShaderNode' + k) for k in ('TexCoord', 'SeparateXYZ', 'CombineXYZ'))
+    link(tree, (where.outputs['UV'], parts.inputs[0]), (back.outputs[0], shown.inputs[0]))
+    for i in range(2):
+        times, fold = node(tree, 'ShaderNodeMath', operation='MULTIPLY'), node(tree, 'ShaderNodeMath', operation='PINGPONG')
+        times.inputs[1].default_value, fold.inputs[1].default_value = 3, 1
+        link(tree, (parts.outputs[i], times.inputs[0]), (times.outputs[0], fold.inputs[0]), (fold.outputs[0], back.inputs[i]))
+    wall(made)
+
+
+@case("mapping in the node of an image")
+def own_mapping(scene):
+    made, shown, _, _ = textured()
+    shown.texture_mapping.scale, shown.texture_mapping.translation = (0.3, 0.2, 1), (0.1, 0.3, 0)
+    wall(made)
+
+
+@case("Mapping of the kinds Texture, Vector and Normal, with a location")
+def mappings(scene):
+    for x, kind in (-1.2, 'TEXTURE'), (0, 'VECTOR'), (1.2, 'NORMAL'):
+        made, shown, _, tree = textured(checks()[:, ::-1] * np.linspace(0.2, 1, 64)[:, None, None])
+        turn = node(tree, 'ShaderNodeMapping', vector_type=kind, Rotation=(0, 0, 0.3), Scale=(0.5, 0.3, 1))
+        where = tree.nodes.new('ShaderNodeTexCoord')
+        if 'Location' in turn.inputs and turn.inputs['Location'].enabled:
+            turn.inputs['Location'].default_value = (0.2, 0.1, 0)
+        link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]))
+        wall(made, 0.5).location.x = x
+
+
+@case("image texture over Generated coordinates, Extend, and Cubic")
+def generated(scene):
+    made, shown, _, tree = textured(extension='EXTEND', interpolation='Cubic')
+    turn, where = node(tree, 'ShaderNodeMapping', Scale=(1.5, 1.5, 1), Location=(-0.2, -0.2, 0)), tree.nodes.new('ShaderNodeTexCoord')
+    link(tree, (where.outputs['Generated'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]))
+    dressed(made)
+
+
+@case("gradient through a ramp")
+def gradient(scene):
+    made, bsdf, tree = principled()
+    where, shown, ramped = (tree.nodes.new('ShaderNode' + k) for k in ('TexCoord', 'TexGradient', 'ValToRGB'))
+    shown.gradient_type = 'SPHERICAL'
+    ramped.color_ramp.interpolation = 'CONSTANT'
+    ramped.color_ramp.elements[0].color, ramped.color_ramp.elements[1].position = (0.7, 0.1, 0.1, 1), 0.4
+    link(tree, (where.outputs['Generated'], shown.inputs[0]), (shown.outputs[0], ramped.inputs[0]), (ramped.outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+
+
+@case("texture over the coordinates of another object")
+def other_coordinates(scene):
+    made, shown, _, tree = textured()
+    where = tree.nodes.new('ShaderNodeTexCoord')
+    where.object = bpy.data.objects.new("place", None)
+    scene.collection.objects.link(where.object)
+    where.object.matrix_world = Matrix.LocRotScale((0.3, 0, 0), Euler((0.4, 0, 0.5)), (2, 2, 2))
+    link(tree, (where.outputs['Object'], shown.inputs[0]))
+    shown.projection = 'BOX'
+    dressed(made)
+
+
+@case("image of tiles (UDIM)")
+def tiles(scene):
+    made, shown, _, _ = textured()
+    tiled = bpy.data.images.new("tiled", 64, 64, tiled=True)
+    for number, colour in (1001, (0.8, 0.1, 0.1)), (1002, (0.1, 0.8, 0.1)):
+        image(np.ones((64, 64, 3)) * colour, f"tile.{number}")
+    tiled.filepath = os.path.join(FOLDER, "tile.<UDIM>.png")
+    tiled.source = 'TILED'
+    if len(tiled.tiles) < 2:
+        tiled.tiles.new(1002)
+    tiled.reload()
+    shown.image = tiled
+    for loop in wall(made).data.uv_layers[0].data:
+        loop.uv.x *= 2
+
+
+@case("normal map of strength 2, and one in space of the object")
+def normal_strength(scene):
+    normal_map(scene)
+    tree = the("ball").data.materials[0].node_tree
+    next(n for n in tree.nodes if n.type == 'NORMAL_MAP').inputs['Strength'].default_value = 2
+    made = the("ball").data.materials[0].copy()
+    next(n for n in made.node_tree.nodes if n.type == 'NORMAL_MAP').space = 'OBJECT'
+    dressed(made, "floor")
+
+
+@case("normal map that leans 30 degrees towards the light")
+def leaning(scene):
+    made, bsdf, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
+    tilted = np.ones((8, 8, 3)) * (0.5 + 0.5 * math.sin(0.52), 0.5, 0.5 + 0.5 * math.cos(0.52))
+    shown, mapped = node(tree, 'ShaderNodeTexImage', image=image(tilted, "tilted", 'Non-Color')), tree.nodes.new('ShaderNodeNormalMap')
+    link(tree, (shown.outputs[0], mapped.inputs['Color']), (mapped.outputs[0], bsdf.inputs['Normal']))
+    wall(made)
+    only('SUN', 3, (0, 0, 9), (0.2, 1.3, 0), angle=0)
+
+
+@case("normal map under bump")
+def chained(scene):
+    normal_map(scene)
+    tree = the("ball").data.materials[0].node_tree
+    bsdf, mapped = (next(n for n in tree.nodes if n.type == k) for k in ('BSDF_PRINCIPLED', 'NORMAL_MAP'))
+    bumped = node(tree, 'ShaderNodeBump', Strength=0.3)
+    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=6).outputs[0], bumped.inputs['Height']), (mapped.outputs[0], bumped.inputs['Normal']),
+         (bumped.outputs[0], bsdf.inputs['Normal']))
+
+
+@case("custom normals, and smooth shading with an angle")
+def custom_normals(scene):
+    without("ball")
+    o = cube(surface('BsdfGlossy', Roughness=0.3)[0], 1.2, (0, 0, 0.6))
+    for polygon in o.data.polygons:
+        polygon.use_smooth = True
+    o.data.use_auto_smooth = True
+    o.data.normals_split_custom_set_from_vertices([v.co.normalized() for v in o.data.vertices])
+
+
+@case("modifiers: array, mirror, solidify, bevel with weighted normals")
+def more_modifiers(scene):
+    without("ball")
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 0.6, (0.8, 0, 0.4))
+    o.scale = (-1, 1.3, 0.8)
+    for name, kind, values in (("bevel", 'BEVEL', dict(width=0.08, segments=3)), ("copies", 'ARRAY', dict(count=3)),
+                               ("other", 'MIRROR', dict(mirror_object=the("floor"))), ("normals", 'WEIGHTED_NORMAL', {})):
+        made = o.modifiers.new(name, kind)
+        for key, value in values.items():
+            setattr(made, key, value)
+    for polygon in o.data.polygons:
+        polygon.use_smooth = True
+    o.data.use_auto_smooth = True
+
+
+@case("hair whose density is a group of vertices")
+def hair_by_group(scene):
+    o = lawn()
+    group = o.vertex_groups.new(name="dense")
+    group.add([v.index for v in o.data.vertices if v.co.x > 0], 1, 'REPLACE')
+    particles(o, count=1000, hair_length=0.6, root_radius=5)
+    o.particle_systems[0].vertex_group_density = "dense"
+
+
+@case("two-sided material by Backfacing")
+def two_sided(scene):
+    made, front, tree = surface('BsdfDiffuse', Color=(0.8, 0.1, 0.1, 1))
+    behind = node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.8, 1))
+    mix, where = tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeNewGeometry')
+    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (front.outputs[0], mix.inputs[1]), (behind.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    wall(made).rotation_euler.z = math.pi
+
+
+@case("colour by the facing of Layer Weight")
+def by_facing(scene):
+    made, bsdf, tree = principled()
+    ramped = node(tree, 'ShaderNodeValToRGB')
+    link(tree, (node(tree, 'ShaderNodeLayerWeight', Blend=0.5).outputs['Facing'], ramped.inputs[0]), (ramped.outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+
+
+@case("emission by a property of the object")
+def emission_property(scene):
+    made, bsdf, tree = surface('Emission')
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_type='OBJECT', attribute_name="power").outputs['Fac'], bsdf.inputs[1]))
+    the("ball")["power"] = 3.0
+    dressed(made)
+
+
+@case("emission by the index and the colour of the object")
+def emission_index(scene):
+    made, bsdf, tree = surface('Emission')
+    info = tree.nodes.new('ShaderNodeObjectInfo')
+    link(tree, (info.outputs['Object Index'], bsdf.inputs[1]), (info.outputs['Color'], bsdf.inputs[0]))
+    the("ball").pass_index, the("ball").color = 3, (0.3, 0.6, 1, 1)
+    dressed(made)
+
+
+@case("emission that the camera sees weaker")
+def emission_by_rays(scene):
+    made, bsdf, tree = surface('Emission')
+    ranged = node(tree, 'ShaderNodeMapRange')
+    ranged.inputs[3].default_value, ranged.inputs[4].default_value = 10, 1
+    link(tree, (tree.nodes.new('ShaderNodeLightPath').outputs['Is Camera Ray'], ranged.inputs[0]), (ranged.outputs[0], bsdf.inputs[1]))
+    dressed(made)
+
+
+@case("Add of Transparent and Emission, and their Mix")
+def glow(scene):
+    for x, kind in (-0.8, 'AddShader'), (0.8, 'MixShader'):
+        made, bsdf, tree = surface('Emission', Strength=0.5, Color=(1, 0.3, 0.1, 1))
+        both, clear = tree.nodes.new('ShaderNode' + kind), tree.nodes.new('ShaderNodeBsdfTransparent')
+        inputs = [s for s in both.inputs if s.type == 'SHADER']
+        link(tree, (clear.outputs[0], inputs[0]), (bsdf.outputs[0], inputs[1]))
+        cover(both, tree)
+        wall(made, 0.6).location.x = x
+
+
+@case("Add of Diffuse and Glossy")
+def added_shine(scene):
+    made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
+    add = tree.nodes.new('ShaderNodeAddShader')
+    link(tree, (base.outputs[0], add.inputs[0]), (node(tree, 'ShaderNodeBsdfGlossy', Color=(0.2, 0.2, 0.2, 1)).outputs[0], add.inputs[1]))
+    cover(add, tree)
+    dressed(made)
+
+
+@case("glass that is clear to shadows and diffuse light, by a Math node")
+def glass_by_math(scene):
+    made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
+    rays, clear, mix, most = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader', 'Math'))
+    most.operation = 'MAXIMUM'
+    link(tree, (rays.outputs['Is Shadow Ray'], most.inputs[0]), (rays.outputs['Is Diffuse Ray'], most.inputs[1]), (most.outputs[0], mix.inputs[0]),
+         (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    sheet(made)
+
+
+@case("Mix of Refraction and Glossy by Fresnel")
+def built_glass(scene):
+    made, base, tree = surface('BsdfRefraction', Roughness=0, IOR=1.45)
+    shine, fresnel = node(tree, 'ShaderNodeBsdfGlossy', Roughness=0), node(tree, 'ShaderNodeFresnel', IOR=1.45)
+    mix = tree.nodes.new('ShaderNodeMixShader')
+    link(tree, (fresnel.outputs[0], mix.inputs[0]), (base.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("leaf with an alpha: Transparent, Diffuse and Translucent")
+def leaf_cut(scene):
+    leaf(scene)
+    tree = the("wall").data.materials[0].node_tree
+    inner = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
+    shown = node(tree, 'ShaderNodeTexImage', image=image(np.repeat(np.repeat(half(), 8, 0), 8, 1)))
+    clear, mix = tree.nodes.new('ShaderNodeBsdfTransparent'), tree.nodes.new('ShaderNodeMixShader')
+    link(tree, (shown.outputs[1], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (inner.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+
+
+@case("surface Holdout")
+def holdout_surface(scene):
+    scene.render.film_transparent = True
+    dressed(surface('Holdout')[0])
+
+
+@case("material with nothing on its surface, and no volume")
+def nothing(scene):
+    made, bsdf, tree = principled()
+    tree.nodes.remove(bsdf)
+    dressed(made)
+
+
+@case("material of the object, not of its mesh")
+def slots(scene):
+    for x, colour in (-1.6, (0.1, 0.6, 0.1, 1)), (1.6, (0.1, 0.1, 0.6, 1)):
+        o = bpy.data.objects.new("other", the("ball").data)
+        scene.collection.objects.link(o)
+        o.location = (x, 0, 0.7)
+        o.material_slots[0].link = 'OBJECT'
+        o.material_slots[0].material = matte("own", colour)
+
+
+@case("metal and roughness of an image's channels")
+def packed(scene):
+    made, bsdf, tree = principled()
+    values = np.zeros((64, 64, 3)) + (0, 0.3, 0)
+    values[:, 32:, 1], values[16:48, :, 2] = 0.7, 1
+    shown, parts = node(tree, 'ShaderNodeTexImage', image=image(values, "packed", 'Non-Color')), tree.nodes.new('ShaderNodeSeparateColor')
+    link(tree, (shown.outputs[0], parts.inputs[0]), (parts.outputs[1], bsdf.inputs['Roughness']), (parts.outputs[2], bsdf.inputs['Metallic']))
+    dressed(made)
+
+
+@case("points and volumes of geometry nodes")
+def points(scene):
+    without("ball")
+    group = bpy.data.node_groups.new("points", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, made = (group.nodes.new(k) for k in ('NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeMeshToPoints'))
+    made.inputs['Radius'].default_value = 0.3
+    link(group, (inlet.outputs[0], made.inputs[0]), (made.outputs[0], outlet.inputs[0]))
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3, location=(0, 0, 0.4))
+    dress(matte("red", (0.6, 0.2, 0.1, 1))).modifiers.new("points", 'NODES').node_group = group
+
+
+@case("geometry nodes: a material that they set, and an attribute that they name")
+def node_attribute(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="height").outputs['Fac'], bsdf.inputs['Base Color']))
+    group = bpy.data.node_groups.new("paint", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, store, dressing, place, parts = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeSetMaterial', 'GeometryNodeInputPosition',
+        'ShaderNodeSeparateXYZ'))
+    store.inputs['Name'].default_value, dressing.inputs['Material'].default_value = "height", made
+    value = next(s for s in store.inputs if s.type == 'VALUE' and s.enabled)
+    link(group, (inlet.outputs[0], store.inputs[0]), (place.outputs[0], parts.inputs[0]), (parts.outputs[2], value),
+         (store.outputs[0], dressing.inputs[0]), (dressing.outputs[0], outlet.inputs[0]))
+    the("ball").modifiers.new("paint", 'NODES').node_group = group
+
+
+# More of lamps, cameras, layers and worlds
+
+@case("instanced collection with lamps in it, scaled and mirrored")
+def lamps_in_collection(scene):
+    without("key")
+    parts = bpy.data.collections.new("parts")
+    for made in (lamp('AREA', 100, (1, 0, 2), (0.4, 0, 0), size=0.5, shape='ELLIPSE', size_y=1),
+                 lamp('SPOT', 200, (-1, -1, 2), (0.5, 0, 0), shadow_soft_size=0.1, spot_size=1)):
+        parts.objects.link(made)
+        scene.collection.objects.unlink(made)
+    for x, scale in (-1.5, (1, 1, 1)), (1.5, (-1.5, 1, 1.2)):
+        copy = bpy.data.objects.new("copy", None)
+        copy.instance_type, copy.instance_collection, copy.location, copy.scale = 'COLLECTION', parts, (x, 0, 0.5), scale
+        scene.collection.objects.link(copy)
+
+
+@case("lamps whose size, colour and energy are animated, and a driver")
+def animated_lamps(scene):
+    light = the("key").data
+    keyed(light, "size", 1, 1, 0.2, 2), keyed(light, "energy", 1, 1, 200, 400)
+    keyed(light, "color", (1, 1, 1), (1, 1, 1), (1, 0.5, 0.5), (1, 0.2, 0.2))
+    driver = the("ball").driver_add("location", 0).driver
+    driver.expression = "frame / 2"
+    scene.frame_set(2)
+
+
+@case("sun with a blackbody and a strength of nodes")
+def sun_nodes(scene):
+    tree, emission = noded(only('SUN', 1, (0, 0, 5), (0.7, 0, 0.5), angle=0.1).data)
+    link(tree, (node(tree, 'ShaderNodeBlackbody', Temperature=4500).outputs[0], emission.inputs[0]))
+    emission.inputs[1].default_value = 2.5
+
+
+@case("strength of a lamp by a Math node")
+def lamp_math(scene):
+    tree, emission = noded(the("key").data)
+    times = node(tree, 'ShaderNodeMath', operation='MULTIPLY')
+    times.inputs[0].default_value, times.inputs[1].default_value = 0.5, 4
+    link(tree, (times.outputs[0], emission.inputs[1]))
+
+
+@case("spot lamp that is scaled")
+def spot_scaled(scene):
+    o = only('SPOT', 800, (1, -2, 3), (0.4, 0, 0.3), shadow_soft_size=0, spot_size=1, spot_blend=0.2)
+    o.scale = (2, 1, 1)
+
+
+@case("point lamp with a radius that is scaled, and a sheared area lamp")
+def lamps_scaled(scene):
+    only('POINT', 100, (1, -2, 3), shadow_soft_size=0.2).scale = (2, 2, 2)
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    parent.scale = (2, 1, 1)
+    o = lamp('AREA', 100, (-1, 0, 3), (0.3, 0, 0.6), size=1)
+    o.parent = parent
+
+
+@case("scaled camera that tracks an object, focus on an object")
+def tracking(scene):
+    camera = scene.camera
+    camera.scale = (2, 2, 2)
+    camera.constraints.new('TRACK_TO').target = the("ball")
+    camera.data.dof.use_dof, camera.data.dof.focus_object, camera.data.dof.aperture_fstop = True, the("ball"), 0.2
+
+
+@case("orthographic camera, portrait, with a shift")
+def orthographic_portrait(scene):
+    orthographic(scene)
+    shift(scene)
+
+
+@case("camera of a field of view, another sensor")
+def field_of_view(scene):
+    data = scene.camera.data
+    data.lens_unit, data.sensor_width = 'FOV', 24
+    data.angle = 1.2
+
+
+@case("border, not cropped")
+def border_whole(scene):
+    border(scene)
+    scene.render.use_crop_to_border = False
+
+
+@case("all of it 20 km from the origin, in feet")
+def far_away(scene):
+    scene.unit_settings.system, scene.unit_settings.length_unit = 'IMPERIAL', 'FEET'
+    for o in scene.objects:
+        o.location = [a + b for a, b in zip(o.location, (15000, 12000, 100))]
+
+
+@case("look, gamma and curves of the view")
+def looks(scene):
+    view = scene.view_settings
+    view.view_transform, view.look, view.gamma, view.exposure = 'Filmic', 'High Contrast', 1.2, 0.5
+
+
+@case("two view layers, one with an excluded collection")
+def layers(scene):
+    made = bpy.data.collections.new("out")
+    scene.collection.children.link(made)
+    made.objects.link(the("ball"))
+    scene.collection.objects.unlink(the("ball"))
+    scene.view_layers.new("other")
+    scene.view_layers[0].layer_collection.children["out"].exclude = True
+
+
+@case("world: mirror ball, through hue and strength")
+def world_ball(scene):
+    world_image(scene)
+    tree = scene.world.node_tree
+    made, hue = next(n for n in tree.nodes if n.type == 'TEX_ENVIRONMENT'), node(tree, 'ShaderNodeHueSaturation', Hue=0.7, Saturation=1.5)
+    made.projection = 'MIRROR_BALL'
+    link(tree, (made.outputs[0], hue.inputs['Color']), (hue.outputs[0], tree.nodes["Background"].inputs[0]))
+    tree.nodes["Background"].inputs[1].default_value = 1.5
+
+
+@case("world: gradient of nodes, and Hosek's sky")
+def world_gradient(scene):
+    tree = scene.world.node_tree
+    made, mix = node(tree, 'ShaderNodeTexSky', sky_type='HOSEK_WILKIE'), node(tree, 'ShaderNodeMixRGB', Fac=0.5)
+    where, shown = tree.nodes.new('ShaderNodeTexCoord'), node(tree, 'ShaderNodeTexGradient')
+    link(tree, (where.outputs['Generated'], shown.inputs[0]), (shown.outputs[0], mix.inputs[1]), (made.outputs[0], mix.inputs[2]),
+         (mix.outputs[0], tree.nodes["Background"].inputs[0]))
+
+
+@case("shadow terminator of an object")
+def terminator(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.7, location=(0, 0, 0.7))
+    o = dress(matte("red", (0.6, 0.2, 0.1, 1)), smooth=True)
+    o.cycles.shadow_terminator_offset = 0.5
+    only('SUN', 3, (0, 0, 9), (0.9, 0.9, 0), angle=0)
+
+
+@case("curve with the profile of another, and an image texture")
+def curves(scene):
+    without("ball")
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.3, location=(0, 50, 0))
+    profile = bpy.context.object
+    bpy.ops.curve.primitive_bezier_curve_add(radius=1.2, location=(0, 0, 0.6))
+    o = bpy.context.object
+    o.data.bevel_mode, o.data.bevel_object, o.data.use_fill_caps = 'OBJECT', profile, True
+    o.data.materials.append(textured()[0])
+
+
+@case("text with an image texture")
+def text_uvs(scene):
+    without("ball")
+    bpy.ops.object.text_add(location=(-1.5, 0, 0.2), rotation=(1.2, 0, 0))
+    o = bpy.context.object
+    o.data.body, o.data.extrude, o.data.bevel_depth, o.data.size = "lull", 0.1, 0.02, 1.6
+    o.data.materials.append(textured()[0])
+
+
+@case("smooth shading of few faces, under a low sun")
+def coarse(scene):
+    terminator(scene)
+    next(o for o in scene.objects if o.type == 'MESH' and o.name != "floor").cycles.shadow_terminator_offset = 0
+
+
+@case("two outputs, for Cycles and for Eevee")
+def outputs(scene):
+    made, bsdf, tree = surface('BsdfDiffuse', Color=(0.1, 0.6, 0.1, 1))
+    first = tree.get_output_node('ALL')
+    first.target = 'CYCLES'
+    other = node(tree, 'ShaderNodeOutputMaterial', target='EEVEE')
+    link(tree, (node(tree, 'ShaderNodeEmission', Strength=5).outputs[0], other.inputs[0]))
+    other.is_active_output = True
+    dressed(made)
+
+
+@case("two Principled surfaces mixed by an image")
+def mixed_by_image(scene):
+    made, metal, tree = principled(Metallic=1, Roughness=0.2, Base_Color=(0.9, 0.6, 0.3, 1))
+    other, mix = node(tree, 'ShaderNodeBsdfPrincipled', Roughness=0.7, Base_Color=(0.1, 0.2, 0.5, 1)), tree.nodes.new('ShaderNodeMixShader')
+    mask = node(tree, 'ShaderNodeTexImage', image=image(np.round(waves()), "mask", 'Non-Color'))
+    link(tree, (mask.outputs[0], mix.inputs[0]), (metal.outputs[0], mix.inputs[1]), (other.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("Mix of Glass and Transparent by a number")
+def weak_glass(scene):
+    made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
+    mix = node(tree, 'ShaderNodeMixShader', Fac=0.6)
+    link(tree, (bsdf.outputs[0], mix.inputs[1]), (tree.nodes.new('ShaderNodeBsdfTransparent').outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("alpha of another image than the colour's, with another mapping")
+def alpha_apart(scene):
+    made, shown, bsdf, tree = textured()
+    turn, where = node(tree, 'ShaderNodeMapping', Scale=(1.5, 1.5, 1), Rotation=(0, 0, 0.5)), tree.nodes.new('ShaderNodeTexCoord')
+    mask = node(tree, 'ShaderNodeTexImage', image=image(np.round(waves()), "mask", 'Non-Color'))
+    link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], mask.inputs[0]), (mask.outputs[0], bsdf.inputs['Alpha']))
+    wall(made)
+
+
+@case("images whose colour spaces are Linear, Raw and Filmic sRGB")
+def more_spaces(scene):
+    for x, space in (-1.2, 'Linear'), (0, 'Raw'), (1.2, 'Filmic sRGB'):
+        made, shown, _, _ = textured(checks() * (1, 0.7, 0.4))
+        shown.image.colorspace_settings.name = space
+        wall(made, 0.5).location.x = x
+
+
+@case("image of 16 bits, and one of floats")
+def deep(scene):
+    for x, kind in (-0.8, 'PNG'), (0.8, 'OPEN_EXR'):
+        shown = bpy.data.images.new("deep", 64, 64, float_buffer=True)
+        shown.pixels.foreach_set(np.concatenate([checks() * (1, 0.7, 0.4), np.ones((64, 64, 1))], 2).astype(np.float32).ravel())
+        shown.filepath_raw, shown.file_format = os.path.join(FOLDER, "deep." + ("png" if kind == 'PNG' else "exr")), kind
+        shown.save()
+        made, texture, _, _ = textured()
+        texture.image = bpy.data.images.load(shown.filepath_raw)
+        wall(made, 0.7).location.x = x
+
+
+@case("image whose alpha is another channel, and one whose alpha is ignored")
+def alpha_modes(scene):
+    for x, mode in (-0.8, 'CHANNEL_PACKED'), (0.8, 'NONE'):
+        made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+        shown.image.alpha_mode = mode
+        link(tree, (shown.outputs[1], bsdf.inputs['Roughness']))
+        wall(made, 0.7).location.x = x
+
+
+@case("emission of the front alone, by Backfacing")
+def one_sided_light(scene):
+    without("key")
+    made, bsdf, tree = surface('Emission', Strength=6)
+    clear, mix, where = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfTransparent', 'MixShader', 'NewGeometry'))
+    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0.5, 2.6))
+    dress(made).rotation_euler.x = 2.6
+
+
+@case("waves, Musgrave and magic on a scaled object")
+def scaled_textures(scene):
+    made, bsdf, tree = principled()
+    where, mix = tree.nodes.new('ShaderNodeTexCoord'), tree.nodes.new('ShaderNodeMixRGB')
+    wave, magic = node(tree, 'ShaderNodeTexWave', Scale=2), node(tree, 'ShaderNodeTexMagic', Scale=3)
+    link(tree, (where.outputs['Object'], wave.inputs[0]), (where.outputs['Object'], magic.inputs[0]), (wave.outputs[0], mix.inputs[1]),
+         (magic.outputs[0], mix.inputs[2]), (node(tree, 'ShaderNodeTexMusgrave', Scale=3).outputs[0], mix.inputs[0]), (mix.outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+    the("ball").scale = (-1.5, 0.8, 1)
+
+
+@case("normal map on an object of uneven negative scale")
+def normal_mirrored(scene):
+    normal_map(scene)
+    the("ball").scale = (-1.4, 0.8, 1)
+
+
+@case("displacement that only bumps, by an image")
+def bump_by_displacement(scene):
+    displacement(scene)
+    the("ball").data.materials[0].cycles.displacement_method = 'BUMP'
+
+
+@case("objects and collections that are hidden in the viewport alone")
+def hidden_in_viewport(scene):
+    made = bpy.data.collections.new("hidden")
+    scene.collection.children.link(made)
+    for x, o in (-1.5, cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.8)), (1.5, cube(matte("two", (0.1, 0.1, 0.6, 1)), 0.8)):
+        o.location.x = x
+    made.objects.link(o)
+    scene.collection.objects.unlink(o)
+    scene.view_layers[0].layer_collection.children["hidden"].hide_viewport = True
+    scene.objects[-2].hide_set(True)
+    the("ball").hide_viewport = True
+    key = the("key")
+    key.hide_set(True)
+
+
+@case("instanced collection within an instanced collection, with a lamp and textures by place")
+def nested(scene):
+    without("ball")
+    inner, outer = bpy.data.collections.new("inner"), bpy.data.collections.new("outer")
+    made, bsdf, tree = principled()
+    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], bsdf.inputs['Base Color']))
+    for o in cube(made, 0.6, (0, 0, 0.3)), lamp('POINT', 10, (0, -0.6, 0.8)):
+        inner.objects.link(o)
+        scene.collection.objects.unlink(o)
+    for x, y, into, of in (-0.6, 0, outer, inner), (0.6, 0.3, outer, inner), (-1, 0, scene.collection, outer), (1.3, 0.5, scene.collection, outer):
+        copy = bpy.data.objects.new("copy", None)
+        copy.instance_type, copy.instance_collection, copy.location = 'COLLECTION', of, (x, y, 0)
+        copy.rotation_euler.z, copy.scale = x, (1, 1.3, 1)
+        into.objects.link(copy)
+
+
+@case("particles of a collection, turned and scaled at random")
+def particle_collection(scene):
+    parts = bpy.data.collections.new("parts")
+    for o in cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.3, (0, 50, 0)), cube(matte("two", (0.6, 0.1, 0.1, 1)), 0.2, (3, 50, 0)):
+        parts.objects.link(o)
+        scene.collection.objects.unlink(o)
+    particles(lawn(), count=60, render_type='COLLECTION', instance_collection=parts, particle_size=0.8, size_random=0.7, use_advanced_hair=True,
+              use_rotations=True, rotation_factor_random=0.8, phase_factor_random=2)
+
+
+@case("hair with interpolated children")
+def hair_children(scene):
+    particles(lawn(), count=100, hair_length=0.6, root_radius=5, child_type='INTERPOLATED', rendered_child_count=10)
+
+
+@case("object of no height, with a texture over places, and loose edges")
+def flat(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[1], bsdf.inputs['Base Color']))
+    o = cube(made, 1.5, (1, 0, 0.3))
+    o.scale.z = 0
+    mesh = bpy.data.meshes.new("edges")
+    mesh.from_pydata([(0, 0, 0), (0, 0, 1)], [(0, 1)], [])
+    scene.collection.objects.link(bpy.data.objects.new("edges", mesh))
+
+
+@case("image texture without an image")
+def no_image(scene):
+    made, shown, _, _ = textured()
+    shown.image = None
+    dressed(made)
+
+
+@case("names with slashes, quotes and letters of all kinds")
+def names(scene):
+    made = textured(checks())[0]
+    dressed(made)
+    made.name, the("ball").name, the("key").name, scene.name = "Wände/\"weiß\" 木", "Tür/1 'a' \\b", "лампа", "Szene: \"1/2\""
+
+
+@case("Principled: coloured glass, rough")
+def coloured_glass(scene):
+    dressed(principled(Transmission=1, Roughness=0.3, Base_Color=(0.8, 0.4, 0.3, 1))[0])
+
+
+@case("Principled: half a metal, half a glass")
+def halves(scene):
+    dressed(principled(Metallic=0.5, Roughness=0.3, Base_Color=(0.8, 0.4, 0.3, 1))[0])
+    other = principled(Transmission=0.5, Roughness=0.2, Base_Color=(0.3, 0.4, 0.8, 1))[0]
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(1.6, 0, 0.7), radius=0.7)
+    dress(other, smooth=True)
+
+
+@case("water in a glass: one interface in another")
+def water(scene):
+    dressed(surface('BsdfGlass', Roughness=0, IOR=1.5)[0])
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, 0.7), radius=0.5, segments=32, ring_count=16)
+    dress(surface('BsdfGlass', Roughness=0, IOR=1.33, Color=(0.5, 0.7, 1, 1))[0], smooth=True)
+
+
+@case("Mix by Fresnel of an index of 2.5: Diffuse and Glossy")
+def coats(scene):
+    coated(scene)
+    next(n for n in the("ball").data.materials[0].node_tree.nodes if n.type == 'FRESNEL').inputs[0].default_value = 2.5
+
+
+@case("Mix by Facing: Diffuse and Glossy")
+def coat_by_facing(scene):
+    coated(scene)
+    tree = the("ball").data.materials[0].node_tree
+    link(tree, (node(tree, 'ShaderNodeLayerWeight', Blend=0.5).outputs['Facing'], next(n for n in tree.nodes if n.type == 'MIX_SHADER').inputs[0]))
+
+
+@case("Mix by Fresnel: Diffuse and tinted Glossy")
+def coat_tinted(scene):
+    coats(scene)
+    next(n for n in the("ball").data.materials[0].node_tree.nodes if n.type == 'BSDF_GLOSSY').inputs[0].default_value = (0.8, 0.2, 0.1, 1)
+
+
+@case("Diffuse, Translucent and Glossy mixed")
+def three_mixed(scene):
+    leaf(scene)
+    tree = the("wall").data.materials[0].node_tree
+    inner = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
+    mix = node(tree, 'ShaderNodeMixShader', Fac=0.2)
+    link(tree, (inner.outputs[0], mix.inputs[1]), (node(tree, 'ShaderNodeBsdfGlossy', Roughness=0.3).outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+
+
+@case("Principled: emission of an image times a number")
+def screens(scene):
+    made, bsdf, tree = principled(Emission_Strength=2, Base_Color=(0.1, 0.1, 0.1, 1))
+    link(tree, (node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.5, 0.2), "screen")).outputs[0], bsdf.inputs['Emission']))
+    wall(made)
+
+
+@case("frosted pane of glass, as a slab")
+def frosted(scene):
+    pane(scene)
+    scene.objects[-1].data.materials[0].node_tree.nodes["Glass BSDF"].inputs['Roughness'].default_value = 0.3
+
+
+@case("lampshade: Translucent around a lamp")
+def shade(scene):
+    without("ball", "key")
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.6, depth=1, location=(0, 0, 1), end_fill_type='NOTHING')
+    dress(surface('BsdfTranslucent', Color=(0.8, 0.7, 0.5, 1))[0], smooth=True)
+    lamp('POINT', 80, (0, 0, 1), shadow_soft_size=0.1)
+
+
+@case("world: Preetham's sky, and Nishita's without a disc, mixed")
+def skies(scene):
+    tree = scene.world.node_tree
+    mix = node(tree, 'ShaderNodeMixRGB', Fac=0.5)
+    link(tree, (node(tree, 'ShaderNodeTexSky', sky_type='PREETHAM').outputs[0], mix.inputs[1]),
+         (node(tree, 'ShaderNodeTexSky', sky_type='NISHITA', sun_disc=False).outputs[0], mix.inputs[2]),
+         (mix.outputs[0], tree.nodes["Background"].inputs[0]))
+    tree.nodes["Background"].inputs[1].default_value = 0.1
+
+
+@case("orthographic camera with depth of field")
+def orthographic_focus(scene):
+    orthographic(scene)
+    dof = scene.camera.data.dof
+    dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 6, 2
+
+
 # Rooms
 
 @case("room of diffuse surfaces, lit by an area lamp")

@@ -179,16 +179,16 @@ def add_camera(scene, flat, moving, notes):
     side = width if fits_width else height
     if data.shift_x or data.shift_y:
         lens["shift"] = [data.shift_x * side / width, data.shift_y * side / height]
-    if data.dof.use_dof:
+    if data.dof.use_dof and data.type == 'ORTHO':  # one lens for all pixels would make it a perspective one
+        notes.say(f"the orthographic camera '{camera.name}' is sharp at all distances")
+    elif data.dof.use_dof:
         focus = data.dof.focus_distance
         if data.dof.focus_object:
             at = data.dof.focus_object.matrix_world
             if data.dof.focus_subtarget:
                 at = at @ data.dof.focus_object.pose.bones[data.dof.focus_subtarget].matrix
             focus = -(camera.matrix_world.normalized().inverted() @ at.translation).z
-        # As Cycles has it: the lens in metres, or 1 for an orthographic camera.
-        length = data.lens * 1e-3 if data.type == 'PERSP' else 1
-        lens["lensRadius"] = length / (2 * data.dof.aperture_fstop)
+        lens["lensRadius"] = data.lens * 1e-3 / (2 * data.dof.aperture_fstop)
         lens["focusDistance"] = max(focus, 1e-5)
         if data.dof.aperture_blades or data.dof.aperture_ratio != 1:
             notes.say(f"the aperture of camera '{camera.name}' is round")
@@ -238,6 +238,7 @@ def main():
     baker.end()
     if what["panes"]:
         panes.prepare(made, notes)
+    flatten.move_sheared(made)
     base = os.path.join(what["folder"], what["name"])
     lights.add(lamps, scene, flat, base, notes)
     flatten.leave_copies(flat)

@@ -9,6 +9,7 @@ _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE',
            'GPENCIL'}  # which Blender draws over pictures of all engines
+_PARENT = "lull parent"
 _BOUNCES = "diffuse", "glossy", "transmission"
 SEEING_RAYS = "camera", "volume_scatter", *_BOUNCES
 
@@ -117,21 +118,44 @@ def _mesh(o, is_instance, graph, override):
     return mesh
 
 
-def _place(flat, original, mesh, matrix):
-    """Adds an object. glTF's nodes cannot shear, so that vertices do."""
-    location, rotation, scale = matrix.decompose()
-    apart = Matrix.LocRotScale(location, rotation, scale) - matrix
+def is_sheared(matrix):
+    """Returns whether a matrix is no rotation and scale, as glTF's nodes are."""
+    apart = Matrix.LocRotScale(*matrix.decompose()) - matrix
     size = max(abs(v) for row in matrix.to_3x3() for v in row)
-    if max(abs(v) for row in apart for v in row) > 1e-5 * max(size, 1e-9):
-        mesh = mesh.copy()
-        mesh.transform(matrix)
-        matrix = Matrix.Identity(4)
+    return max(abs(v) for row in apart for v in row) > 1e-5 * max(size, 1e-9)
+
+
+def _place(flat, original, mesh, matrix):
+    """Adds an object. Where it is sheared it has a parent until move_sheared(), as textures are baked over its own coordinates."""
     o = bpy.data.objects.new(original.name, mesh)
+    if is_sheared(matrix):
+        o.parent = bpy.data.objects.get(_PARENT) or bpy.data.objects.new(_PARENT, None)
+        o.matrix_parent_inverse = matrix
+        o["lull_matrix"] = [v for row in matrix for v in row]
     o.matrix_world = matrix
     o["lull_source"], o["lull_group"] = original.name, original.lightgroup
     o.color, o.pass_index = original.color, original.pass_index
     flat.collection.objects.link(o)
     return o
+
+
+def move_sheared(made):
+    """Moves the vertices of objects that are sheared: nodes of glTF cannot be so."""
+    for o in made:
+        values = o.get("lull_matrix")
+        if values is None:
+            continue
+        del o["lull_matrix"]
+        matrix = Matrix([values[i:i + 4] for i in range(0, 16, 4)])
+        o.data = o.data.copy()
+        o.data.transform(matrix)
+        if matrix.determinant() < 0:
+            o.data.flip_normals()
+        o.parent = None
+        o.matrix_world = Matrix.Identity(4)
+        if moves := o.get("lull_moves"):
+            places = [Matrix([moves[i:i + 4] for i in range(j, j + 16, 4)]) for j in (0, 16)]
+            o["lull_moves"] = [v for place in places for row in place @ matrix.inverted() for v in row]
 
 
 def leave_copies(flat):
@@ -196,5 +220,7 @@ def _note_of(original, notes):
         notes.add("seen by the camera", original.name)
     if not all(is_seen(original, (ray,)) for ray in _BOUNCES):
         notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
+    if original.cycles.shadow_terminator_offset > 0 and any(p.use_smooth for p in getattr(original.data, "polygons", ())):
+        notes.add("brighter near the edge of its own shadow, without its Shading Offset", original.name)
     if not original.visible_shadow:
         notes.add("casting shadows all the same", original.name)

@@ -43,6 +43,12 @@ def _make_air(material):
     material["extras"]["lull_thin"] = 1
 
 
+def _add_shine(extensions, share, *colour):
+    """Adds an interface that reflects a share in a colour, white at grazing angles."""
+    extensions.pop("KHR_materials_ior", None)  # with the usual one, normal incidence has 0.04
+    extensions["KHR_materials_specular"] = {"specularFactor": share, "specularColorFactor": [c / 0.04 for c in colour]}
+
+
 def _brighten(pbr, factor, more):
     red, green, blue, alpha = pbr.get("baseColorFactor", [1, 1, 1, 1])
     is_plain = "baseColorTexture" not in pbr
@@ -70,6 +76,8 @@ def _patch_material(material):
         _brighten(material["pbrMetallicRoughness"], *brightens)
     if through := extras.pop("lull_through", None):
         _scatter_through(material, *through)
+    if shine := extras.pop("lull_shine", None):
+        extras["lull_adds"] = 1
     # Without this, glass would be a thin sheet; Blender's is solid.
     if "KHR_materials_transmission" in extensions and not extras.pop("lull_thin", None):
         extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
@@ -88,6 +96,8 @@ def _patch_material(material):
     specular = extensions.get("KHR_materials_specular", {})
     if specular.get("specularColorFactor") == [0, 0, 0]:
         specular["specularFactor"] = 0
+    if shine:
+        _add_shine(material.setdefault("extensions", {}), *shine)
 
 
 def _textures(part):

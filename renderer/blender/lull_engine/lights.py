@@ -43,6 +43,8 @@ def add(lamps, scene, flat, base, notes):
             notes.add("lighting after any number of bounces", o.name, "lights")
         if not light.use_shadow or not getattr(light.cycles, "cast_shadow", True):
             notes.add("casting shadows all the same", o.name, "lights")
+        if light.type == 'AREA' and flatten.is_sheared(matrix):
+            notes.add("shining in another direction, being sheared", o.name, "lights")
         if light.type == 'AREA':
             _add_area(flat, o, light, matrix)
         else:

@@ -2,7 +2,7 @@
 import bpy
 import numpy as np
 
-_SIDES = 3
+_SIDES, _MOST = (3, 8), 1_000_000  # of tubes, at least and at most; vertices, beyond which tubes have fewer sides
 _RADIUS = 0.005  # of curves that have none, as in Cycles
 
 
@@ -90,10 +90,12 @@ def _tubes(name, points, radii, material, uvs):
     side = np.cross(along, least[:, None])
     side /= np.maximum(np.linalg.norm(side, axis=-1, keepdims=True), 1e-12)
     other = np.cross(along, side)
-    angles = 2 * np.pi * np.arange(_SIDES) / _SIDES
+    sides = int(np.clip(_MOST // (count * steps), *_SIDES))
+    wider = np.pi / (sides * np.sin(np.pi / sides))  # so that tubes are as wide as round ones, on average
+    angles = 2 * np.pi * np.arange(sides) / sides
     ring = side[..., None, :] * np.cos(angles)[:, None] + other[..., None, :] * np.sin(angles)[:, None]
-    vertices = points[..., None, :] + radii[..., None, None] * ring
-    number = np.arange(count * steps * _SIDES).reshape(count, steps, _SIDES)
+    vertices = points[..., None, :] + wider * radii[..., None, None] * ring
+    number = np.arange(count * steps * sides).reshape(count, steps, sides)
     low, high = number[:, :-1], number[:, 1:]
     quads = np.stack([low, np.roll(low, -1, 2), np.roll(high, -1, 2), high], -1).reshape(-1, 4)
     mesh = bpy.data.meshes.new(name)
@@ -108,6 +110,6 @@ def _tubes(name, points, radii, material, uvs):
     mesh.update(calc_edges=True)
     if uvs is not None:
         layer = mesh.uv_layers.new(name="UVMap")
-        layer.data.foreach_set("uv", np.repeat(uvs, (steps - 1) * _SIDES * 4, 0).ravel())
+        layer.data.foreach_set("uv", np.repeat(uvs, (steps - 1) * sides * 4, 0).ravel())
     mesh.materials.append(material)
     return mesh

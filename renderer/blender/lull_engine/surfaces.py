@@ -8,6 +8,8 @@ import numpy as np
 
 import displacement
 import groups
+import images
+import normals
 import solids
 from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 
@@ -25,7 +27,7 @@ _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT
 _INPUTS = ('Base Color', 'Metallic', 'Roughness', 'Specular', 'Transmission', 'IOR', 'Alpha', 'Clearcoat', 'Clearcoat Roughness')
 _DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specular': 0, 'Transmission': 0, 'IOR': 1.45,
              'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0),
-             'Tint': (1, 1, 1)}
+             'Tint': (1, 1, 1), 'Shine': 0, 'Shine Color': (1, 1, 1)}  # the latter are of a Glossy surface that is added to the base
 # Values of Specular, and the differences of albedos.
 _MORE_THAN_SCHLICK = (0, 0.1, 0.25, 0.5, 0.75, 1), (0, -0.0116, -0.0008, 0.0061, 0.0084, 0.0087)
 _FINE = 0.005  # difference of neighbouring pixels, on average, from which an image has details of their size
@@ -61,11 +63,11 @@ def prepare(made, baker, notes):
 
 
 def _is_empty(material):
-    """Returns whether a material has nothing on its surface, as fog has."""
+    """Returns whether a material has a volume and nothing on its surface, as fog has."""
     if material is None or not material.use_nodes:
         return False
     output = material.node_tree.get_output_node('CYCLES')
-    return output is not None and not output.inputs['Surface'].links
+    return output is not None and not output.inputs['Surface'].links and bool(output.inputs['Volume'].links)
 
 
 def _convert(material, meshes, baker, notes):
@@ -76,6 +78,9 @@ def _convert(material, meshes, baker, notes):
         return _of_viewport(material)
     if _is_empty(material):
         return material
+    output = material.node_tree.get_output_node('CYCLES')
+    if output is None or _source(output.inputs['Surface']) is None:
+        return _of_colour(material.name, (0, 0, 0))
     surface = _Surface(material, meshes, notes)
     if surface.parameters is None:
         return _of_viewport(material)
@@ -155,7 +160,8 @@ def _place_of(socket):
             if used != ['UV']:
                 return 'mesh'
         if node.type == 'TEX_IMAGE':
-            if node.projection != 'FLAT' or node.extension != 'REPEAT' or node.image and node.image.source == 'TILED':
+            if node.projection != 'FLAT' or node.extension != 'REPEAT' or node.image and node.image.source == 'TILED' or \
+                    _has_own_mapping(node):
                 return 'mesh'
             place = 'uv'
         if node.type == 'MAPPING':
@@ -178,6 +184,7 @@ class _Surface:
         self.copy["lull_name"] = material.name
         self.tree = self.copy.node_tree
         groups.inline(self.tree)
+        images.prepare(self.tree, self.name, notes)
         output = self.tree.get_output_node('CYCLES')
         self.absorbs = self._absorption(output)
         self.parameters = self._closure(output.inputs['Surface'])
@@ -217,7 +224,7 @@ class _Surface:
         """Leaves to the written file the values that the exporter cannot write."""
         p = self.parameters
         plain = {n: v for n, v in p.items() if not self._is_output(v)}
-        if p['Alpha'] == 0 and p['Tint'] != (1, 1, 1):
+        if p['Alpha'] == 0 and (p['Tint'] != (1, 1, 1) or p['Radiance'] != (0, 0, 0)):
             p.update({'Alpha': 1, 'Base Color': p['Tint'], 'Transmission': 1, 'Roughness': 0})
             self.copy["lull_air"] = True
         elif HAS_ADDED_INTERFACE and node.type == 'BSDF_PRINCIPLED' and {'Roughness', 'Specular'} <= set(plain) and \
@@ -328,12 +335,36 @@ class _Surface:
                     self.notes.add("without colour where they are transparent", self.name, "materials")
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
+        if not self._is_output(factor):
+            self._keep_highlights(mixed, a, b, factor)
         if 'Normal' in a or 'Normal' in b:
             reflect = all(p['Base Color'] != (0, 0, 0) for p in (a, b))
             if reflect and a.get('Normal') != b.get('Normal'):
                 self.notes.add("with the normals of the first of mixed surfaces that has any", self.name, "materials")
             mixed['Normal'] = a.get('Normal', b.get('Normal'))
         return mixed
+
+    def _keep_highlights(self, mixed, a, b, factor):
+        """Gives a mixture by a number the roughness of what reflects, and its own base to what scatters."""
+        shares = ((a, 1 - factor), (b, factor))
+        reflecting = [(p, share) for p, share in shares if self._reflects(p)]
+        if len(reflecting) == 2 and not any(self._is_output(p['Roughness']) for p in (a, b)) and \
+                abs(a['Roughness'] - b['Roughness']) > 0.1:
+            self.notes.add("reflecting by one roughness, between those of mixed surfaces", self.name, "materials")
+        if len(reflecting) != 1:
+            return
+        (shiny, share), = reflecting
+        base = b if shiny is a else a
+        mixed['Roughness'] = shiny['Roughness']
+        if self._is_metal(shiny):
+            mixed.update({'Metallic': 0, 'Base Color': self._times(1 - share, base['Base Color']), 'Shine': share,
+                          'Shine Color': shiny['Base Color']})
+
+    def _reflects(self, p):
+        return any(self._is_output(p[name]) or p[name] > 0 for name in ('Metallic', 'Specular', 'Transmission', 'Shine', 'Clearcoat'))
+
+    def _is_metal(self, p):
+        return p['Metallic'] == 1 and p['Transmission'] == 0 and not self._is_output(p['Base Color'])
 
     def _half(self, found, socket):
         """Returns the parameters of a half of a mixture: black where nothing is linked, as in Cycles."""
@@ -350,7 +381,7 @@ class _Surface:
         kinds = {n.type for n in _upstream(factor)}
         is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
         if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
-            return dict(a, Specular=0.5, Roughness=b['Roughness'])
+            return self._coated(a, b, factor)
         clear, other = (a, b) if a['Alpha'] == 0 else (b, a)
         is_glass = clear['Alpha'] == 0 and other['Alpha'] == 1 and (other['Metallic'] == 1 or other['Transmission'] == 1)
         if is_glass and is_by_angle and not is_ray:
@@ -361,6 +392,16 @@ class _Surface:
         if is_ray:
             return b if factor.name == 'Is Camera Ray' and a['Radiance'] == (0, 0, 0) else a
         return other if clear['Alpha'] == 0 else a
+
+    def _coated(self, base, shine, factor):
+        """Returns a surface under a coat that reflects as a factor says."""
+        ior = _ior_of(factor)
+        specular = ((ior - 1) / (ior + 1)) ** 2 / 0.08 if ior else 0.5
+        if ior is None or specular > 1:
+            self.notes.add("reflecting as a clear coat does", self.name, "materials")
+        if self._is_output(shine['Base Color']) or min(shine['Base Color']) < 0.75:
+            self.notes.add("reflecting white light", self.name, "materials")
+        return dict(base, Specular=min(specular, 1), Roughness=shine['Roughness'])
 
     def _pane(self, clear, shine, factor):
         """Returns a sheet of glass, for a clear surface that shines as a factor says, None for one that is not known."""
@@ -393,6 +434,12 @@ class _Surface:
         a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[0]), (b, node.inputs[1])))
         shines = a['Base Color'] == (0, 0, 0) and a['Radiance'] != (0, 0, 0)
         first, other = (b, a) if shines else (a, b)
+        if self._is_metal(first) and not self._reflects(other):
+            first, other = other, first
+        if self._is_metal(other) and not self._reflects(first) and max(other['Base Color']) > 0:
+            most = max(other['Base Color'])
+            return dict(first, **{'Shine': most, 'Shine Color': tuple(c / most for c in other['Base Color']), 'Roughness': other['Roughness'],
+                                  'Radiance': self._plus(first['Radiance'], other['Radiance'])})
         if other['Base Color'] != (0, 0, 0):
             self.notes.add("without the second of added surfaces", self.name, "materials")
         return dict(first, Radiance=self._plus(first['Radiance'], other['Radiance']))
@@ -467,14 +514,14 @@ class _Surface:
             nodes = [n for n in nodes if n != value.node]
         if any(n.type not in _KNOWN for n in nodes):
             return False
-        images = [n for n in nodes if n.type == 'TEX_IMAGE']
-        if not images:
+        shown = [n for n in nodes if n.type == 'TEX_IMAGE']
+        if not shown:
             return name == 'Base Color' and value.node.type == 'VERTEX_COLOR'
-        if len(images) > 1 or any(not _is_plain(n) for n in images):
+        if len(shown) > 1 or any(not _is_plain(n) for n in shown):
             return False
-        if name in _EVEN or images[0].image.is_float:
+        if name in _EVEN or shown[0].image.is_float:
             return False
-        if name != 'Alpha' and not _is_encoded(images[0].image, name in ('Base Color', 'Radiance')):
+        if name != 'Alpha' and not _is_encoded(shown[0].image, name in ('Base Color', 'Radiance')):
             return False
         if name == 'Alpha':
             return value.node.type == 'TEX_IMAGE' and value.name == 'Alpha'
@@ -508,6 +555,9 @@ class _Surface:
         self._write_normal(new)
         for name in _EVEN:
             self._set(principled_input(new, name), self._even(name))
+        if self._is_output(self.parameters['Shine']) or self.parameters['Shine'] > 0:
+            colour = self._pixels('Shine Color').reshape(-1, 3).mean(0)
+            self.copy["lull_shine"] = [self._even('Shine'), *(float(c) for c in colour)]
         self._write_radiance(new)
         self._write_metal(new)
         self._write_base(new)
@@ -530,7 +580,8 @@ class _Surface:
 
     def _write_base(self, new):
         colour, alpha = self.parameters['Base Color'], self.parameters['Alpha']
-        are_apart = self._is_output(alpha) and self._is_output(colour) and alpha.node != colour.node
+        # Where it reads the alpha of an image alone, the exporter writes its colours as well.
+        are_apart = self._is_output(alpha) and not (self._is_output(colour) and alpha.node == colour.node)
         if self._are_known(('Base Color', 'Alpha')) and not are_apart:
             self._link(new, 'Base Color'), self._link(new, 'Alpha')
         else:
@@ -610,7 +661,7 @@ class _Surface:
         image = bpy.data.images.new(f"{self.name} {what}", width, height, alpha=pixels.shape[2] == 4)
         image.colorspace_settings.name = 'sRGB' if is_colour else 'Non-Color'
         if is_colour:
-            full[:, :, :3] = _encoded(full[:, :, :3])
+            full[:, :, :3] = images.encoded(full[:, :, :3])
         image.pixels.foreach_set(full.ravel())
         image.update()
         image.pack()
@@ -682,14 +733,30 @@ class _Surface:
         if value is None:
             return
         if self._is_known_normal(value):
+            self._write_known_normal(value)
             self.tree.links.new(value, new.inputs['Normal'])
             return
         pixels = self._over_mesh(value, 'NORMAL')
+        self._note_leaning(pixels)
         image = self._image(pixels, 'normal', False)
         node = self.tree.nodes.new('ShaderNodeNormalMap')
         node.uv_map = "lull"
         self.tree.links.new(image.outputs['Color'], node.inputs['Color'])
         self.tree.links.new(node.outputs[0], new.inputs['Normal'])
+
+    def _write_known_normal(self, value):
+        strength, shown = value.node.inputs['Strength'], _source(value.node.inputs['Color']).node
+        pixels = images.numbers_of(shown.image)
+        self._note_leaning(pixels, strength.default_value)
+        if 0 < strength.default_value < 1:
+            shown.image = normals.weakened(pixels, shown.image.name, strength.default_value)
+            strength.default_value = 1
+
+    def _note_leaning(self, pixels, strength=1):
+        p = self.parameters
+        is_diffuse = all(self._is_output(p[n]) or p[n] < 1 for n in ('Metallic', 'Transmission'))
+        if is_diffuse and normals.dimmed(pixels, strength) > normals.MOST:
+            self.notes.add("brighter where light falls flat, as normals lean far", self.name, "materials")
 
 
 def _ior_of(factor):
@@ -715,8 +782,15 @@ def _triple(value):
 
 def _is_plain(node):
     """Returns whether glTF's samplers read an image as its node does."""
-    return (node.image is not None and node.image.size[0] > 0 and node.projection == 'FLAT' and
+    return (node.image is not None and node.image.size[0] > 0 and node.projection == 'FLAT' and not _has_own_mapping(node) and
             node.extension in ('REPEAT', 'EXTEND') and node.image.source in ('FILE', 'GENERATED'))
+
+
+def _has_own_mapping(node):
+    """Returns whether the node of a texture has a mapping of its own, as files of old versions have."""
+    own = node.texture_mapping
+    return (own.mapping, own.mapping_x, own.mapping_y, own.mapping_z) != ('FLAT', 'X', 'Y', 'Z') or own.use_min or own.use_max or \
+        any(tuple(v) != (plain,) * 3 for v, plain in ((own.translation, 0), (own.rotation, 0), (own.scale, 1)))
 
 
 def _is_encoded(image, is_colour):
@@ -729,9 +803,10 @@ def _is_known_mapping(node):
     if node.type == 'TEX_COORD':
         return [o.name for o in node.outputs if o.links] == ['UV']
     if node.type == 'MAPPING':
-        turn = node.inputs['Rotation'].default_value
-        return node.vector_type in ('POINT', 'TEXTURE') and abs(turn[0]) + abs(turn[1]) < 1e-6 and \
-            not any(s.links for s in node.inputs[1:])
+        turn, scale = node.inputs['Rotation'].default_value, node.inputs['Scale'].default_value
+        # Of a texture that is moved, glTF has no scale after the rotation.
+        is_known = node.vector_type == 'POINT' or node.vector_type == 'TEXTURE' and (turn[2] == 0 or scale[0] == scale[1])
+        return is_known and abs(turn[0]) + abs(turn[1]) < 1e-6 and not any(s.links for s in node.inputs[1:])
     return True
 
 
@@ -755,10 +830,6 @@ def _resized(image, shape):
     return image[rows][:, columns]
 
 
-def _encoded(linear):
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
-
-
 def _keep_used_colours(mesh):
     """Leaves the colours that its materials read: glTF multiplies by any."""
     wanted = set()
@@ -767,6 +838,8 @@ def _keep_used_colours(mesh):
         source = _source(principled_input(node, 'Base Color')) if node else None
         if source is not None:
             wanted |= {n.layer_name for n in _upstream(source) if n.type == 'VERTEX_COLOR'}
-    for layer in list(mesh.color_attributes):
-        if layer.name not in wanted and not ("" in wanted and layer == mesh.color_attributes.active_color):
-            mesh.color_attributes.remove(layer)
+    layers = mesh.color_attributes
+    if "" in wanted and 0 <= layers.render_color_index < len(layers):
+        wanted.add(layers[layers.render_color_index].name)
+    for name in [layer.name for layer in layers if layer.name not in wanted]:
+        layers.remove(layers[name])
