@@ -279,9 +279,10 @@ TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
             "--cap 100 --rule dammertz:0.03 --external others.csv -o room --report room.html");
     EXPECT_EQ(outcome.out, "room.csv\nroom.html\n");
     const std::string csv = ReadBytes(directory.File("room.csv"));
-    for (const char* part : {"\nfixed,20,sobol,20,", "\nfixed,60,random,60,",
-                             "\nlnoise,0.5,random,", "\nentropy,0.5,random,", "\nlearned,,sobol,",
-                             "\ndammertz,0.03,sobol,", "\nsomeone,,,0,3.5,"})
+    for (const char* part :
+         {"\nfixed,20,sobol-halves,20,", "\nfixed,60,random,60,", "\nlnoise,0.5,random,",
+          "\nentropy,0.5,random,", "\nlearned,,sobol-halves,", "\ndammertz,0.03,sobol-halves,",
+          "\nsomeone,,,0,3.5,"})
         EXPECT_TRUE(Contains(csv, part)) << part << csv;
     // Fixed, 5 sweeps of 8, learned and the extra rule, for both samplers, and the line of names.
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (4 + 40 + 2) + 1);

@@ -145,7 +145,8 @@ def main():
     o = parser.parse_args()
     os.makedirs(o.out, exist_ok=True)
     if o.table:
-        names = re.findall(r"^@case.*\ndef (\w+)", (HERE / "features_in_blender.py").read_text(encoding="utf-8"), re.M)
+        names = [name for file in sorted((HERE / "features").glob("*.py"))
+                 for name in re.findall(r"^@case.*\ndef (\w+)", file.read_text(encoding="utf-8"), re.M)]
     else:
         with tempfile.TemporaryDirectory() as folder:
             names = run(o, folder)

@@ -41,7 +41,7 @@ measured CPU time, divided by the number of threads. Errors are relative to --re
 the image of the first sampler at the cap. That image contains the samples of its sampler's other
 images, so that their error is understated near the cap.
 
-With --guide, each sampler renders again with guided paths, "sobol+guide"; the time between rounds of
+With --guide, each sampler renders again with guided paths, "sobol-halves+guide"; the time between rounds of
 learning is part of the seconds of each of these points. With auto, there are such points only where
 the guide is used.
 
@@ -63,8 +63,7 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrup
 
 void AddOptions(CLI::App& app, Options* o) {
     AddRenderSettings(app, &o->render, false);
-    app.add_option("--samplers", o->samplers,
-                   "Measure these samplers [sobol,random; --denoise: sobol-halves,random]")
+    app.add_option("--samplers", o->samplers, "Measure these samplers [sobol-halves,random]")
         ->delimiter(',')
         ->check(CLI::IsMember(ChoicesOf<SamplerKind>()))
         ->type_name("S,S");
@@ -310,8 +309,7 @@ ExitCode RunBench(Options options, MpiJob* ranks) {
     RenderSettings& settings = options.render;
     SetWording(settings, ranks);
     settings.schedule.cap = settings.cap.value_or(settings.schedule.cap);
-    if (options.samplers.empty())
-        options.samplers = {options.denoise ? "sobol-halves" : "sobol", "random"};
+    if (options.samplers.empty()) options.samplers = {"sobol-halves", "random"};
     CheckSamplers(options.samplers);
     options.output = BeginningOfNames(options.output, SceneName(settings.scene.file) + ".bench");
     const std::unique_ptr<Bench> bench = Prepare(options, ranks);

@@ -1,0 +1,136 @@
+"""The list of features, and a scene to show each in, with functions that change it. For Blender's Python."""
+import json
+import os
+import pathlib
+import sys
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "blender"))
+from scenes import camera, dress, floor, lamp, material, matte  # noqa: E402
+
+CASES = {}
+
+
+def folder():
+    """Returns the folder of the pictures, for files that scenes need."""
+    return json.loads(sys.argv[-1])["folder"]
+
+
+def case(title):
+    """Lists a function that changes the scene of begin()."""
+    def add(function):
+        CASES[function.__name__] = title, function
+        return function
+    return add
+
+
+def begin():
+    """A ball on a floor, under a square lamp and a grey sky. Returns the scene."""
+    scene, others = bpy.data.scenes.new("case"), list(bpy.data.scenes)
+    for kind in ("objects", "meshes", "materials", "lights", "cameras", "worlds", "node_groups", "particles", "curves", "images",
+                 "texts", "collections", "libraries"):
+        blocks = getattr(bpy.data, kind)
+        for block in list(blocks):
+            blocks.remove(block)
+    bpy.context.window.scene = scene
+    for other in others:
+        if other != scene:
+            bpy.data.scenes.remove(other)
+    world = scene.world = bpy.data.worlds.new("world")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs[0].default_value = (0.3, 0.33, 0.4, 1)
+    floor(matte("floor", (0.5, 0.5, 0.5, 1))).name = "floor"
+    ball(matte("ball", (0.6, 0.2, 0.1, 1)))
+    lamp('AREA', 400, (1.5, -2, 5), (0.35, 0, 0.26), size=1).name = "key"
+    camera((0, -6, 2.5), (1.25, 0, 0), lens=35)
+    return scene
+
+
+def ball(made):
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, 0.7), radius=0.7, segments=32, ring_count=16)
+    bpy.context.object.name = "ball"
+    return dress(made, smooth=True)
+
+
+def the(name):
+    return bpy.data.objects[name]
+
+
+def without(*names):
+    for name in names:
+        bpy.data.objects.remove(the(name))
+
+
+def cube(made, size=1.0, at=(0, 0, 0.5), **more):
+    bpy.ops.mesh.primitive_cube_add(size=size, location=at, **more)
+    return dress(made)
+
+
+def wall(made, x=1.5, y=0.0, z=2.0):
+    """Puts a rectangle with UVs in the place of the ball."""
+    if "ball" in bpy.data.objects:
+        without("ball")
+    mesh = bpy.data.meshes.new("wall")
+    mesh.from_pydata([(-x, y, 0), (x, y, 0), (x, y, z), (-x, y, z)], [], [(0, 1, 2, 3)])
+    layer = mesh.uv_layers.new(name="UVMap")
+    for loop, uv in zip(layer.data, ((0, 0), (1, 0), (1, 1), (0, 1))):
+        loop.uv = uv
+    mesh.materials.append(made)
+    o = bpy.data.objects.new("wall", mesh)
+    bpy.context.collection.objects.link(o)
+    return o
+
+
+def node(tree, kind, **values):
+    """Adds a node. `values` are inputs by their names, with _ for spaces, and properties."""
+    made = tree.nodes.new(kind)
+    for key, value in values.items():
+        if key in made.bl_rna.properties:
+            setattr(made, key, value)
+        else:
+            made.inputs[key.replace("_", " ")].default_value = value
+    return made
+
+
+def surface(kind, **values):
+    """Returns a new material of one node, the node and its tree."""
+    made = material("surface", kind, **{k.replace("_", " "): v for k, v in values.items()})
+    return made, made.node_tree.nodes[-1], made.node_tree
+
+
+def cover(socket_owner, tree):
+    tree.links.new(socket_owner.outputs[0], tree.get_output_node('ALL').inputs[0])
+
+
+def principled(**values):
+    return surface('BsdfPrincipled', **values)
+
+
+def dressed(made, name="ball"):
+    the(name).data.materials[0] = made
+
+
+def checks():
+    return np.stack([(np.indices((64, 64)).sum(0) // 8 % 2) * 0.6 + 0.2] * 3, -1)
+
+
+def image(values, name="image", colours='sRGB'):
+    """Returns a PNG of encoded values."""
+    full = np.ones((*values.shape[:2], 4), np.float32)
+    full[:, :, :values.shape[2]] = values
+    made = bpy.data.images.new(name, full.shape[1], full.shape[0], alpha=values.shape[2] == 4)
+    made.colorspace_settings.name = colours
+    made.pixels.foreach_set(full.ravel())
+    made.filepath_raw, made.file_format = os.path.join(folder(), name + ".png"), 'PNG'
+    made.save()
+    return made
+
+
+def textured(values=None, **texture):
+    """Returns a material whose colour is an image, the image's node, the surface's and the tree."""
+    made, bsdf, tree = principled()
+    shown = node(tree, 'ShaderNodeTexImage', image=image(checks() if values is None else values), **texture)
+    tree.links.new(shown.outputs[0], bsdf.inputs['Base Color'])
+    return made, shown, bsdf, tree

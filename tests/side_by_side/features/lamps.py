@@ -1,0 +1,172 @@
+"""Features of lamps."""
+import math
+
+import bpy
+from mathutils import Euler, Matrix
+
+from cases import case, dressed, node, surface, the, wall, without
+from scenes import camera, lamp, matte
+
+
+def only(kind, energy, at, turned=(0, 0, 0), **more):
+    without("key")
+    made = lamp(kind, energy, at, turned, **more)
+    made.name = "only"
+    return made
+
+
+@case("area lamp: square, rectangle, disk, ellipse")
+def area_shapes(scene):
+    without("key")
+    for x, shape in zip((-3, -1, 1, 3), ('SQUARE', 'RECTANGLE', 'DISK', 'ELLIPSE')):
+        lamp('AREA', 100, (x, -1, 3), (0.3, 0, 0), shape=shape, size=1, size_y=0.4)
+
+
+@case("area lamp before a sun, from behind and from the front")
+def area_shadow(scene):
+    only('SUN', 4, (0, 0, 9), angle=0)
+    lamp('AREA', 20, (-1.5, 0, 3.5), size=2)
+    lamp('AREA', 20, (1.5, 0, 3.5), (math.pi, 0, 0), size=2)
+
+
+@case("spread of an area lamp")
+def area_spread(scene):
+    the("key").data.spread = 0.6
+
+
+@case("area lamp that the camera does not see")
+def area_unseen(scene):
+    lamp('AREA', 50, (-1.5, 1, 1.5), (math.pi / 2, 0, 0), size=1).visible_camera = False
+
+
+@case("edge of an area lamp that the camera does not see")
+def area_unseen_edge(scene):
+    lamp('AREA', 200, (-4, 0, 1.5), (0, -math.pi / 4, 0), size=3).visible_camera = False
+
+
+@case("area lamp as a portal")
+def portal(scene):
+    lamp('AREA', 100, (0, 2, 1.5), (-1.57, 0, 0), size=2).data.cycles.is_portal = True
+
+
+@case("lamp in the reflection of a mirror")
+def reflected(scene):
+    dressed(surface('BsdfGlossy', Roughness=0)[0])
+
+
+@case("sun without an angle")
+def sun(scene):
+    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=0)
+
+
+@case("sun of 0.5 degrees")
+def sun_small(scene):
+    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=math.radians(0.5))
+
+
+@case("sun of 10 degrees")
+def sun_large(scene):
+    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=math.radians(10))
+
+
+@case("point lamp without a radius")
+def point(scene):
+    only('POINT', 300, (1, -2, 3), shadow_soft_size=0)
+
+
+@case("point lamp with a radius")
+def point_radius(scene):
+    only('POINT', 300, (1, -2, 3), shadow_soft_size=0.3)
+
+
+@case("point lamp with a radius, between a sun and the ball")
+def point_shadow(scene):
+    only('SUN', 3, (0, 0, 5), angle=0)
+    lamp('POINT', 20, (0, 0, 3), shadow_soft_size=0.6)
+
+
+@case("spot lamp")
+def spot(scene):
+    only('SPOT', 800, (2, -3, 4), (0.65, 0, 0.6), shadow_soft_size=0, spot_size=0.8, spot_blend=0.5)
+
+
+@case("spot lamp with a radius")
+def spot_radius(scene):
+    only('SPOT', 800, (2, -3, 4), (0.65, 0, 0.6), shadow_soft_size=0.5, spot_size=0.8)
+
+
+@case("penumbra of a spot lamp of radius 0.25, under the edge of a card")
+def spot_penumbra(scene):
+    without("ball")
+    scene.world.node_tree.nodes["Background"].inputs[1].default_value = 0
+    only('SPOT', 800, (0, 0, 4), shadow_soft_size=0.25, spot_size=1.2)
+    wall(matte("card", (0, 0, 0, 1)), x=2).matrix_world = Matrix.LocRotScale((-2, 1, 2), Euler((math.pi / 2, 0, 0)), (1, 1, 1))
+    camera((0, 0, 1.5), (0, 0, 0), type='ORTHO', ortho_scale=3)
+
+
+@case("lamp of negative strength")
+def negative_lamp(scene):
+    lamp('POINT', -20, (0, -2, 2))
+
+
+@case("lamp without shadows")
+def no_shadow(scene):
+    the("key").data.use_shadow = the("key").data.cycles.cast_shadow = False
+
+
+@case("lamp by rays: no diffuse light")
+def lamp_rays(scene):
+    the("key").visible_diffuse = False
+
+
+@case("max bounces of a lamp")
+def lamp_bounces(scene):
+    the("key").data.cycles.max_bounces = 0
+
+
+def noded(light):
+    light.use_nodes = True
+    return light.node_tree, light.node_tree.nodes["Emission"]
+
+
+@case("colour of a lamp by a blackbody")
+def blackbody(scene):
+    tree, emission = noded(the("key").data)
+    tree.links.new(node(tree, 'ShaderNodeBlackbody', Temperature=3000).outputs[0], emission.inputs[0])
+
+
+@case("falloff of a lamp")
+def falloff(scene):
+    tree, emission = noded(only('POINT', 50, (1, -2, 3), shadow_soft_size=0).data)
+    tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Linear'], emission.inputs[1])
+
+
+@case("quadratic falloff of a lamp")
+def falloff_quadratic(scene):
+    tree, emission = noded(only('POINT', 50, (1, -2, 3), shadow_soft_size=0).data)
+    tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Quadratic'], emission.inputs[1])
+
+
+@case("IES profile")
+def ies(scene):
+    tree, emission = noded(only('POINT', 30, (0, -1, 3), shadow_soft_size=0).data)
+    profile = bpy.data.texts.new("lamp.ies")
+    profile.write("IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 30 90\n0\n1000 100 0\n")
+    tree.links.new(node(tree, 'ShaderNodeTexIES', ies=profile).outputs[0], emission.inputs[1])
+
+
+@case("IES profile, of a lamp that is turned")
+def ies_turned(scene):
+    lamp = only('POINT', 30, (0, -1, 3), shadow_soft_size=0)
+    lamp.rotation_euler = (0.3, 0.2, 0.5)
+    tree, emission = noded(lamp.data)
+    profile = bpy.data.texts.new("lamp.ies")
+    profile.write("IESNA:LM-63-2002\nTILT=NONE\n1 1000 2 3 5 1 2 0 0 0\n1 1 10\n0 40 90\n0 90 180 270 360\n"
+                  "900 700 0\n900 100 0\n900 400 0\n900 10 0\n900 700 0\n")
+    tree.links.new(node(tree, 'ShaderNodeTexIES', ies=profile).outputs[0], emission.inputs[1])
+
+
+@case("texture of a lamp")
+def lamp_texture(scene):
+    tree, emission = noded(the("key").data)
+    tree.links.new(node(tree, 'ShaderNodeTexChecker', Scale=1).outputs[0], emission.inputs[0])

@@ -1,0 +1,393 @@
+"""Further features of textures and surfaces."""
+import math
+import os
+
+import bpy
+import numpy as np
+from mathutils import Euler, Matrix
+
+from cases import case, checks, cover, cube, dressed, folder, image, node, principled, surface, textured, the, wall, without
+from lamps import only
+from objects import lawn, particles
+from scenes import dress, matte
+from surfaces import half, leaf, sheet
+from textures import normal_map, waves
+
+
+def link(tree, *pairs):
+    for a, b in pairs:
+        tree.links.new(a, b)
+
+
+@case("image texture over the UV map that is chosen for renders")
+def uv_for_renders(scene):
+    layers = wall(textured()[0]).data.uv_layers
+    layer = layers.new(name="small")
+    for loop, uv in zip(layer.data, ((0, 0), (1, 0), (1, 1), (0, 1))):
+        loop.uv = [0.2 * v for v in uv]
+    layer.active_render, layers.active_index = True, 0
+
+
+@case("colours of vertices that are chosen for renders")
+def colours_for_renders(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeVertexColor').outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+    attributes = the("ball").data.color_attributes
+    for name, colour in ("red", (0.8, 0.1, 0.1, 1)), ("green", (0.1, 0.8, 0.1, 1)):
+        for one in attributes.new(name, 'FLOAT_COLOR', 'POINT').data:
+            one.color = colour
+    attributes.active_color_index, attributes.render_color_index = 0, 1
+
+
+@case("Attribute nodes: colours of points, and UVs")
+def attributes(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="mask").outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+    for i, one in enumerate(the("ball").data.color_attributes.new("mask", 'FLOAT_COLOR', 'POINT').data):
+        one.color = (0.8, 0.2, 0.1 + 0.5 * (i % 2), 1)
+    made, shown, _, tree = textured()
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="UVMap").outputs['Vector'], shown.inputs[0]))
+    dressed(made, "floor")
+
+
+@case("transparent image whose alpha is not linked")
+def alpha_unused(scene):
+    wall(textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))[0])
+
+
+@case("transparent image with an alpha that is linked, on instances")
+def leaves(scene):
+    made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+    link(tree, (shown.outputs[1], bsdf.inputs['Alpha']))
+    one = wall(made, 0.3, z=0.6)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=3, location=(0, 0, 0.1))
+    one.parent = dress(matte("lawn", (0.1, 0.3, 0.1, 1)))
+    one.parent.instance_type = 'VERTS'
+
+
+@case("image texture through hue, gamma, contrast and Invert")
+def corrected(scene):
+    made, shown, bsdf, tree = textured()
+    made_of = [node(tree, 'ShaderNodeHueSaturation', Hue=0.6, Saturation=1.5, Value=0.8), node(tree, 'ShaderNodeGamma', Gamma=1.4),
+               node(tree, 'ShaderNodeBrightContrast', Bright=0.05, Contrast=0.2), node(tree, 'ShaderNodeInvert', Fac=0.3)]
+    source = shown.outputs[0]
+    for one in made_of:
+        link(tree, (source, one.inputs['Color']))
+        source = one.outputs[0]
+    link(tree, (source, bsdf.inputs['Base Color']))
+    dressed(made)
+
+
+@case("two images mixed by a third, with a mapping each")
+def mixed_images(scene):
+    made, shown, bsdf, tree = textured()
+    other = node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.3, 0.2), "other"))
+    mask = node(tree, 'ShaderNodeTexImage', image=image(waves(), "mask", 'Non-Color'))
+    mix, where = node(tree, 'ShaderNodeMixRGB'), tree.nodes.new('ShaderNodeTexCoord')
+    for i, one in enumerate((other, mask)):
+        turn = node(tree, 'ShaderNodeMapping', Scale=(1.5 + i, 2, 1), Rotation=(0, 0, 0.3 + i), Location=(0.2, 0.1, 0))
+        link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], one.inputs[0]))
+    link(tree, (mask.outputs[0], mix.inputs[0]), (shown.outputs[0], mix.inputs[1]), (other.outputs[0], mix.inputs[2]),
+         (mix.outputs[0], bsdf.inputs['Base Color']))
+    wall(made)
+
+
+@case("image texture mirrored by nodes")
+def mirrored(scene):
+    made, shown, _, tree = textured(checks() * np.linspace(0.2, 1, 64)[None, :, None])
+    where, parts, back = (tree.nodes.new('ShaderNode' + k) for k in ('TexCoord', 'SeparateXYZ', 'CombineXYZ'))
+    link(tree, (where.outputs['UV'], parts.inputs[0]), (back.outputs[0], shown.inputs[0]))
+    for i in range(2):
+        times, fold = node(tree, 'ShaderNodeMath', operation='MULTIPLY'), node(tree, 'ShaderNodeMath', operation='PINGPONG')
+        times.inputs[1].default_value, fold.inputs[1].default_value = 3, 1
+        link(tree, (parts.outputs[i], times.inputs[0]), (times.outputs[0], fold.inputs[0]), (fold.outputs[0], back.inputs[i]))
+    wall(made)
+
+
+@case("mapping in the node of an image")
+def own_mapping(scene):
+    made, shown, _, _ = textured()
+    shown.texture_mapping.scale, shown.texture_mapping.translation = (0.3, 0.2, 1), (0.1, 0.3, 0)
+    wall(made)
+
+
+@case("Mapping of the kinds Texture, Vector and Normal, with a location")
+def mappings(scene):
+    for x, kind in (-1.2, 'TEXTURE'), (0, 'VECTOR'), (1.2, 'NORMAL'):
+        made, shown, _, tree = textured(checks()[:, ::-1] * np.linspace(0.2, 1, 64)[:, None, None])
+        turn = node(tree, 'ShaderNodeMapping', vector_type=kind, Rotation=(0, 0, 0.3), Scale=(0.5, 0.3, 1))
+        where = tree.nodes.new('ShaderNodeTexCoord')
+        if 'Location' in turn.inputs and turn.inputs['Location'].enabled:
+            turn.inputs['Location'].default_value = (0.2, 0.1, 0)
+        link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]))
+        wall(made, 0.5).location.x = x
+
+
+@case("image texture over Generated coordinates, Extend, and Cubic")
+def generated(scene):
+    made, shown, _, tree = textured(extension='EXTEND', interpolation='Cubic')
+    turn, where = node(tree, 'ShaderNodeMapping', Scale=(1.5, 1.5, 1), Location=(-0.2, -0.2, 0)), tree.nodes.new('ShaderNodeTexCoord')
+    link(tree, (where.outputs['Generated'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]))
+    dressed(made)
+
+
+@case("gradient through a ramp")
+def gradient(scene):
+    made, bsdf, tree = principled()
+    where, shown, ramped = (tree.nodes.new('ShaderNode' + k) for k in ('TexCoord', 'TexGradient', 'ValToRGB'))
+    shown.gradient_type = 'SPHERICAL'
+    ramped.color_ramp.interpolation = 'CONSTANT'
+    ramped.color_ramp.elements[0].color, ramped.color_ramp.elements[1].position = (0.7, 0.1, 0.1, 1), 0.4
+    link(tree, (where.outputs['Generated'], shown.inputs[0]), (shown.outputs[0], ramped.inputs[0]), (ramped.outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+
+
+@case("texture over the coordinates of another object")
+def other_coordinates(scene):
+    made, shown, _, tree = textured()
+    where = tree.nodes.new('ShaderNodeTexCoord')
+    where.object = bpy.data.objects.new("place", None)
+    scene.collection.objects.link(where.object)
+    where.object.matrix_world = Matrix.LocRotScale((0.3, 0, 0), Euler((0.4, 0, 0.5)), (2, 2, 2))
+    link(tree, (where.outputs['Object'], shown.inputs[0]))
+    shown.projection = 'BOX'
+    dressed(made)
+
+
+@case("image of tiles (UDIM)")
+def tiles(scene):
+    made, shown, _, _ = textured()
+    tiled = bpy.data.images.new("tiled", 64, 64, tiled=True)
+    for number, colour in (1001, (0.8, 0.1, 0.1)), (1002, (0.1, 0.8, 0.1)):
+        image(np.ones((64, 64, 3)) * colour, f"tile.{number}")
+    tiled.filepath = os.path.join(folder(), "tile.<UDIM>.png")
+    tiled.source = 'TILED'
+    if len(tiled.tiles) < 2:
+        tiled.tiles.new(1002)
+    tiled.reload()
+    shown.image = tiled
+    for loop in wall(made).data.uv_layers[0].data:
+        loop.uv.x *= 2
+
+
+@case("normal map of strength 2, and one in space of the object")
+def normal_strength(scene):
+    normal_map(scene)
+    tree = the("ball").data.materials[0].node_tree
+    next(n for n in tree.nodes if n.type == 'NORMAL_MAP').inputs['Strength'].default_value = 2
+    made = the("ball").data.materials[0].copy()
+    next(n for n in made.node_tree.nodes if n.type == 'NORMAL_MAP').space = 'OBJECT'
+    dressed(made, "floor")
+
+
+@case("normal map that leans 30 degrees towards the light")
+def leaning(scene):
+    made, bsdf, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
+    tilted = np.ones((8, 8, 3)) * (0.5 + 0.5 * math.sin(0.52), 0.5, 0.5 + 0.5 * math.cos(0.52))
+    shown, mapped = node(tree, 'ShaderNodeTexImage', image=image(tilted, "tilted", 'Non-Color')), tree.nodes.new('ShaderNodeNormalMap')
+    link(tree, (shown.outputs[0], mapped.inputs['Color']), (mapped.outputs[0], bsdf.inputs['Normal']))
+    wall(made)
+    only('SUN', 3, (0, 0, 9), (0.2, 1.3, 0), angle=0)
+
+
+@case("normal map under bump")
+def chained(scene):
+    normal_map(scene)
+    tree = the("ball").data.materials[0].node_tree
+    bsdf, mapped = (next(n for n in tree.nodes if n.type == k) for k in ('BSDF_PRINCIPLED', 'NORMAL_MAP'))
+    bumped = node(tree, 'ShaderNodeBump', Strength=0.3)
+    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=6).outputs[0], bumped.inputs['Height']), (mapped.outputs[0], bumped.inputs['Normal']),
+         (bumped.outputs[0], bsdf.inputs['Normal']))
+
+
+@case("custom normals, and smooth shading with an angle")
+def custom_normals(scene):
+    without("ball")
+    o = cube(surface('BsdfGlossy', Roughness=0.3)[0], 1.2, (0, 0, 0.6))
+    for polygon in o.data.polygons:
+        polygon.use_smooth = True
+    o.data.use_auto_smooth = True
+    o.data.normals_split_custom_set_from_vertices([v.co.normalized() for v in o.data.vertices])
+
+
+@case("modifiers: array, mirror, solidify, bevel with weighted normals")
+def more_modifiers(scene):
+    without("ball")
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 0.6, (0.8, 0, 0.4))
+    o.scale = (-1, 1.3, 0.8)
+    for name, kind, values in (("bevel", 'BEVEL', dict(width=0.08, segments=3)), ("copies", 'ARRAY', dict(count=3)),
+                               ("other", 'MIRROR', dict(mirror_object=the("floor"))), ("normals", 'WEIGHTED_NORMAL', {})):
+        made = o.modifiers.new(name, kind)
+        for key, value in values.items():
+            setattr(made, key, value)
+    for polygon in o.data.polygons:
+        polygon.use_smooth = True
+    o.data.use_auto_smooth = True
+
+
+@case("hair whose density is a group of vertices")
+def hair_by_group(scene):
+    o = lawn()
+    group = o.vertex_groups.new(name="dense")
+    group.add([v.index for v in o.data.vertices if v.co.x > 0], 1, 'REPLACE')
+    particles(o, count=1000, hair_length=0.6, root_radius=5)
+    o.particle_systems[0].vertex_group_density = "dense"
+
+
+@case("two-sided material by Backfacing")
+def two_sided(scene):
+    made, front, tree = surface('BsdfDiffuse', Color=(0.8, 0.1, 0.1, 1))
+    behind = node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.8, 1))
+    mix, where = tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeNewGeometry')
+    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (front.outputs[0], mix.inputs[1]), (behind.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    wall(made).rotation_euler.z = math.pi
+
+
+@case("colour by the facing of Layer Weight")
+def by_facing(scene):
+    made, bsdf, tree = principled()
+    ramped = node(tree, 'ShaderNodeValToRGB')
+    link(tree, (node(tree, 'ShaderNodeLayerWeight', Blend=0.5).outputs['Facing'], ramped.inputs[0]), (ramped.outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+
+
+@case("emission by a property of the object")
+def emission_property(scene):
+    made, bsdf, tree = surface('Emission')
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_type='OBJECT', attribute_name="power").outputs['Fac'], bsdf.inputs[1]))
+    the("ball")["power"] = 3.0
+    dressed(made)
+
+
+@case("emission by the index and the colour of the object")
+def emission_index(scene):
+    made, bsdf, tree = surface('Emission')
+    info = tree.nodes.new('ShaderNodeObjectInfo')
+    link(tree, (info.outputs['Object Index'], bsdf.inputs[1]), (info.outputs['Color'], bsdf.inputs[0]))
+    the("ball").pass_index, the("ball").color = 3, (0.3, 0.6, 1, 1)
+    dressed(made)
+
+
+@case("emission that the camera sees weaker")
+def emission_by_rays(scene):
+    made, bsdf, tree = surface('Emission')
+    ranged = node(tree, 'ShaderNodeMapRange')
+    ranged.inputs[3].default_value, ranged.inputs[4].default_value = 10, 1
+    link(tree, (tree.nodes.new('ShaderNodeLightPath').outputs['Is Camera Ray'], ranged.inputs[0]), (ranged.outputs[0], bsdf.inputs[1]))
+    dressed(made)
+
+
+@case("Add of Transparent and Emission, and their Mix")
+def glow(scene):
+    for x, kind in (-0.8, 'AddShader'), (0.8, 'MixShader'):
+        made, bsdf, tree = surface('Emission', Strength=0.5, Color=(1, 0.3, 0.1, 1))
+        both, clear = tree.nodes.new('ShaderNode' + kind), tree.nodes.new('ShaderNodeBsdfTransparent')
+        inputs = [s for s in both.inputs if s.type == 'SHADER']
+        link(tree, (clear.outputs[0], inputs[0]), (bsdf.outputs[0], inputs[1]))
+        cover(both, tree)
+        wall(made, 0.6).location.x = x
+
+
+@case("Add of Diffuse and Glossy")
+def added_shine(scene):
+    made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
+    add = tree.nodes.new('ShaderNodeAddShader')
+    link(tree, (base.outputs[0], add.inputs[0]), (node(tree, 'ShaderNodeBsdfGlossy', Color=(0.2, 0.2, 0.2, 1)).outputs[0], add.inputs[1]))
+    cover(add, tree)
+    dressed(made)
+
+
+@case("glass that is clear to shadows and diffuse light, by a Math node")
+def glass_by_math(scene):
+    made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
+    rays, clear, mix, most = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader', 'Math'))
+    most.operation = 'MAXIMUM'
+    link(tree, (rays.outputs['Is Shadow Ray'], most.inputs[0]), (rays.outputs['Is Diffuse Ray'], most.inputs[1]), (most.outputs[0], mix.inputs[0]),
+         (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    sheet(made)
+
+
+@case("Mix of Refraction and Glossy by Fresnel")
+def built_glass(scene):
+    made, base, tree = surface('BsdfRefraction', Roughness=0, IOR=1.45)
+    shine, fresnel = node(tree, 'ShaderNodeBsdfGlossy', Roughness=0), node(tree, 'ShaderNodeFresnel', IOR=1.45)
+    mix = tree.nodes.new('ShaderNodeMixShader')
+    link(tree, (fresnel.outputs[0], mix.inputs[0]), (base.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("leaf with an alpha: Transparent, Diffuse and Translucent")
+def leaf_cut(scene):
+    leaf(scene)
+    tree = the("wall").data.materials[0].node_tree
+    inner = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
+    shown = node(tree, 'ShaderNodeTexImage', image=image(np.repeat(np.repeat(half(), 8, 0), 8, 1)))
+    clear, mix = tree.nodes.new('ShaderNodeBsdfTransparent'), tree.nodes.new('ShaderNodeMixShader')
+    link(tree, (shown.outputs[1], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (inner.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+
+
+@case("surface Holdout")
+def holdout_surface(scene):
+    scene.render.film_transparent = True
+    dressed(surface('Holdout')[0])
+
+
+@case("material with nothing on its surface, and no volume")
+def nothing(scene):
+    made, bsdf, tree = principled()
+    tree.nodes.remove(bsdf)
+    dressed(made)
+
+
+@case("material of the object, not of its mesh")
+def slots(scene):
+    for x, colour in (-1.6, (0.1, 0.6, 0.1, 1)), (1.6, (0.1, 0.1, 0.6, 1)):
+        o = bpy.data.objects.new("other", the("ball").data)
+        scene.collection.objects.link(o)
+        o.location = (x, 0, 0.7)
+        o.material_slots[0].link = 'OBJECT'
+        o.material_slots[0].material = matte("own", colour)
+
+
+@case("metal and roughness of an image's channels")
+def packed(scene):
+    made, bsdf, tree = principled()
+    values = np.zeros((64, 64, 3)) + (0, 0.3, 0)
+    values[:, 32:, 1], values[16:48, :, 2] = 0.7, 1
+    shown, parts = node(tree, 'ShaderNodeTexImage', image=image(values, "packed", 'Non-Color')), tree.nodes.new('ShaderNodeSeparateColor')
+    link(tree, (shown.outputs[0], parts.inputs[0]), (parts.outputs[1], bsdf.inputs['Roughness']), (parts.outputs[2], bsdf.inputs['Metallic']))
+    dressed(made)
+
+
+@case("points and volumes of geometry nodes")
+def points(scene):
+    without("ball")
+    group = bpy.data.node_groups.new("points", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, made = (group.nodes.new(k) for k in ('NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeMeshToPoints'))
+    made.inputs['Radius'].default_value = 0.3
+    link(group, (inlet.outputs[0], made.inputs[0]), (made.outputs[0], outlet.inputs[0]))
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3, location=(0, 0, 0.4))
+    dress(matte("red", (0.6, 0.2, 0.1, 1))).modifiers.new("points", 'NODES').node_group = group
+
+
+@case("geometry nodes: a material that they set, and an attribute that they name")
+def node_attribute(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="height").outputs['Fac'], bsdf.inputs['Base Color']))
+    group = bpy.data.node_groups.new("paint", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, store, dressing, place, parts = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeSetMaterial', 'GeometryNodeInputPosition',
+        'ShaderNodeSeparateXYZ'))
+    store.inputs['Name'].default_value, dressing.inputs['Material'].default_value = "height", made
+    value = next(s for s in store.inputs if s.type == 'VALUE' and s.enabled)
+    link(group, (inlet.outputs[0], store.inputs[0]), (place.outputs[0], parts.inputs[0]), (parts.outputs[2], value),
+         (store.outputs[0], dressing.inputs[0]), (dressing.outputs[0], outlet.inputs[0]))
+    the("ball").modifiers.new("paint", 'NODES').node_group = group

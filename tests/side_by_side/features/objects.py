@@ -1,0 +1,285 @@
+"""Features of objects."""
+import os
+
+import bpy
+
+from cases import ball, case, cube, dressed, folder, node, principled, surface, textured, the, wall, without
+from scenes import dress, lamp, matte
+
+
+@case("object that the camera does not see")
+def unseen(scene):
+    the("ball").visible_camera = False
+
+
+@case("object and lamp that no ray sees")
+def unseen_by_all(scene):
+    lamp('POINT', 500, (2, -2, 1), shadow_soft_size=0.1).name = "lamp"
+    for name in "camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow":
+        for o in "ball", "lamp":
+            setattr(the(o), "visible_" + name, False)
+
+
+@case("object without a shadow")
+def shadowless(scene):
+    the("ball").visible_shadow = False
+
+
+@case("holdout")
+def holdout(scene):
+    the("ball").is_holdout = scene.render.film_transparent = True
+
+
+@case("shadow catcher")
+def catcher(scene):
+    the("floor").is_shadow_catcher = scene.render.film_transparent = True
+
+
+@case("collection: indirect only")
+def indirect_only(scene):
+    made = bpy.data.collections.new("indirect")
+    scene.collection.children.link(made)
+    made.objects.link(the("ball"))
+    scene.collection.objects.unlink(the("ball"))
+    scene.view_layers[0].layer_collection.children["indirect"].indirect_only = True
+
+
+@case("background set, and a grease pencil")
+def background_set(scene):
+    other = bpy.data.scenes.new("set")
+    for name in "ball", "key":
+        other.collection.objects.link(the(name))
+        scene.collection.objects.unlink(the(name))
+    scene.background_set = other
+    bpy.ops.object.gpencil_add(location=(0, -1, 1), type='STROKE')
+
+
+@case("material override of a view layer")
+def override(scene):
+    scene.view_layers[0].material_override = matte("clay", (0.8, 0.8, 0.8, 1))
+
+
+@case("view layer without the sky and strands")
+def layer_without(scene):
+    hair(scene)
+    scene.view_layers[0].use_sky = scene.view_layers[0].use_strand = False
+
+
+@case("view layer without surfaces")
+def layer_of_strands(scene):
+    hair(scene)
+    scene.view_layers[0].use_solid = False
+
+
+@case("sheared object")
+def sheared(scene):
+    without("ball")
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    parent.scale = (3, 1, 1)
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), rotation=(0, 0, 0.7))
+    o.parent = parent
+
+
+@case("empty slot of a material")
+def empty_slot(scene):
+    the("ball").data.materials.append(None)
+    made, shown, _, tree = textured()
+    tree.links.new(node(tree, 'ShaderNodeUVMap', uv_map="UVMap").outputs[0], shown.inputs[0])
+    wall(made).location.y = 1
+    ball(matte("red", (0.6, 0.2, 0.1, 1))).data.materials.append(None)
+    the("ball").data.polygons[0].material_index = 1
+
+
+@case("instanced collection outside the scene, with an object hidden from renders")
+def instanced_collection(scene):
+    without("ball")
+    parts = bpy.data.collections.new("parts")
+    shown = cube(matte("shown", (0.6, 0.2, 0.1, 1)))
+    shown.modifiers.new("round", 'SUBSURF').render_levels = 3
+    cutter = cube(matte("cutter", (0.1, 0.8, 0.1, 1)), 0.6, (0.4, -0.4, 0.8))
+    cutter.hide_render = True
+    cut = shown.modifiers.new("cut", 'BOOLEAN')
+    cut.object = cutter
+    unseen = cube(matte("unseen", (0.1, 0.8, 0.1, 1)), 0.6, (1.5, 0, 0.3))
+    unseen.hide_viewport = True
+    for o in shown, cutter, unseen:
+        parts.objects.link(o)
+        scene.collection.objects.unlink(o)
+    copy = bpy.data.objects.new("copy", None)
+    copy.instance_type, copy.instance_collection = 'COLLECTION', parts
+    scene.collection.objects.link(copy)
+
+
+@case("other values in the viewport: particles, curves, Screw, metaballs, geometry nodes")
+def viewport_values(scene):
+    particle_objects(scene)
+    bpy.data.particles[0].display_method = 'PATH'
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.7, location=(1.5, -1, 0.8))
+    bpy.context.object.data.bevel_depth, bpy.context.object.data.resolution_u = 0.2, 1
+    bpy.context.object.data.render_resolution_u = 12
+    bpy.ops.object.metaball_add(location=(-2, 0, 0.8), radius=1)
+    bpy.context.object.data.resolution = 1
+    rod = cube(matte("rod", (0.6, 0.2, 0.1, 1)), 0.3, (0, -1.5, 1))
+    screw = rod.modifiers.new("screw", 'SCREW')
+    screw.angle, screw.screw_offset, screw.steps, screw.render_steps = 0.1, 1, 2, 16
+    group = bpy.data.node_groups.new("late", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, switch, asks = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeSwitch', 'GeometryNodeIsViewport'))
+    switch.input_type = 'GEOMETRY'
+    geometry = [s for s in switch.inputs if s.type == 'GEOMETRY']
+    group.links.new(inlet.outputs[0], geometry[0])
+    group.links.new(next(s for s in switch.outputs if s.type == 'GEOMETRY'), outlet.inputs[0])
+    group.links.new(asks.outputs[0], switch.inputs[1])
+    cube(matte("late", (0.1, 0.2, 0.6, 1)), 0.6, (-1, -1.5, 0.4)).modifiers.new("late", 'NODES').node_group = group
+
+
+@case("override of an object of a library, beside a local one of its name")
+def library(scene):
+    made = textured()[0]
+    dressed(made)
+    parts, path = bpy.data.collections.new("parts"), os.path.join(folder(), "library.blend")
+    parts.objects.link(the("ball"))
+    bpy.data.libraries.write(path, {parts})
+    without("ball")
+    bpy.data.collections.remove(parts)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.collections = ["parts"]
+    copy = bpy.data.objects.new("copy", None)
+    copy.instance_type, copy.instance_collection, copy.scale = 'COLLECTION', wanted.collections[0], (-1, 1, 1.2)
+    scene.collection.objects.link(copy)
+    source = copy.instance_collection.objects[0]
+    scene.collection.objects.link(source)
+    moved = source.override_create(remap_local_usages=True)
+    moved.location.x = -1.5
+
+
+@case("negative scale")
+def negative(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_monkey_add(size=1.6, location=(0, 0, 0.8))
+    dress(matte("red", (0.6, 0.2, 0.1, 1))).scale = (-1, 1, 1)
+
+
+@case("text, curves and metaballs")
+def text(scene):
+    without("ball")
+    bpy.ops.object.text_add(location=(-1, 0, 0.2), rotation=(1.2, 0, 0))
+    bpy.context.object.data.body, bpy.context.object.data.extrude = "lull", 0.1
+    bpy.context.object.data.materials.append(matte("ink", (0.6, 0.2, 0.1, 1)))
+    bpy.ops.curve.primitive_bezier_circle_add(location=(1.5, 0, 0.8))
+    bpy.context.object.data.bevel_depth = 0.2
+    bpy.ops.object.metaball_add(location=(-2, 0, 0.8), radius=1)
+
+
+@case("instances on faces")
+def faces(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=4, location=(0, 0, 0.3))
+    carrier = dress(None)
+    cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4).parent = carrier
+    carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
+
+
+@case("lamps on faces")
+def lamps_on_faces(scene):
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=2, size=4, location=(0, 0, 3))
+    carrier = bpy.context.object
+    lamp('POINT', 50, (0, 0, 0)).parent = carrier
+    carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
+
+
+@case("instances of geometry nodes")
+def geometry_nodes(scene):
+    without("ball")
+    one = cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4, (0, 50, 0))
+    group = bpy.data.node_groups.new("scatter", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, put, info = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeInstanceOnPoints', 'GeometryNodeObjectInfo'))
+    info.inputs[0].default_value = one
+    for a, b in ((inlet.outputs[0], put.inputs['Points']), (info.outputs['Geometry'], put.inputs['Instance']),
+                 (put.outputs[0], outlet.inputs[0])):
+        group.links.new(a, b)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3, location=(0, 0, 0.4))
+    dress(None).modifiers.new("scatter", 'NODES').node_group = group
+
+
+def particles(o, **values):
+    o.modifiers.new("particles", 'PARTICLE_SYSTEM')
+    settings = o.particle_systems[0].settings
+    settings.type = 'HAIR'
+    for key, value in values.items():
+        setattr(settings, key, value)
+
+
+def lawn():
+    without("ball")
+    bpy.ops.mesh.primitive_grid_add(size=3, location=(0, 0, 0.1))
+    return dress(matte("lawn", (0.1, 0.3, 0.1, 1)))
+
+
+@case("particles that are objects")
+def particle_objects(scene):
+    bpy.ops.mesh.primitive_ico_sphere_add(radius=0.3, location=(0, 50, 0))
+    one = dress(matte("copy", (0.6, 0.2, 0.1, 1)))
+    particles(lawn(), count=40, render_type='OBJECT', instance_object=one, particle_size=0.5)
+
+
+@case("hair of particles")
+def hair(scene):
+    particles(lawn(), count=1000, hair_length=0.6, root_radius=5)
+
+
+@case("hair of curves")
+def hair_curves(scene):
+    bpy.context.preferences.experimental.use_new_curves_tools = True
+    bpy.ops.object.curves_random_add()
+    bpy.context.object.data.materials.append(matte("strands", (0.3, 0.2, 0.1, 1)))
+
+
+@case("modifiers: subdivision, boolean")
+def modifiers(scene):
+    the("ball").hide_render = True
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 1.4, (0, 0, 0.7))
+    o.modifiers.new("round", 'SUBSURF').render_levels = 3
+    cut = o.modifiers.new("cut", 'BOOLEAN')
+    cut.object = the("ball")
+
+
+@case("adaptive subdivision")
+def dicing(scene):
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 1.4, (0, 0, 0.7))
+    without("ball")
+    scene.cycles.feature_set = 'EXPERIMENTAL'
+    o.modifiers.new("round", 'SUBSURF').levels = 3
+    o.cycles.use_adaptive_subdivision = True
+
+
+@case("simplify")
+def simplify(scene):
+    scene.render.use_simplify, scene.render.simplify_subdivision_render = True, 0
+    the("ball").modifiers.new("round", 'SUBSURF').render_levels = 3
+
+
+@case("smooth shading with an angle, auto smooth")
+def auto_smooth(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.7, depth=1.2, location=(0, 0, 0.6))
+    o = dress(surface('BsdfGlossy', Roughness=0.2)[0], smooth=True)
+    o.data.use_auto_smooth, o.data.auto_smooth_angle = True, 0.6
+
+
+@case("volume of an object without a surface")
+def volume(scene):
+    made, _, tree = principled()
+    tree.nodes.remove(next(n for n in tree.nodes if n.type == 'BSDF_PRINCIPLED'))
+    tree.links.new(node(tree, 'ShaderNodeVolumePrincipled').outputs[0], tree.get_output_node('ALL').inputs['Volume'])
+    cube(made, 1.5, (0, 0, 0.8))
+    without("ball")
+
+
+@case("unit scale of a scene")
+def units(scene):
+    scene.unit_settings.scale_length = 0.01

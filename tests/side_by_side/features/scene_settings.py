@@ -1,0 +1,434 @@
+"""Further features of lamps, cameras, view layers and worlds."""
+import os
+
+import bpy
+import numpy as np
+
+from cases import case, checks, cover, cube, dressed, folder, image, node, principled, surface, textured, the, wall, without
+from camera import border, keyed, orthographic, shift
+from lamps import noded, only
+from mixed_surfaces import link
+from objects import lawn, particles
+from scenes import dress, lamp, matte
+from surfaces import coated, half, leaf, pane
+from textures import displacement, normal_map, waves
+from world import world_image
+
+
+@case("instanced collection with lamps in it, scaled and mirrored")
+def lamps_in_collection(scene):
+    without("key")
+    parts = bpy.data.collections.new("parts")
+    for made in (lamp('AREA', 100, (1, 0, 2), (0.4, 0, 0), size=0.5, shape='ELLIPSE', size_y=1),
+                 lamp('SPOT', 200, (-1, -1, 2), (0.5, 0, 0), shadow_soft_size=0.1, spot_size=1)):
+        parts.objects.link(made)
+        scene.collection.objects.unlink(made)
+    for x, scale in (-1.5, (1, 1, 1)), (1.5, (-1.5, 1, 1.2)):
+        copy = bpy.data.objects.new("copy", None)
+        copy.instance_type, copy.instance_collection, copy.location, copy.scale = 'COLLECTION', parts, (x, 0, 0.5), scale
+        scene.collection.objects.link(copy)
+
+
+@case("lamps whose size, colour and energy are animated, and a driver")
+def animated_lamps(scene):
+    light = the("key").data
+    keyed(light, "size", 1, 1, 0.2, 2), keyed(light, "energy", 1, 1, 200, 400)
+    keyed(light, "color", (1, 1, 1), (1, 1, 1), (1, 0.5, 0.5), (1, 0.2, 0.2))
+    driver = the("ball").driver_add("location", 0).driver
+    driver.expression = "frame / 2"
+    scene.frame_set(2)
+
+
+@case("sun with a blackbody and a strength of nodes")
+def sun_nodes(scene):
+    tree, emission = noded(only('SUN', 1, (0, 0, 5), (0.7, 0, 0.5), angle=0.1).data)
+    link(tree, (node(tree, 'ShaderNodeBlackbody', Temperature=4500).outputs[0], emission.inputs[0]))
+    emission.inputs[1].default_value = 2.5
+
+
+@case("strength of a lamp by a Math node")
+def lamp_math(scene):
+    tree, emission = noded(the("key").data)
+    times = node(tree, 'ShaderNodeMath', operation='MULTIPLY')
+    times.inputs[0].default_value, times.inputs[1].default_value = 0.5, 4
+    link(tree, (times.outputs[0], emission.inputs[1]))
+
+
+@case("spot lamp that is scaled")
+def spot_scaled(scene):
+    o = only('SPOT', 800, (1, -2, 3), (0.4, 0, 0.3), shadow_soft_size=0, spot_size=1, spot_blend=0.2)
+    o.scale = (2, 1, 1)
+
+
+@case("point lamp with a radius that is scaled, and a sheared area lamp")
+def lamps_scaled(scene):
+    only('POINT', 100, (1, -2, 3), shadow_soft_size=0.2).scale = (2, 2, 2)
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    parent.scale = (2, 1, 1)
+    o = lamp('AREA', 100, (-1, 0, 3), (0.3, 0, 0.6), size=1)
+    o.parent = parent
+
+
+@case("scaled camera that tracks an object, focus on an object")
+def tracking(scene):
+    camera = scene.camera
+    camera.scale = (2, 2, 2)
+    camera.constraints.new('TRACK_TO').target = the("ball")
+    camera.data.dof.use_dof, camera.data.dof.focus_object, camera.data.dof.aperture_fstop = True, the("ball"), 0.2
+
+
+@case("orthographic camera, portrait, with a shift")
+def orthographic_portrait(scene):
+    orthographic(scene)
+    shift(scene)
+
+
+@case("camera of a field of view, another sensor")
+def field_of_view(scene):
+    data = scene.camera.data
+    data.lens_unit, data.sensor_width = 'FOV', 24
+    data.angle = 1.2
+
+
+@case("border, not cropped")
+def border_whole(scene):
+    border(scene)
+    scene.render.use_crop_to_border = False
+
+
+@case("all of it 20 km from the origin, in feet")
+def far_away(scene):
+    scene.unit_settings.system, scene.unit_settings.length_unit = 'IMPERIAL', 'FEET'
+    for o in scene.objects:
+        o.location = [a + b for a, b in zip(o.location, (15000, 12000, 100))]
+
+
+@case("look, gamma and curves of the view")
+def looks(scene):
+    view = scene.view_settings
+    view.view_transform, view.look, view.gamma, view.exposure = 'Filmic', 'High Contrast', 1.2, 0.5
+
+
+@case("two view layers, one with an excluded collection")
+def layers(scene):
+    made = bpy.data.collections.new("out")
+    scene.collection.children.link(made)
+    made.objects.link(the("ball"))
+    scene.collection.objects.unlink(the("ball"))
+    scene.view_layers.new("other")
+    scene.view_layers[0].layer_collection.children["out"].exclude = True
+
+
+@case("world: mirror ball, through hue and strength")
+def world_ball(scene):
+    world_image(scene)
+    tree = scene.world.node_tree
+    made, hue = next(n for n in tree.nodes if n.type == 'TEX_ENVIRONMENT'), node(tree, 'ShaderNodeHueSaturation', Hue=0.7, Saturation=1.5)
+    made.projection = 'MIRROR_BALL'
+    link(tree, (made.outputs[0], hue.inputs['Color']), (hue.outputs[0], tree.nodes["Background"].inputs[0]))
+    tree.nodes["Background"].inputs[1].default_value = 1.5
+
+
+@case("world: gradient of nodes, and Hosek's sky")
+def world_gradient(scene):
+    tree = scene.world.node_tree
+    made, mix = node(tree, 'ShaderNodeTexSky', sky_type='HOSEK_WILKIE'), node(tree, 'ShaderNodeMixRGB', Fac=0.5)
+    where, shown = tree.nodes.new('ShaderNodeTexCoord'), node(tree, 'ShaderNodeTexGradient')
+    link(tree, (where.outputs['Generated'], shown.inputs[0]), (shown.outputs[0], mix.inputs[1]), (made.outputs[0], mix.inputs[2]),
+         (mix.outputs[0], tree.nodes["Background"].inputs[0]))
+
+
+@case("shadow terminator of an object")
+def terminator(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.7, location=(0, 0, 0.7))
+    o = dress(matte("red", (0.6, 0.2, 0.1, 1)), smooth=True)
+    o.cycles.shadow_terminator_offset = 0.5
+    only('SUN', 3, (0, 0, 9), (0.9, 0.9, 0), angle=0)
+
+
+@case("curve with the profile of another, and an image texture")
+def curves(scene):
+    without("ball")
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.3, location=(0, 50, 0))
+    profile = bpy.context.object
+    bpy.ops.curve.primitive_bezier_curve_add(radius=1.2, location=(0, 0, 0.6))
+    o = bpy.context.object
+    o.data.bevel_mode, o.data.bevel_object, o.data.use_fill_caps = 'OBJECT', profile, True
+    o.data.materials.append(textured()[0])
+
+
+@case("text with an image texture")
+def text_uvs(scene):
+    without("ball")
+    bpy.ops.object.text_add(location=(-1.5, 0, 0.2), rotation=(1.2, 0, 0))
+    o = bpy.context.object
+    o.data.body, o.data.extrude, o.data.bevel_depth, o.data.size = "lull", 0.1, 0.02, 1.6
+    o.data.materials.append(textured()[0])
+
+
+@case("smooth shading of few faces, under a low sun")
+def coarse(scene):
+    terminator(scene)
+    next(o for o in scene.objects if o.type == 'MESH' and o.name != "floor").cycles.shadow_terminator_offset = 0
+
+
+@case("two outputs, for Cycles and for Eevee")
+def outputs(scene):
+    made, bsdf, tree = surface('BsdfDiffuse', Color=(0.1, 0.6, 0.1, 1))
+    first = tree.get_output_node('ALL')
+    first.target = 'CYCLES'
+    other = node(tree, 'ShaderNodeOutputMaterial', target='EEVEE')
+    link(tree, (node(tree, 'ShaderNodeEmission', Strength=5).outputs[0], other.inputs[0]))
+    other.is_active_output = True
+    dressed(made)
+
+
+@case("two Principled surfaces mixed by an image")
+def mixed_by_image(scene):
+    made, metal, tree = principled(Metallic=1, Roughness=0.2, Base_Color=(0.9, 0.6, 0.3, 1))
+    other, mix = node(tree, 'ShaderNodeBsdfPrincipled', Roughness=0.7, Base_Color=(0.1, 0.2, 0.5, 1)), tree.nodes.new('ShaderNodeMixShader')
+    mask = node(tree, 'ShaderNodeTexImage', image=image(np.round(waves()), "mask", 'Non-Color'))
+    link(tree, (mask.outputs[0], mix.inputs[0]), (metal.outputs[0], mix.inputs[1]), (other.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("Mix of Glass and Transparent by a number")
+def weak_glass(scene):
+    made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
+    mix = node(tree, 'ShaderNodeMixShader', Fac=0.6)
+    link(tree, (bsdf.outputs[0], mix.inputs[1]), (tree.nodes.new('ShaderNodeBsdfTransparent').outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    dressed(made)
+
+
+@case("alpha of another image than the colour's, with another mapping")
+def alpha_apart(scene):
+    made, shown, bsdf, tree = textured()
+    turn, where = node(tree, 'ShaderNodeMapping', Scale=(1.5, 1.5, 1), Rotation=(0, 0, 0.5)), tree.nodes.new('ShaderNodeTexCoord')
+    mask = node(tree, 'ShaderNodeTexImage', image=image(np.round(waves()), "mask", 'Non-Color'))
+    link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], mask.inputs[0]), (mask.outputs[0], bsdf.inputs['Alpha']))
+    wall(made)
+
+
+@case("images whose colour spaces are Linear, Raw and Filmic sRGB")
+def more_spaces(scene):
+    for x, space in (-1.2, 'Linear'), (0, 'Raw'), (1.2, 'Filmic sRGB'):
+        made, shown, _, _ = textured(checks() * (1, 0.7, 0.4))
+        shown.image.colorspace_settings.name = space
+        wall(made, 0.5).location.x = x
+
+
+@case("image of 16 bits, and one of floats")
+def deep(scene):
+    for x, kind in (-0.8, 'PNG'), (0.8, 'OPEN_EXR'):
+        shown = bpy.data.images.new("deep", 64, 64, float_buffer=True)
+        shown.pixels.foreach_set(np.concatenate([checks() * (1, 0.7, 0.4), np.ones((64, 64, 1))], 2).astype(np.float32).ravel())
+        shown.filepath_raw, shown.file_format = os.path.join(folder(), "deep." + ("png" if kind == 'PNG' else "exr")), kind
+        shown.save()
+        made, texture, _, _ = textured()
+        texture.image = bpy.data.images.load(shown.filepath_raw)
+        wall(made, 0.7).location.x = x
+
+
+@case("image whose alpha is another channel, and one whose alpha is ignored")
+def alpha_modes(scene):
+    for x, mode in (-0.8, 'CHANNEL_PACKED'), (0.8, 'NONE'):
+        made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+        shown.image.alpha_mode = mode
+        link(tree, (shown.outputs[1], bsdf.inputs['Roughness']))
+        wall(made, 0.7).location.x = x
+
+
+@case("emission of the front alone, by Backfacing")
+def one_sided_light(scene):
+    without("key")
+    made, bsdf, tree = surface('Emission', Strength=6)
+    clear, mix, where = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfTransparent', 'MixShader', 'NewGeometry'))
+    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0.5, 2.6))
+    dress(made).rotation_euler.x = 2.6
+
+
+@case("waves, Musgrave and magic on a scaled object")
+def scaled_textures(scene):
+    made, bsdf, tree = principled()
+    where, mix = tree.nodes.new('ShaderNodeTexCoord'), tree.nodes.new('ShaderNodeMixRGB')
+    wave, magic = node(tree, 'ShaderNodeTexWave', Scale=2), node(tree, 'ShaderNodeTexMagic', Scale=3)
+    link(tree, (where.outputs['Object'], wave.inputs[0]), (where.outputs['Object'], magic.inputs[0]), (wave.outputs[0], mix.inputs[1]),
+         (magic.outputs[0], mix.inputs[2]), (node(tree, 'ShaderNodeTexMusgrave', Scale=3).outputs[0], mix.inputs[0]), (mix.outputs[0], bsdf.inputs['Base Color']))
+    dressed(made)
+    the("ball").scale = (-1.5, 0.8, 1)
+
+
+@case("normal map on an object of uneven negative scale")
+def normal_mirrored(scene):
+    normal_map(scene)
+    the("ball").scale = (-1.4, 0.8, 1)
+
+
+@case("displacement that only bumps, by an image")
+def bump_by_displacement(scene):
+    displacement(scene)
+    the("ball").data.materials[0].cycles.displacement_method = 'BUMP'
+
+
+@case("objects and collections that are hidden in the viewport alone")
+def hidden_in_viewport(scene):
+    made = bpy.data.collections.new("hidden")
+    scene.collection.children.link(made)
+    for x, o in (-1.5, cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.8)), (1.5, cube(matte("two", (0.1, 0.1, 0.6, 1)), 0.8)):
+        o.location.x = x
+    made.objects.link(o)
+    scene.collection.objects.unlink(o)
+    scene.view_layers[0].layer_collection.children["hidden"].hide_viewport = True
+    scene.objects[-2].hide_set(True)
+    the("ball").hide_viewport = True
+    key = the("key")
+    key.hide_set(True)
+
+
+@case("instanced collection within an instanced collection, with a lamp and textures by place")
+def nested(scene):
+    without("ball")
+    inner, outer = bpy.data.collections.new("inner"), bpy.data.collections.new("outer")
+    made, bsdf, tree = principled()
+    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], bsdf.inputs['Base Color']))
+    for o in cube(made, 0.6, (0, 0, 0.3)), lamp('POINT', 10, (0, -0.6, 0.8)):
+        inner.objects.link(o)
+        scene.collection.objects.unlink(o)
+    for x, y, into, of in (-0.6, 0, outer, inner), (0.6, 0.3, outer, inner), (-1, 0, scene.collection, outer), (1.3, 0.5, scene.collection, outer):
+        copy = bpy.data.objects.new("copy", None)
+        copy.instance_type, copy.instance_collection, copy.location = 'COLLECTION', of, (x, y, 0)
+        copy.rotation_euler.z, copy.scale = x, (1, 1.3, 1)
+        into.objects.link(copy)
+
+
+@case("particles of a collection, turned and scaled at random")
+def particle_collection(scene):
+    parts = bpy.data.collections.new("parts")
+    for o in cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.3, (0, 50, 0)), cube(matte("two", (0.6, 0.1, 0.1, 1)), 0.2, (3, 50, 0)):
+        parts.objects.link(o)
+        scene.collection.objects.unlink(o)
+    particles(lawn(), count=60, render_type='COLLECTION', instance_collection=parts, particle_size=0.8, size_random=0.7, use_advanced_hair=True,
+              use_rotations=True, rotation_factor_random=0.8, phase_factor_random=2)
+
+
+@case("hair with interpolated children")
+def hair_children(scene):
+    particles(lawn(), count=100, hair_length=0.6, root_radius=5, child_type='INTERPOLATED', rendered_child_count=10)
+
+
+@case("object of no height, with a texture over places, and loose edges")
+def flat(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[1], bsdf.inputs['Base Color']))
+    o = cube(made, 1.5, (1, 0, 0.3))
+    o.scale.z = 0
+    mesh = bpy.data.meshes.new("edges")
+    mesh.from_pydata([(0, 0, 0), (0, 0, 1)], [(0, 1)], [])
+    scene.collection.objects.link(bpy.data.objects.new("edges", mesh))
+
+
+@case("image texture without an image")
+def no_image(scene):
+    made, shown, _, _ = textured()
+    shown.image = None
+    dressed(made)
+
+
+@case("names with slashes, quotes and letters of all kinds")
+def names(scene):
+    made = textured(checks())[0]
+    dressed(made)
+    made.name, the("ball").name, the("key").name, scene.name = "Wände/\"weiß\" 木", "Tür/1 'a' \\b", "лампа", "Szene: \"1/2\""
+
+
+@case("Principled: coloured glass, rough")
+def coloured_glass(scene):
+    dressed(principled(Transmission=1, Roughness=0.3, Base_Color=(0.8, 0.4, 0.3, 1))[0])
+
+
+@case("Principled: half a metal, half a glass")
+def halves(scene):
+    dressed(principled(Metallic=0.5, Roughness=0.3, Base_Color=(0.8, 0.4, 0.3, 1))[0])
+    other = principled(Transmission=0.5, Roughness=0.2, Base_Color=(0.3, 0.4, 0.8, 1))[0]
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(1.6, 0, 0.7), radius=0.7)
+    dress(other, smooth=True)
+
+
+@case("water in a glass: one interface in another")
+def water(scene):
+    dressed(surface('BsdfGlass', Roughness=0, IOR=1.5)[0])
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, 0.7), radius=0.5, segments=32, ring_count=16)
+    dress(surface('BsdfGlass', Roughness=0, IOR=1.33, Color=(0.5, 0.7, 1, 1))[0], smooth=True)
+
+
+@case("Mix by Fresnel of an index of 2.5: Diffuse and Glossy")
+def coats(scene):
+    coated(scene)
+    next(n for n in the("ball").data.materials[0].node_tree.nodes if n.type == 'FRESNEL').inputs[0].default_value = 2.5
+
+
+@case("Mix by Facing: Diffuse and Glossy")
+def coat_by_facing(scene):
+    coated(scene)
+    tree = the("ball").data.materials[0].node_tree
+    link(tree, (node(tree, 'ShaderNodeLayerWeight', Blend=0.5).outputs['Facing'], next(n for n in tree.nodes if n.type == 'MIX_SHADER').inputs[0]))
+
+
+@case("Mix by Fresnel: Diffuse and tinted Glossy")
+def coat_tinted(scene):
+    coats(scene)
+    next(n for n in the("ball").data.materials[0].node_tree.nodes if n.type == 'BSDF_GLOSSY').inputs[0].default_value = (0.8, 0.2, 0.1, 1)
+
+
+@case("Diffuse, Translucent and Glossy mixed")
+def three_mixed(scene):
+    leaf(scene)
+    tree = the("wall").data.materials[0].node_tree
+    inner = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
+    mix = node(tree, 'ShaderNodeMixShader', Fac=0.2)
+    link(tree, (inner.outputs[0], mix.inputs[1]), (node(tree, 'ShaderNodeBsdfGlossy', Roughness=0.3).outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+
+
+@case("Principled: emission of an image times a number")
+def screens(scene):
+    made, bsdf, tree = principled(Emission_Strength=2, Base_Color=(0.1, 0.1, 0.1, 1))
+    link(tree, (node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.5, 0.2), "screen")).outputs[0], bsdf.inputs['Emission']))
+    wall(made)
+
+
+@case("frosted pane of glass, as a slab")
+def frosted(scene):
+    pane(scene)
+    scene.objects[-1].data.materials[0].node_tree.nodes["Glass BSDF"].inputs['Roughness'].default_value = 0.3
+
+
+@case("lampshade: Translucent around a lamp")
+def shade(scene):
+    without("ball", "key")
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.6, depth=1, location=(0, 0, 1), end_fill_type='NOTHING')
+    dress(surface('BsdfTranslucent', Color=(0.8, 0.7, 0.5, 1))[0], smooth=True)
+    lamp('POINT', 80, (0, 0, 1), shadow_soft_size=0.1)
+
+
+@case("world: Preetham's sky, and Nishita's without a disc, mixed")
+def skies(scene):
+    tree = scene.world.node_tree
+    mix = node(tree, 'ShaderNodeMixRGB', Fac=0.5)
+    link(tree, (node(tree, 'ShaderNodeTexSky', sky_type='PREETHAM').outputs[0], mix.inputs[1]),
+         (node(tree, 'ShaderNodeTexSky', sky_type='NISHITA', sun_disc=False).outputs[0], mix.inputs[2]),
+         (mix.outputs[0], tree.nodes["Background"].inputs[0]))
+    tree.nodes["Background"].inputs[1].default_value = 0.1
+
+
+@case("orthographic camera with depth of field")
+def orthographic_focus(scene):
+    orthographic(scene)
+    dof = scene.camera.data.dof
+    dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 6, 2
