@@ -23,6 +23,15 @@ inline std::optional<double> InRange(double x, double least, double most) {
     return std::clamp(x, least, most);
 }
 
+// Returns a field of view in degrees, of which 180, which no plane shows, becomes as much as one
+// does; nothing for what is not from above 0 to 180.
+inline std::optional<double> FieldOfView(double degrees) {
+    constexpr double kWidest = 179.94;
+    const auto inRange = InRange(degrees, 0, 180);
+    if (!inRange || !(*inRange > 0)) return {};
+    return *inRange < 180 ? *inRange : kWidest;
+}
+
 // Returns x, and 0 for what rounding a 0 could leave below it; nothing for negative numbers and
 // NaN.
 inline std::optional<double> NotNegative(double x) {

@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "renderer/formats/image_file.h"
@@ -21,9 +22,11 @@ namespace {
 
 using lull::ImageShape, lull::TexelType;
 
-std::vector<char> ReadBytes(const char* path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+std::vector<char> ReadBytes(const char* path, size_t most) {
+    std::ifstream in(path, std::ios::binary | std::ios::ate);
+    std::vector<char> bytes(std::min(most, size_t(std::max<std::streamoff>(in.tellg(), 0))));
+    in.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
+    return bytes;
 }
 
 // Makes a WebP claim that it has no alpha, so that its colours are decoded as they are: of files
@@ -60,6 +63,91 @@ std::vector<uint8_t> ReadColors(std::vector<char> bytes, int width, int height) 
     return colors;
 }
 
+// What the header of a Radiance picture says that OpenImageIO leaves out, or mistakes.
+struct RadianceHeader {
+    float scale[3] = {1, 1, 1};  // of the colours, which have been exposed and corrected
+    // Rows of the file are columns; its rows come from the bottom or the right, its columns too.
+    bool turns = false, flipsRows = false, flipsColumns = false;
+
+    explicit RadianceHeader(std::string_view text) {
+        for (size_t end; (end = text.find('\n')) != text.npos; text.remove_prefix(end + 1)) {
+            if (end == 0) {
+                ReadOrder(std::string(text.substr(1, 80)));
+                return;
+            }
+            ReadLine(std::string(text.substr(0, end)));
+        }
+    }
+    bool IsPlain() const {
+        return !turns && !flipsRows && !flipsColumns && scale[0] == 1 && scale[1] == 1 &&
+               scale[2] == 1;
+    }
+
+  private:
+    void ReadLine(const std::string& line) {
+        float by[3];
+        if (line.find("32-bit_rle_xyze") != line.npos)
+            throw std::runtime_error("its colours are X, Y and Z; convert it to RGBE");
+        if (std::sscanf(line.c_str(), "EXPOSURE=%f", by) == 1)
+            Divide(by[0], by[0], by[0]);
+        else if (std::sscanf(line.c_str(), "COLORCORR=%f %f %f", by, by + 1, by + 2) == 3)
+            Divide(by[0], by[1], by[2]);
+    }
+    void Divide(float r, float g, float b) {
+        if (!(r > 0 && g > 0 && b > 0)) return;
+        scale[0] /= r, scale[1] /= g, scale[2] /= b;
+    }
+    // y grows upwards: "-Y 3 +X 2" is the usual order.
+    void ReadOrder(const std::string& size) {
+        char rowSign, row, columnSign, column;
+        int n;
+        if (std::sscanf(size.c_str(), "%c%c %d %c%c", &rowSign, &row, &n, &columnSign, &column) !=
+            5)
+            return;
+        turns = row == 'X';
+        flipsRows = (rowSign == '-') == turns;
+        flipsColumns = (columnSign == '-') != turns;
+    }
+};
+
+// Returns whether a TIFF leaves out how many bits a pixel has, which makes it one; OpenImageIO
+// takes it for eight.
+bool LacksBitsPerSample(std::string_view tiff) {
+    constexpr unsigned kBitsPerSample = 258;
+    const bool isBig = tiff.starts_with("MM");
+    const auto number = [&](size_t at, size_t bytes) {
+        size_t value = 0;
+        for (size_t i = 0; i < bytes; ++i)
+            value = value << 8 | uint8_t(tiff[at + (isBig ? i : bytes - 1 - i)]);
+        return value;
+    };
+    if (tiff.size() < 8 || number(2, 2) != 42) return false;
+    const size_t tags = number(4, 4);
+    if (tags + 2 > tiff.size()) return false;
+    const size_t count = number(tags, 2);
+    if (tags + 2 + 12 * count > tiff.size()) return false;
+    for (size_t i = 0; i < count; ++i)
+        if (number(tags + 2 + 12 * i, 2) == kBitsPerSample) return false;
+    return true;
+}
+
+// Returns rows from the top, of texels as they are stored.
+std::vector<float> Upright(const std::vector<float>& stored, int width, int height, int channels,
+                           const RadianceHeader& order) {
+    const int outWidth = order.turns ? height : width, outHeight = order.turns ? width : height;
+    std::vector<float> upright;
+    upright.reserve(stored.size());
+    for (int y = 0; y < outHeight; ++y)
+        for (int x = 0; x < outWidth; ++x) {
+            int row = order.turns ? x : y, column = order.turns ? y : x;
+            if (order.flipsRows) row = height - 1 - row;
+            if (order.flipsColumns) column = width - 1 - column;
+            const auto at = stored.begin() + (long(row) * width + column) * channels;
+            upright.insert(upright.end(), at, at + channels);
+        }
+    return upright;
+}
+
 class OpenImageIoFile final : public lull::ImageFile {
   public:
     OpenImageIoFile(const char* path, const std::byte* bytes, size_t size) {
@@ -71,7 +159,17 @@ class OpenImageIoFile final : public lull::ImageFile {
             OIIO::Filesystem::IOProxy* proxy = memory.get();
             config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
         }
+        const auto contents = [&](size_t most = SIZE_MAX) {
+            const char* const begin = reinterpret_cast<const char*>(bytes);
+            return bytes ? std::vector<char>(begin, begin + std::min(most, size))
+                         : ReadBytes(path, most);
+        };
+        const auto header = [&] {
+            const std::vector<char> beginning = contents(1 << 14);
+            return std::string(beginning.begin(), beginning.end());
+        };
         input = OIIO::ImageInput::open(path, &config);
+        if (!input && header().starts_with("#?")) (void)RadianceHeader(header());
         if (!input) throw std::runtime_error(OIIO::geterror());
         const OIIO::ImageSpec& spec = input->spec();
         if (spec.deep) throw std::runtime_error("deep images are not supported");
@@ -80,10 +178,19 @@ class OpenImageIoFile final : public lull::ImageFile {
                  spec.format == OIIO::TypeDesc::UINT8  ? TexelType::Byte
                  : spec.format == OIIO::TypeDesc::HALF ? TexelType::Half
                                                        : TexelType::Float};
-        if (std::strcmp(input->format_name(), "webp") != 0 || shape.channels != 4) return;
-        webp = bytes ? std::vector<char>(reinterpret_cast<const char*>(bytes),
-                                         reinterpret_cast<const char*>(bytes) + size)
-                     : ReadBytes(path);
+        const std::string_view format = input->format_name();
+        if (format == "hdr") {
+            radiance = RadianceHeader(header());
+            if (radiance.turns) std::swap(shape.width, shape.height);
+        }
+        if (format == "tiff" && spec.nchannels == 1) {
+            const std::vector<char> whole = contents();
+            if (LacksBitsPerSample({whole.data(), whole.size()}))
+                throw std::runtime_error(
+                    "it has one bit a pixel without saying so; save it with 8");
+        }
+        if (format != "webp" || shape.channels != 4) return;
+        webp = contents();
         HideAlpha(&webp);
     }
 
@@ -95,6 +202,7 @@ class OpenImageIoFile final : public lull::ImageFile {
                                                                     : OIIO::TypeDesc::FLOAT;
         if (!input->read_image(0, 0, 0, shape.channels, type, texels))
             throw std::runtime_error(input->geterror());
+        if (!radiance.IsPlain()) FinishRadiance(static_cast<float*>(texels));
         if (webp.empty()) return;
         const std::vector<uint8_t> colors = ReadColors(std::move(webp), shape.width, shape.height);
         auto* to = static_cast<uint8_t*>(texels);
@@ -102,6 +210,16 @@ class OpenImageIoFile final : public lull::ImageFile {
     }
 
   private:
+    void FinishRadiance(float* texels) {
+        const size_t values = size_t(shape.width) * size_t(shape.height) * size_t(shape.channels);
+        const OIIO::ImageSpec& spec = input->spec();
+        const std::vector<float> upright =
+            Upright({texels, texels + values}, spec.width, spec.height, shape.channels, radiance);
+        for (size_t i = 0; i < values; ++i)
+            texels[i] = upright[i] * radiance.scale[i % size_t(shape.channels)];
+    }
+
+    RadianceHeader radiance{""};
     std::vector<char> webp;  // of one with alpha: the file without
     std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
     std::unique_ptr<OIIO::ImageInput> input;

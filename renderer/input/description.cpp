@@ -23,12 +23,47 @@ int Components(ParameterType type) {
     }
 }
 
-// Finds the parameter of that type and name without marking it.
+// Finds the parameter of that type and name without marking it as used.
 const Parameter* Search(const std::vector<Parameter>& parameters, ParameterType type,
                         const std::string& name) {
     for (const Parameter& parameter : parameters)
         if (parameter.type == type && parameter.name == name) return &parameter;
+    for (const Parameter& parameter : parameters)
+        if (parameter.name == name) parameter.wanted = type;
     return nullptr;
+}
+
+const char* NameOf(ParameterType type) {
+    switch (type) {
+        case ParameterType::Integer:
+            return "integer";
+        case ParameterType::Float:
+            return "float";
+        case ParameterType::Bool:
+            return "bool";
+        case ParameterType::String:
+            return "string";
+        case ParameterType::Texture:
+            return "texture";
+        case ParameterType::Point2:
+            return "point2";
+        case ParameterType::Vector2:
+            return "vector2";
+        case ParameterType::Point3:
+            return "point";
+        case ParameterType::Vector3:
+            return "vector";
+        case ParameterType::Normal:
+            return "normal";
+        default:
+            return "rgb";
+    }
+}
+
+std::string TypesOf(const Parameter& parameter) {
+    if (parameter.lookedUp || !parameter.wanted) return "";
+    return std::string("; it is given as \"") + NameOf(parameter.type) + "\" and has to be \"" +
+           NameOf(*parameter.wanted) + "\"";
 }
 
 // Returns the values if the parameter is there with exactly one value (and marks it), else null.
@@ -112,11 +147,18 @@ const TextureRef* Parameters::GetTexture(const std::string& name) const {
     return FindOne<TextureRef>(parameters, ParameterType::Texture, name);
 }
 
+std::string Parameters::Mistyped(const std::string& name) const {
+    for (const Parameter& parameter : parameters)
+        if (parameter.name == name) return TypesOf(parameter);
+    return "";
+}
+
 void Parameters::ReportUnused(const std::string& owner, Warnings& warnings) const {
     for (const Parameter& parameter : parameters)
         if (!parameter.lookedUp)
             warnings.Add(parameter.loc, "unused parameter",
-                         "'" + Printable(parameter.name) + "' of " + owner + " has no effect");
+                         "'" + Printable(parameter.name) + "' of " + owner + " has no effect" +
+                             TypesOf(parameter));
 }
 
 bool IntegratorSeesMedia(const std::string& name) {

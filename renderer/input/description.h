@@ -46,6 +46,7 @@ struct Parameter {
                  std::vector<TextureRef>>
         values;
     mutable bool lookedUp = false;
+    mutable std::optional<ParameterType> wanted = {};  // the type that was looked up in vain
 };
 
 // The parameters of one directive. As in pbrt-v3, a look-up finds a parameter by name *and*
@@ -70,6 +71,10 @@ class Parameters {
     std::span<const int> GetInts(const std::string& name) const;
     // Returns the texture that a "texture" parameter names, null where there is no such parameter.
     const TextureRef* GetTexture(const std::string& name) const;
+
+    // Returns "; it is given as a TYPE, not a TYPE" of a parameter that was looked up by that name
+    // as another type alone; else "".
+    std::string Mistyped(const std::string& name) const;
 
     // Warns of every parameter that nothing has looked up; `owner` names whose it is.
     void ReportUnused(const std::string& owner, Warnings& warnings) const;

@@ -62,6 +62,11 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
         if (!joints.empty()) Skin(document, mesh, int(i), joints, &triangles);
         const GltfMaterial& material =
             materials->Get(primitives[i].material, !triangles.colors.empty(), warnings);
+        for (size_t set : {0, 1})
+            if (material.uvSets[set] && triangles.uvs[set].empty())
+                warnings.Add(loc, fmt::format("a texture is misplaced, since its mesh lacks "
+                                              "TEXCOORD_{}",
+                                              set));
         if (material.tangentUvSet >= 0 && triangles.tangents.empty())
             MakeTangents(material.tangentUvSet, &triangles);
         if (material.tangentUvSet < 0) triangles.tangents.clear();

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "renderer/files/file_contents.h"
 #include "renderer/files/text_file.h"
@@ -12,6 +13,25 @@ namespace lull {
 namespace {
 
 bool IsSeparator(char c) { return std::isspace(static_cast<unsigned char>(c)) || c == ','; }
+
+// What stands between the numbers of a line.
+struct Separators {
+    bool haveCommas = false, haveBlanks = false;  // alone
+
+    // Takes the separators behind a number. Throws Error where commas seem to be decimal ones.
+    void Add(std::string_view between, const FileLoc& loc) {
+        if (between.find_first_of("\r\n") != between.npos) {
+            *this = {};
+            return;
+        }
+        haveCommas |= between == ",";
+        haveBlanks |= between.find(',') == between.npos;
+        if (haveCommas && haveBlanks)
+            throw Error(loc,
+                        "numbers of a line are apart by commas and by blanks; write decimal points "
+                        "instead of commas");
+    }
+};
 
 }  // namespace
 
@@ -23,6 +43,7 @@ std::vector<float> ReadNumberFile(const std::string& path, const std::string& ki
     const std::string_view text = CleanText(contents.View(), {place.file, 0});
     const char* pos = text.data();
     const char* const end = pos + text.size();
+    Separators separators;
     while (pos < end) {
         if (*pos == '#') {
             pos = std::find_if(pos, end, [](char c) { return c == '\n' || c == '\r'; });
@@ -41,6 +62,11 @@ std::vector<float> ReadNumberFile(const std::string& path, const std::string& ki
                                        " file is not a number");
             numbers.push_back(value);
             pos = stop;
+            const char* const next = std::find_if_not(pos, end, IsSeparator);
+            if (next < end && *next != '#')
+                separators.Add({pos, size_t(next - pos)}, place);
+            else
+                separators = {};
         }
     }
     return numbers;

@@ -1,6 +1,8 @@
 #include "renderer/input/ply_loader.h"
 #include "renderer/base/rounding.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +14,8 @@
 #include "renderer/input/inflate.h"
 #include "renderer/input/ply/ply_cursor.h"
 #include "renderer/input/ply/ply_header.h"
+#include "renderer/input/ply/polygon.h"
+#include "stopping/base/text_encoding.h"
 
 namespace lull {
 namespace {
@@ -160,8 +164,8 @@ uint32_t ReadIndex(PlyType type, PlyCursor& cursor) {
 // One row of the faces.
 struct Face {
     size_t corners = 0;
-    std::array<uint32_t, 4> vertices;
-    std::vector<float> uvs;  // of the corners; empty: it has none
+    std::vector<uint32_t> vertices;  // empty: more than are modelled
+    std::vector<float> uvs;          // of the corners; empty: it has none
     int index = 0;
 };
 
@@ -183,10 +187,10 @@ bool IsFaceIndex(const PlyProperty& property) {
 void ReadIndices(const PlyProperty& list, PlyCursor& cursor, Face* face) {
     face->corners = cursor.ReadListCount(list);
     if (face->corners == 0) throw Error(cursor.loc, "a face has no vertices");
-    const bool isModelled = face->corners == 3 || face->corners == 4;
+    const bool isModelled = face->corners <= kMostPolygonCorners;
     for (size_t i = 0; i < face->corners; ++i)
         if (isModelled)
-            face->vertices[i] = ReadIndex(list.type, cursor);
+            face->vertices.push_back(ReadIndex(list.type, cursor));
         else
             cursor.Read(list.type);
 }
@@ -196,23 +200,23 @@ void ReadWedgeUvs(const PlyProperty& list, PlyCursor& cursor, Face* face) {
     for (float& value : face->uvs) value = float(cursor.Read(list.type));
 }
 
-Face ReadFace(const PlyElement& element, PlyCursor& cursor) {
-    Face face;
+void ReadFace(const PlyElement& element, PlyCursor& cursor, Face* face) {
+    face->vertices.clear();
+    face->uvs.clear();
     for (const PlyProperty& property : element.properties) {
         if (IsIndices(property)) {
-            ReadIndices(property, cursor, &face);
+            ReadIndices(property, cursor, face);
         } else if (IsWedgeUvs(property)) {
-            ReadWedgeUvs(property, cursor, &face);
+            ReadWedgeUvs(property, cursor, face);
         } else if (IsFaceIndex(property)) {
             const double value = cursor.Read(property.type);
             if (!(std::abs(value) <= double(kMostElements)))
                 throw Error(cursor.loc, "a face index is beyond the range of an integer");
-            face.index = int(value);
+            face->index = int(value);
         } else {
             cursor.SkipProperty(property);
         }
     }
-    return face;
 }
 
 // Texture coordinates of the corners of triangles; none where they are those of the vertices.
@@ -221,9 +225,10 @@ using WedgeUvs = std::vector<std::optional<std::array<Vec2f, 3>>>;
 // Adds the triangles of a face; `uvs`, if there are any, keep to them.
 void AddFace(const Face& face, const FileLoc& loc, MeshData* mesh, WedgeUvs* uvs,
              Warnings& warnings) {
-    if (face.corners != 3 && face.corners != 4) {
-        warnings.Add(loc, "face left out that is neither triangle nor quad",
-                     "it has " + std::to_string(face.corners) + " vertices");
+    if (face.corners < 3 || face.vertices.empty()) {
+        warnings.Add(
+            loc, fmt::format("face left out that has not 3 to {} vertices", kMostPolygonCorners),
+            fmt::format("it has {}", face.corners));
         return;
     }
     const bool hasUvs = face.uvs.size() == 2 * face.corners;
@@ -231,15 +236,13 @@ void AddFace(const Face& face, const FileLoc& loc, MeshData* mesh, WedgeUvs* uvs
         warnings.Add(loc, "texture coordinates of a face left out: it needs two for each vertex",
                      "it has " + std::to_string(face.uvs.size()) + " for " +
                          std::to_string(face.corners) + " vertices");
-    const auto add = [&](size_t a, size_t b, size_t c) {
+    for (const auto& [a, b, c] : TrianglesOf(face.vertices, mesh->positions)) {
         mesh->triangles.push_back({face.vertices[a], face.vertices[b], face.vertices[c]});
-        if (!uvs) return;
+        if (!uvs) continue;
         const auto at = [&](size_t i) { return Vec2f(face.uvs[2 * i], face.uvs[2 * i + 1]); };
         uvs->emplace_back();
         if (hasUvs) uvs->back() = {at(a), at(b), at(c)};
-    };
-    add(0, 1, 2);
-    if (face.corners == 4) add(0, 2, 3);
+    }
 }
 
 // Returns the uvs of the corners, one entry a triangle, where faces have lists of them.
@@ -251,11 +254,12 @@ WedgeUvs ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh,
     const bool hasFaceIndices = std::ranges::any_of(element.properties, IsFaceIndex);
     const bool hasUvs = std::ranges::any_of(element.properties, IsWedgeUvs);
     WedgeUvs uvs;
+    Face face;
     mesh->triangles.reserve(size_t(element.count));
     for (int64_t i = 0; i < element.count; ++i) {
         i += ReadTrianglesInBulk(element, element.count - i, cursor, mesh);
         if (i == element.count) break;
-        const Face face = ReadFace(element, cursor);
+        ReadFace(element, cursor, &face);
         AddFace(face, cursor.loc, mesh, hasUvs ? &uvs : nullptr, warnings);
         if (hasFaceIndices) mesh->faceIndices.resize(mesh->triangles.size(), face.index);
     }
@@ -298,6 +302,19 @@ void SkipElement(const PlyElement& element, PlyCursor& cursor) {
         for (const PlyProperty& property : element.properties) cursor.SkipProperty(property);
 }
 
+// pbrt-v3 leaves these out as well.
+void WarnOfOmissions(const PlyElement& element, const FileLoc& loc, Warnings& warnings) {
+    const auto has = [&](const char* name) {
+        return std::ranges::find(element.properties, name, &PlyProperty::name) !=
+               element.properties.end();
+    };
+    if (element.count == 0) return;
+    if (element.name == "tristrips")
+        warnings.Add(loc, "triangle strips of a PLY file are left out; save them as faces");
+    if ((element.name == "vertex" || element.name == "face") && (has("red") || has("diffuse_red")))
+        warnings.Add(loc, "colours of a PLY file are left out; glTF files can have them");
+}
+
 template <typename T>
 void ReplaceNonFinite(std::vector<T>* values, const char* kind, const FileLoc& loc,
                       Warnings& warnings) {
@@ -330,8 +347,11 @@ MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc
     const FileContents contents = Inflated(ReadFile(path, loc), place);
     const std::string_view file = WithoutByteOrderMark(contents.View(), place);
     const PlyHeader header = ParsePlyHeader(file, place);
-    PlyCursor cursor{file.data() + header.bytes, file.data() + file.size(), header.format, place};
-    if (header.format == PlyFormat::Ascii) cursor.loc.line = header.lines + 1;
+    const bool isText = header.format == PlyFormat::Ascii;
+    const std::string_view rows = file.substr(header.bytes),
+                           data = isText ? WithoutEndMarks(rows) : rows;
+    PlyCursor cursor{data.data(), data.data() + data.size(), header.format, place};
+    if (isText) cursor.loc.line = header.lines + 1;
 
     MeshData mesh;
     WedgeUvs wedgeUvs;
@@ -355,6 +375,7 @@ MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc
             wedgeUvs = ReadFaces(element, cursor, &mesh, warnings);
         else
             SkipElement(element, cursor);
+        WarnOfOmissions(element, place, warnings);
     }
     CheckMesh(&mesh, place, warnings);
     SplitVertices(wedgeUvs, &mesh);

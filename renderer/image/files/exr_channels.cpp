@@ -1,9 +1,13 @@
 #include "renderer/image/files/exr_channels.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <span>
+#include <stdexcept>
 #include <tuple>
+
+#include "renderer/formats/image_file.h"
 
 namespace lull {
 
@@ -30,6 +34,51 @@ struct Channel {
         });
     }
 };
+
+// The colours of a layer, and its alpha; "": it has none.
+struct LayerColours {
+    std::string layer;
+    std::array<std::string, 4> names;
+    bool hasLuma = false, hasChroma = false;
+
+    void Add(const Channel& c) {
+        constexpr const char* kNames[4][2] = {
+            {"r", "red"}, {"g", "green"}, {"b", "blue"}, {"a", "alpha"}};
+        for (size_t i = 0; i < 4; ++i)
+            if ((c.lower == kNames[i][0] || c.lower == kNames[i][1]) && names[i].empty())
+                names[i] = c.full;
+        hasLuma |= c.lower == "y";
+        hasChroma |= c.lower == "ry" || c.lower == "by";
+    }
+    size_t Count() const {
+        return size_t(std::count_if(names.begin(), names.begin() + 3,
+                                    [](const std::string& name) { return !name.empty(); }));
+    }
+    // Channels that the file lacks are read as 0.
+    std::vector<std::string> Channels() const {
+        std::vector<std::string> channels(names.begin(), names.end());
+        for (size_t i = 0; i < 3; ++i)
+            if (channels[i].empty())
+                channels[i] = (layer.empty() ? "" : layer + ".") + std::string(1, "RGB"[i]);
+        if (channels[3].empty()) channels.pop_back();
+        return channels;
+    }
+};
+
+std::vector<LayerColours> ColoursOf(const std::vector<std::string>& sorted) {
+    std::vector<LayerColours> layers;
+    for (const std::string& name : sorted) {
+        const Channel channel(name);
+        if (layers.empty() || layers.back().layer != channel.layer)
+            layers.push_back({channel.layer, {}});
+        layers.back().Add(channel);
+    }
+    return layers;
+}
+
+bool IsCombined(const LayerColours& colours) {
+    return colours.layer == "Combined" || colours.layer.ends_with(".Combined");
+}
 
 void SortLayer(std::span<Channel> layer) {
     const auto has = [&](const char* lower) {
@@ -59,6 +108,35 @@ void SortChannels(std::vector<std::string>* names) {
 bool IsAlpha(const std::string& name) {
     const std::string lower = Channel(name).lower;
     return lower == "a" || lower == "alpha";
+}
+
+bool HasPlainColours(const std::vector<std::string>& names) {
+    return std::ranges::all_of(std::array{"R", "G", "B"}, [&](const char* name) {
+        return std::ranges::find(names, name) != names.end();
+    });
+}
+
+std::vector<std::string> PictureChannels(const std::vector<std::string>& sorted) {
+    std::vector<LayerColours> layers = ColoursOf(sorted);
+    for (const LayerColours& l : layers)
+        if (l.layer.empty() && l.Count() >= 2) return l.Channels();
+    std::erase_if(layers, [](const LayerColours& l) {
+        if (l.Count() == 0 && l.hasLuma && l.hasChroma)
+            throw std::runtime_error(
+                "its colours are luminance and chroma; convert it to R, G and B");
+        return l.Count() < 3;
+    });
+    if (std::ranges::any_of(layers, IsCombined))
+        std::erase_if(layers, [](const LayerColours& l) { return !IsCombined(l); });
+    if (layers.size() == 1) return layers[0].Channels();
+    if (layers.size() > 1)
+        throw std::runtime_error("its colours are in several layers, such as " + layers[0].layer +
+                                 " and " + layers[1].layer +
+                                 "; keep one of them, or call its channels R, G and B");
+    const auto alpha = std::ranges::find_if(sorted, IsAlpha);
+    const int at = alpha == sorted.end() ? -1 : int(alpha - sorted.begin());
+    const int count = CountChannels(int(sorted.size()), at);
+    return {sorted.begin(), sorted.begin() + (count == 2 && at != 1 ? 1 : count)};
 }
 
 }  // namespace lull

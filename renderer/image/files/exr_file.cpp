@@ -11,6 +11,7 @@
 #include <ImfMatrixAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 #include <ImfVersion.h>
@@ -24,6 +25,7 @@
 
 #include "renderer/image/files/exr_channels.h"
 #include "renderer/image/files/exr_header.h"
+#include "renderer/image/files/primaries.h"
 
 namespace lull {
 
@@ -46,8 +48,17 @@ Vec2i ExtentOf(const Imath::Box2i& box) {
     return {side(box.min.x, box.max.x), side(box.min.y, box.max.y)};
 }
 
-const Imf::Channel& ChannelOf(const Imf::Header& header, const std::string& name) {
-    return header.channels()[name.c_str()];
+// Returns whether the file has the channel, of this type.
+bool HasChannel(const Imf::Header& header, const std::string& name, Imf::PixelType type) {
+    const Imf::Channel* channel = header.channels().findChannel(name.c_str());
+    return channel && channel->type == type;
+}
+
+std::vector<std::string> NamesOf(const Imf::Header& header) {
+    std::vector<std::string> names;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        names.push_back(c.name());
+    return names;
 }
 
 // Returns chromaticities as text, "" for Rec. 709.
@@ -63,6 +74,11 @@ std::string OtherPrimaries(const Imf::Chromaticities& given) {
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", xy.x, xy.y);
     }
     return isOther ? text : "";
+}
+
+Primaries PrimariesOf(const Imf::Chromaticities& c) {
+    return {
+        {c.red.x, c.red.y}, {c.green.x, c.green.y}, {c.blue.x, c.blue.y}, {c.white.x, c.white.y}};
 }
 
 std::map<std::string, ExrAttribute> AttributesOf(const Imf::Header& header) {
@@ -112,11 +128,15 @@ struct ExrFile::Parts {
 
     MemoryStream stream;
     Imf::MultiPartInputFile file;
+    int part = 0;
 
     // Of a header that was checked.
     explicit Parts(std::span<const std::byte> bytes)
-        : stream(bytes), file(stream, UseExrThreads()) {}
-    const Imf::Header& Header() const { return file.header(0); }
+        : stream(bytes), file(stream, UseExrThreads()) {
+        for (int i = file.parts() - 1; i >= 0; --i)
+            if (HasPlainColours(NamesOf(file.header(i)))) part = i;
+    }
+    const Imf::Header& Header() const { return file.header(part); }
 };
 
 ExrFile::ExrFile(std::span<const std::byte> bytes) try {
@@ -153,7 +173,16 @@ ExrImage ExrFile::Header() const {
 }
 
 bool ExrFile::IsHalf(const std::string& channel) const {
-    return ChannelOf(parts->Header(), channel).type == Imf::HALF;
+    return HasChannel(parts->Header(), channel, Imf::HALF);
+}
+
+std::optional<Eigen::Matrix3f> ExrFile::ToRec709() const {
+    const Imf::Header& header = parts->Header();
+    if (!Imf::hasChromaticities(header) || OtherPrimaries(Imf::chromaticities(header)).empty())
+        return {};
+    const Eigen::Matrix3f matrix = Rec709From(PrimariesOf(Imf::chromaticities(header)));
+    if (!matrix.allFinite()) throw std::runtime_error("its chromaticities are no primaries");
+    return matrix;
 }
 
 // Reads rows `first` to `last` of the data window, by their numbers in the file.
@@ -164,16 +193,14 @@ void ExrFile::ReadRows(TexelType type, size_t count, int first, int last, char* 
     window.max.y = last;
     const Vec2i size = ExtentOf(window);
     const size_t bytes = SizeOf(type), pixel = bytes * count, row = pixel * size_t(size.x());
-    const auto isInteger = [&](size_t c) {
-        return ChannelOf(header, channels[c]).type == Imf::UINT;
-    };
+    const auto isInteger = [&](size_t c) { return HasChannel(header, channels[c], Imf::UINT); };
     Imf::FrameBuffer frame;
     for (size_t c = 0; c < count; ++c)
         frame.insert(channels[c], Imf::Slice::Make(type == TexelType::Half ? Imf::HALF
                                                    : isInteger(c)          ? Imf::UINT
                                                                            : Imf::FLOAT,
                                                    texels + bytes * c, window, pixel, row));
-    Imf::InputPart part(parts->file, 0);
+    Imf::InputPart part(parts->file, parts->part);
     part.setFrameBuffer(frame);
     part.readPixels(first, last);
 
@@ -228,27 +255,44 @@ void ExrFile::ReadDisplayed(TexelType type, size_t count, void* texels) try {
 
 namespace {
 
+template <typename T>
+void Convert(const Eigen::Matrix3f& matrix, size_t channels, size_t pixels, T* texels) {
+    for (size_t i = 0; i < pixels; ++i) {
+        T* const c = texels + i * channels;
+        const Vec3f color = matrix * Vec3f(float(c[0]), float(c[1]), float(c[2]));
+        for (int k = 0; k < 3; ++k) c[k] = T(color[k]);
+    }
+}
+
 class ExrPicture final : public ImageFile {
   public:
     explicit ExrPicture(std::span<const std::byte> bytes) : file(bytes) {
-        const std::vector<std::string>& names = file.Channels();
+        const std::vector<std::string> names = PictureChannels(file.Channels());
+        const bool isHalf = std::ranges::all_of(names, [&](const std::string& name) {
+            return file.IsHalf(name) || std::ranges::count(file.Channels(), name) == 0;
+        });
         const ExrImage header = file.Header();
-        const auto alpha = std::ranges::find_if(names, IsAlpha);
-        shape = {header.displaySize.x(), header.displaySize.y(),
-                 CountChannels(int(names.size()),
-                               alpha == names.end() ? -1 : int(alpha - names.begin())),
-                 std::ranges::all_of(names, [&](const auto& name) { return file.IsHalf(name); })
-                     ? TexelType::Half
-                     : TexelType::Float};
+        shape = {header.displaySize.x(), header.displaySize.y(), int(names.size()),
+                 isHalf ? TexelType::Half : TexelType::Float};
+        if (shape.channels >= 3) toRec709 = file.ToRec709();
+        file.Choose(names);
     }
     ImageShape Shape() const override { return shape; }
     void Read(void* texels) override {
-        file.ReadDisplayed(shape.type, size_t(shape.channels), texels);
+        const size_t channels = size_t(shape.channels);
+        file.ReadDisplayed(shape.type, channels, texels);
+        if (!toRec709) return;
+        const size_t pixels = size_t(shape.width) * size_t(shape.height);
+        if (shape.type == TexelType::Half)
+            Convert(*toRec709, channels, pixels, static_cast<Half*>(texels));
+        else
+            Convert(*toRec709, channels, pixels, static_cast<float*>(texels));
     }
 
   private:
     ExrFile file;
     ImageShape shape;
+    std::optional<Eigen::Matrix3f> toRec709;
 };
 
 }  // namespace

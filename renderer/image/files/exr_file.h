@@ -1,7 +1,9 @@
-// Reads OpenEXR files: scan lines and tiles (at full size), and the first of several parts.
+// Reads OpenEXR files: scan lines and tiles (at full size), and of several parts the first that has
+// R, G and B, or the first.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +28,12 @@ class ExrFile {
     ExrImage Header() const;
     // Lists the channels as SortChannels() does.
     const std::vector<std::string>& Channels() const { return channels; }
+    // Takes these channels alone, in this order. Those that the file lacks are read as 0.
+    void Choose(std::vector<std::string> names) { channels = std::move(names); }
     bool IsHalf(const std::string& channel) const;
+    // Returns what makes R, G and B those of Rec. 709; nothing where they are. Throws
+    // std::runtime_error where the file's primaries are none.
+    std::optional<Eigen::Matrix3f> ToRec709() const;
     // Read the first `count` channels side by side, as halves, if all are, or as floats; integers
     // become 0 to 1. Read() takes the data window, ReadDisplayed() the display window, 0 where the
     // file has no data. Throw as the constructor does.
@@ -41,7 +48,8 @@ class ExrFile {
     std::vector<std::string> channels;
 };
 
-// Opens an EXR as a picture, its display window: halves where all channels are. As OpenPng()
+// Opens an EXR as a picture, its display window, with the channels that PictureChannels() chooses,
+// halves where all are. Colours of other primaries become those of Rec. 709. As OpenPng()
 // otherwise.
 std::unique_ptr<ImageFile> OpenExr(std::span<const std::byte> bytes);
 

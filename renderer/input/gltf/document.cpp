@@ -17,6 +17,7 @@ namespace {
 
 constexpr const char* kModelled[] = {"EXT_mesh_gpu_instancing",
                                      "EXT_meshopt_compression",
+                                     "EXT_texture_webp",
                                      "KHR_draco_mesh_compression",
                                      "KHR_lights_punctual",
                                      "KHR_materials_anisotropy",
@@ -63,6 +64,9 @@ std::string_view JsonOf(const std::string& file, std::string_view bytes) {
         throw Error(file + ": its first chunk is not JSON");
     if (length > bytes.size() - kGlbHeader - kChunkHeader)
         throw Error(fmt::format("{}: its JSON of {} bytes goes beyond its end", file, length));
+    if (size < kGlbHeader + kChunkHeader + length)
+        throw Error(fmt::format("{}: its length of {} bytes is less than that of its JSON, {}",
+                                file, size, length));
     return bytes.substr(kGlbHeader + kChunkHeader, length);
 }
 
@@ -93,12 +97,23 @@ void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnin
         if (!IsModelled(required[i]))
             throw Error(place("extensionsRequired", i), "extension \"" + Printable(required[i]) +
                                                             "\" is required, but not supported");
-    if (!root.contains("extensionsUsed")) return;
-    const auto used = root.at("extensionsUsed").get<std::vector<std::string>>();
+    std::vector<std::string> used;
+    if (root.contains("extensionsUsed"))
+        used = root.at("extensionsUsed").get<std::vector<std::string>>();
+    const auto kindOf = [](const std::string& name) {
+        return "extension \"" + Printable(name) + "\" is not supported and left out";
+    };
     for (size_t i = 0; i < used.size(); ++i)
-        if (!IsModelled(used[i]))
-            warnings.Add(place("extensionsUsed", i),
-                         "extension \"" + Printable(used[i]) + "\" is not supported and left out");
+        if (!IsModelled(used[i])) warnings.Add(place("extensionsUsed", i), kindOf(used[i]));
+    if (!root.contains("materials")) return;
+    // Some exporters do not list all that they write.
+    const nlohmann::json& materials = root.at("materials");
+    for (size_t i = 0; i < materials.size(); ++i) {
+        if (!materials[i].contains("extensions")) continue;
+        for (const auto& [name, value] : materials[i].at("extensions").items())
+            if (!IsModelled(name) && std::find(used.begin(), used.end(), name) == used.end())
+                warnings.Add(place("materials", i), kindOf(name));
+    }
 }
 
 // Reads the files that buffers lie in.

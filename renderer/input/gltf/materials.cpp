@@ -294,6 +294,7 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
         cover.Bool("coveragecolors", hasColors);
         if (material.alphaMode == "MASK") cover.Float("alphacutoff", material.alphaCutoff);
     }
+    result.uvSets = textures.TakeUvSets();
     result.index = int(description->materials.size());
     description->materials.push_back(std::move(entity));
     return result;

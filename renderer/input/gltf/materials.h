@@ -1,6 +1,7 @@
 // Converts glTF's materials to materials of a Description.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 
@@ -11,10 +12,11 @@ namespace lull {
 
 // Properties of a shape that its material defines.
 struct GltfMaterial {
-    int index = -1;                  // into Description::materials
-    std::optional<Entity> emission;  // an area light
-    Parameters coverage;             // of the shape: its alpha mode
-    int medium = -1;                 // inside the shape, into Description::media; -1: vacuum
+    int index = -1;                   // into Description::materials
+    std::optional<Entity> emission;   // an area light
+    Parameters coverage;              // of the shape: its alpha mode
+    int medium = -1;                  // inside the shape, into Description::media; -1: vacuum
+    std::array<bool, 2> uvSets = {};  // TEXCOORD_0 and 1: those that its textures use
     int tangentUvSet = -1;  // the texture coordinates that its tangents follow; -1: it needs none
 };
 

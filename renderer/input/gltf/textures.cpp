@@ -47,6 +47,7 @@ std::string TypeOf(const tinygltf::Image& image) {
     };
     if (startsWith("\x89PNG")) return "png";
     if (startsWith("\xff\xd8")) return "jpg";
+    if (startsWith("RIFF")) return "webp";
     return image.mimeType == "image/jpeg" ? "jpg" : "png";
 }
 
@@ -64,6 +65,13 @@ std::string DecodeUri(const std::string& uri) {
         if (isCode) i += 2;
     }
     return decoded;
+}
+
+// Returns the image of a texture, as WebP if need be (EXT_texture_webp); -1: none.
+int ImageOf(const tinygltf::Texture& texture) {
+    const auto webp = texture.extensions.find("EXT_texture_webp");
+    if (texture.source >= 0 || webp == texture.extensions.end()) return texture.source;
+    return webp->second.Has("source") ? webp->second.Get("source").GetNumberAsInt() : -1;
 }
 
 const char* WrapName(int wrap) {
@@ -115,9 +123,10 @@ TextureEntity GltfTextures::MakeEntity(const GltfTextureUse& use, GltfTexels tex
     entity.textureName = fmt::format("/textures/{}", use.index);
     entity.isSpectrum = texels == GltfTexels::EncodedColor || texels == GltfTexels::LinearColor;
     const ParameterWriter write(&entity.parameters, loc);
-    const tinygltf::Image& image = document.model.images[size_t(texture.source)];
+    const int source = ImageOf(texture);
+    const tinygltf::Image& image = document.model.images[size_t(source)];
     if (image.uri.empty() || image.uri.starts_with("data:"))
-        write.Int("embeddedimage", Embed(texture.source, loc));
+        write.Int("embeddedimage", Embed(source, loc));
     else
         write.String("filename", DecodeUri(image.uri));
     write.Bool("gamma", texels == GltfTexels::EncodedColor);
@@ -147,10 +156,11 @@ std::optional<TextureRef> GltfTextures::Add(const GltfTextureUse& use, GltfTexel
     if (use.uvSet > 1)
         throw Error(loc, fmt::format("uses TEXCOORD_{}; only 0 and 1 are modelled", use.uvSet));
     const tinygltf::Texture& texture = document.model.textures[size_t(use.index)];
-    if (texture.source < 0) {
+    if (ImageOf(texture) < 0) {
         warnings.Add(loc, "texture without an image that is modelled is left out");
         return {};
     }
+    uvSets[size_t(use.uvSet)] = true;
     const auto [found, isNew] = made.try_emplace({use.index, texels, use.transform}, TextureRef());
     if (!isNew) return found->second;
 

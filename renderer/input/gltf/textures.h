@@ -1,10 +1,12 @@
 // Converts glTF's textures to textures of a Description.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "renderer/input/description.h"
 #include "renderer/input/gltf/document.h"
@@ -40,6 +42,8 @@ class GltfTextures {
     // Returns the texture; nothing if the use names none, or, with a counted warning, one without
     // an image.
     std::optional<TextureRef> Add(const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
+    // Returns which of TEXCOORD_0 and 1 the textures use that were added since the last call.
+    std::array<bool, 2> TakeUvSets() { return std::exchange(uvSets, {}); }
 
   private:
     int Embed(int image, const FileLoc& loc);
@@ -48,6 +52,7 @@ class GltfTextures {
 
     const GltfDocument& document;
     Description* description;
+    std::array<bool, 2> uvSets = {};
     std::map<int, int> embedded;  // image of the file to Description::images
     std::map<std::tuple<int, GltfTexels, std::optional<std::array<float, 6>>>, TextureRef> made;
 };

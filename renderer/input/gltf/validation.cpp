@@ -386,6 +386,7 @@ void CheckGltfJson(const std::string& file, const json& json) {
     root.ForEach("textures", [](const JsonAt& o) {
         o.Index("source", "images");
         o.Index("sampler", "samplers");
+        o.Extension("EXT_texture_webp", [](const JsonAt& e) { e.Index("source", "images"); });
     });
     root.ForEach("samplers", [](const JsonAt& o) {
         o.OneOfNumbers("wrapS", {33071, 33648, 10497});

@@ -246,6 +246,11 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings&
         if (parameters.All().size() == kMostParameters)
             throw Error(owner.loc, "a directive has more than " + std::to_string(kMostParameters) +
                                        " parameters");
+        const bool isAgain = std::ranges::any_of(parameters.All(), [&](const Parameter& p) {
+            return p.type == parameter.type && p.name == parameter.name;
+        });
+        if (isAgain)
+            warnings.Add(owner.loc, "parameter given again; the later one counts", Describe(owner));
         parameters.Add(std::move(parameter));
     }
     return parameters;

@@ -28,6 +28,7 @@ Mat4d ScaleMatrix(double x, double y, double z, const FileLoc& loc) {
 }
 
 Mat4d RotateMatrix(double degrees, const Eigen::Vector3d& axis, const FileLoc& loc) {
+    if (degrees == 0) return Mat4d::Identity();  // about whatever axis
     // stableNormalized leaves a zero vector as it is.
     const Eigen::Vector3d unit = axis.stableNormalized();
     if (!(unit.norm() > 0.5))

@@ -93,8 +93,8 @@ bool IsImageFile(const std::string& path) {
 
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name) {
     if (IsDisplayFile(path)) return ReadDisplayFile(path, name);
-    const ExrImage exr = ReadExr(path);
-    CheckColours(path, exr);
+    ExrImage exr = ReadExr(path);
+    UseOwnNames(path, &exr);
     ComparedFile file;
     file.region = DataWindow(exr);
     file.shown = ShownWindow(exr, path);
@@ -102,10 +102,7 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name) 
     RgbImage& image = file.image.image;
     image = {exr.width, exr.height, std::vector<float>(size_t(file.region.Area()) * 3)};
     for (size_t c = 0; c < 3; ++c) {
-        const std::string channel(1, "RGB"[c]);
-        const ExrChannel* found = exr.Find(channel);
-        if (!found) found = exr.Find("Y");
-        if (!found) throw Error(path + ": has no channel " + channel);
+        const ExrChannel* found = exr.Find(std::string(1, "RGB"[c]));
         for (size_t i = 0; i < found->values.size(); ++i)
             image.values[3 * i + c] = found->values[i];
     }

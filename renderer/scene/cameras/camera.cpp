@@ -94,6 +94,9 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
     const Parameters& params = entity.parameters;
     const float aspect =
         params.GetFloat("frameaspectratio", float(resolution.x()) / float(resolution.y()));
+    if (!(aspect > 0 && aspect < kInfinity))
+        throw Error(entity.loc,
+                    fmt::format("\"frameaspectratio\" is {}; it has to be above 0", aspect));
     std::array<float, 4> screen = aspect > 1 ? std::array{-aspect, aspect, -1.f, 1.f}
                                              : std::array{-1.f, 1.f, -1 / aspect, 1 / aspect};
     if (const auto window = params.GetFloats(ParameterType::Float, "screenwindow");
@@ -101,6 +104,8 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
         if (window.size() != 4)
             throw Error(entity.loc, "\"screenwindow\" needs four values: x0 x1 y0 y1");
         std::copy(window.begin(), window.end(), screen.begin());
+        if (screen[0] == screen[1] || screen[2] == screen[3])
+            throw Error(entity.loc, "\"screenwindow\" has no extent");
     }
     // lull's own, of glTF's cameras: the least window of the image's aspect that shows -x to x and
     // -y to y.
@@ -122,11 +127,12 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
 float ReadFieldOfView(const Entity& entity) {
     float fov = entity.parameters.GetFloat("fov", 90);
     if (const float half = entity.parameters.GetFloat("halffov", -1); half > 0) fov = 2 * half;
-    if (!(fov > 0 && fov < 180))
+    const auto known = FieldOfView(double(fov));
+    if (!known)
         throw Error(entity.loc, fmt::format("the field of view is {} degrees; it has to lie "
                                             "between 0 and 180",
                                             fov));
-    return fov;
+    return float(*known);
 }
 
 Projection ReadProjection(const Entity& entity) {

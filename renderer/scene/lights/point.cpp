@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/scene/lights/light_color.h"
 
 namespace lull {
@@ -94,12 +95,13 @@ ProjectionLight ProjectionLight::Make(const LightReader& in) {
     light.I = LightColor(in.entity, "I", in.warnings);
     light.lightFromWorld = in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
     const float fov = params.GetFloat("fov", 45);
-    if (!(fov > 0 && fov < 180))
+    const auto known = FieldOfView(double(fov));
+    if (!known)
         throw Error(in.entity.loc,
                     fmt::format("the projection light's \"fov\" is {} degrees; it has "
                                 "to lie between 0 and 180",
                                 fov));
-    light.perTangent = 1 / std::tan(fov * kPi / 360);
+    light.perTangent = 1 / std::tan(float(*known) * kPi / 360);
     light.image = ReadLightImage(in);
     const float aspect =
         light.image ? float(light.image->image.width) / float(light.image->image.height) : 1;

@@ -4,7 +4,9 @@
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
 #include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
@@ -12,8 +14,10 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <stdexcept>
 
 #include "renderer/image/files/exr_channels.h"
+#include "renderer/image/files/primaries.h"
 #include "renderer/image/image_io.h"
 #include "tests/renderer/files/test_files.h"
 
@@ -36,6 +40,52 @@ TEST(ExrChannels, AreSortedAsColoursAndAsVectors) {
               (Names{"R", "G", "B", "spp", "N.X", "N.Z", "N.A", "a.b.R", "a.b.G"}));
     EXPECT_TRUE(IsAlpha("diffuse.Alpha"));
     EXPECT_FALSE(IsAlpha("spp"));
+}
+
+// Colours of no layer come first, then those of Blender's combined pass, then the only ones.
+TEST(ExrChannels, OfPicturesAreTheirColours) {
+    const auto chosen = [](Names names) { return PictureChannels(Sorted(std::move(names))); };
+    EXPECT_EQ(chosen({"A", "B", "G", "R", "Z"}), (Names{"R", "G", "B", "A"}));
+    EXPECT_EQ(chosen({"B", "G", "R", "Z", "aa.B", "aa.G", "aa.R"}), (Names{"R", "G", "B"}));
+    EXPECT_EQ(chosen({"Depth.Z", "L.Combined.A", "L.Combined.B", "L.Combined.G", "L.Combined.R",
+                      "L.Noisy.B", "L.Noisy.G", "L.Noisy.R"}),
+              (Names{"L.Combined.R", "L.Combined.G", "L.Combined.B", "L.Combined.A"}));
+    EXPECT_EQ(chosen({"a.Z", "b.B", "b.G", "b.R"}), (Names{"b.R", "b.G", "b.B"}));
+    // One that is missing is black.
+    EXPECT_EQ(chosen({"G", "R"}), (Names{"R", "G", "B"}));
+    // Without colours as they come; two are not a grey value and its alpha.
+    EXPECT_EQ(chosen({"A", "Y"}), (Names{"Y", "A"}));
+    EXPECT_EQ(chosen({"height.V"}), (Names{"height.V"}));
+    EXPECT_EQ(chosen({"U", "V"}), (Names{"U"}));
+    EXPECT_EQ(chosen({"N.X", "N.Y", "N.Z"}), (Names{"N.X", "N.Y", "N.Z"}));
+
+    const auto error = [&](Names names) -> std::string {
+        try {
+            chosen(std::move(names));
+        } catch (const std::runtime_error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(Contains(error({"a.B", "a.G", "a.R", "b.B", "b.G", "b.R"}),
+                         "in several layers, such as a and b"));
+    EXPECT_TRUE(Contains(error({"BY", "RY", "Y"}), "luminance and chroma"));
+}
+
+// The matrices of Rec. 2020, which has the same white, and of ACEScg, which is adapted.
+TEST(Primaries, BecomeRec709) {
+    const auto expect = [](const Primaries& p, const std::array<double, 9>& rows) {
+        const Eigen::Matrix3f m = Rec709From(p);
+        for (int i = 0; i < 9; ++i) EXPECT_NEAR(m(i / 3, i % 3), rows[size_t(i)], 1e-3) << i;
+        EXPECT_NEAR((m * Vec3f::Ones() - Vec3f::Ones()).norm(), 0, 1e-5);
+    };
+    expect({{0.64f, 0.33f}, {0.3f, 0.6f}, {0.15f, 0.06f}, {0.3127f, 0.329f}},
+           {1, 0, 0, 0, 1, 0, 0, 0, 1});
+    expect({{0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.329f}},
+           {1.6605, -0.5876, -0.0728, -0.1246, 1.1329, -0.0083, -0.0182, -0.1006, 1.1187});
+    expect({{0.713f, 0.293f}, {0.165f, 0.83f}, {0.128f, 0.044f}, {0.32168f, 0.33767f}},
+           {1.7051, -0.6218, -0.0833, -0.1303, 1.1408, -0.0105, -0.0240, -0.1290, 1.1530});
+    EXPECT_FALSE(Rec709From({{0, 0}, {0, 0}, {0, 0}, {0.3f, 0.3f}}).allFinite());
 }
 
 // What all files below hold: 7x5 texels of one channel.
@@ -151,6 +201,61 @@ TEST(ExrFile, KnowsOtherPrimaries) {
         }  // the file is whole once it is closed
         EXPECT_EQ(ReadExr(file.path).attributes.contains("chromaticities"), isOther);
     }
+}
+
+// Of pictures, colours of other primaries are converted.
+TEST(ExrFile, ConvertsOtherPrimaries) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.exr");
+    Imf::Header header(1, 1);
+    Imf::Chromaticities rec2020({0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f});
+    Imf::addChromaticities(header, rec2020);
+    const float colors[3] = {0.25f, 0.5f, 0.75f};
+    Imf::FrameBuffer frame;
+    for (int i = 0; i < 3; ++i) {
+        const std::string name(1, "RGB"[i]);
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, colors + i, header.dataWindow()));
+    }
+    {
+        Imf::OutputFile out(path.c_str(), header);
+        out.setFrameBuffer(frame);
+        out.writePixels(1);
+    }
+    const auto texels = std::get<std::vector<float>>(ReadImage(path).texels);
+    EXPECT_NEAR(texels[0], 1.6605 * 0.25 - 0.5876 * 0.5 - 0.0728 * 0.75, 1e-3);
+    EXPECT_NEAR(texels[1], -0.1246 * 0.25 + 1.1329 * 0.5 - 0.0083 * 0.75, 1e-3);
+    EXPECT_NEAR(texels[2], -0.0182 * 0.25 - 0.1006 * 0.5 + 1.1187 * 0.75, 1e-3);
+}
+
+// Of several parts the first with colours is the picture.
+TEST(ExrFile, ReadsThePartWithColours) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("parts.exr");
+    const std::vector<Names> channels = {{"Z"}, {"R", "G", "B"}, {"R", "G", "B"}};
+    std::vector<Imf::Header> headers;
+    for (size_t i = 0; i < channels.size(); ++i) {
+        headers.emplace_back(1, 1);
+        headers.back().setName("part" + std::to_string(i));
+        headers.back().setType(Imf::SCANLINEIMAGE);
+        for (const std::string& name : channels[i])
+            headers.back().channels().insert(name, Imf::Channel(Imf::FLOAT));
+    }
+    {
+        Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
+        for (int i = 0; i < int(headers.size()); ++i) {
+            const float value = float(i) / 4;
+            Imf::FrameBuffer frame;
+            for (const std::string& name : channels[size_t(i)])
+                frame.insert(name, Imf::Slice::Make(Imf::FLOAT, &value, headers[0].dataWindow()));
+            Imf::OutputPart part(file, i);
+            part.setFrameBuffer(frame);
+            part.writePixels(1);
+        }
+    }
+    EXPECT_EQ(std::get<std::vector<float>>(ReadImage(path).texels),
+              (std::vector<float>{0.25f, 0.25f, 0.25f}));
+    EXPECT_EQ(ReadExr(path).channels.size(), 3u);
 }
 
 // Writes Y = 1, 2, ... over the data window, of which a picture shows the display window.

@@ -185,6 +185,56 @@ TEST(ReadImage, ReadsRadianceHdr) {
     ExpectNear(Texels<float>(image), expected, 0.04f);
 }
 
+// 2 columns, 3 rows, stored in all eight orders; each texel is as bright as its place.
+TEST(ReadImage, TurnsRadianceHdrUpright) {
+    const std::string texels = FromHex("808080818080808280808083808080848080808580808086");
+    const auto brightness = [](uint8_t exponent) {
+        return std::ldexp(128 / 256.f, exponent - 128);
+    };
+    struct Order {
+        const char* size;
+        std::array<int, 6> at;  // the place among the stored texels of each texel
+    };
+    for (const Order& order :
+         {Order{"-Y 3 +X 2", {0, 1, 2, 3, 4, 5}}, Order{"-Y 3 -X 2", {1, 0, 3, 2, 5, 4}},
+          Order{"+Y 3 -X 2", {5, 4, 3, 2, 1, 0}}, Order{"+Y 3 +X 2", {4, 5, 2, 3, 0, 1}},
+          Order{"+X 2 -Y 3", {0, 3, 1, 4, 2, 5}}, Order{"-X 2 -Y 3", {3, 0, 4, 1, 5, 2}},
+          Order{"-X 2 +Y 3", {5, 2, 4, 1, 3, 0}}, Order{"+X 2 +Y 3", {2, 5, 1, 4, 0, 3}}}) {
+        const Image image =
+            ReadFromBytes("a.hdr", std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n") +
+                                       order.size + "\n" + texels);
+        ASSERT_EQ(image.width, 2) << order.size;
+        ASSERT_EQ(image.height, 3) << order.size;
+        for (size_t i = 0; i < 6; ++i) {
+            const float expected = brightness(uint8_t(0x81 + order.at[i]));
+            EXPECT_NEAR(Texels<float>(image)[3 * i], expected, 0.01f * expected) << order.size << i;
+        }
+    }
+}
+
+// 8x2 texels of one bit, which a file need not say.
+TEST(ReadImage, RefusesTiffOfOneBit) {
+    const std::string tiff = FromHex(
+        "49492a0008000000060000010300010000000800000001010300010000000200000006010300010000000100"
+        "00001101040001000000560000001601030001000000020000001701040001000000020000000000000055aa");
+    const TemporaryDirectory directory;
+    const std::string path = directory.Write("a.tif", tiff);
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadImage(path); }), "one bit a pixel"));
+}
+
+// What was multiplied when it was stored is divided.
+TEST(ReadImage, UndoesExposureOfRadianceHdr) {
+    const Image image = ReadFromBytes("a.hdr",
+                                      "#?RADIANCE\nEXPOSURE=2\nEXPOSURE=  4.0\n"
+                                      "COLORCORR=1 2 4\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
+                                          FromHex("80808084"));
+    ExpectNear(Texels<float>(image), {1, 0.5f, 0.25f}, 0.01f);
+    const TemporaryDirectory directory;
+    const std::string xyz = directory.Write(
+        "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + FromHex("80808084"));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadImage(xyz); }), "X, Y and Z"));
+}
+
 TEST(ReadImage, ReadsPfmTopDown) {
     const float values[6] = {1, 2, 3, -4, 5e6f, 6};  // the lower row comes first
     std::string pfm = "PF\n1 2\n-1.0\n";

@@ -68,6 +68,23 @@ TEST(Parameters, ReportsWhatWasNotLookedUp) {
     EXPECT_EQ(first, "warning: unused parameter: 'unused' of shape \"sphere\" has no effect");
 }
 
+TEST(Parameters, NameTheTypeThatIsWanted) {
+    Parameters p;
+    p.Add(Floats(ParameterType::Float, "Kd", {1}));
+    p.GetTexture("Kd");
+    p.GetSpectrum("Kd", Rgb::Zero());
+    std::string message;
+    Warnings warnings([&](const std::string& text) { message = text; });
+    p.ReportUnused("material \"matte\"", warnings);
+    EXPECT_EQ(message,
+              "warning: unused parameter: 'Kd' of material \"matte\" has no effect; it is given as "
+              "\"float\" and has to be \"rgb\"");
+    EXPECT_EQ(p.Mistyped("Kd"), "; it is given as \"float\" and has to be \"rgb\"");
+    EXPECT_EQ(p.Mistyped("Ks"), "");
+    p.GetFloat("Kd", 0);
+    EXPECT_EQ(p.Mistyped("Kd"), "");
+}
+
 TEST(ResolvePath, StartsAtTheScene) {
     Description description;
     EXPECT_EQ(ResolvePath(description, "a.ply"), "a.ply");

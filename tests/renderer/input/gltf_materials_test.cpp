@@ -78,8 +78,9 @@ TEST(GltfMaterials, CarryFactorsTexturesAndExtensions) {
     file.Node({{"mesh", file.Triangle({{"material", 0}})}});
     Warnings warnings;
     const Description d = kFolder.Parse(file, {}, &warnings);
-    // Of iridescence, of a sheet that transmits, and of how both textures are filtered.
-    EXPECT_EQ(warnings.Total(), 4);
+    // Of iridescence, of a sheet that transmits, of texture coordinates that the mesh lacks, and of
+    // how both textures are filtered.
+    EXPECT_EQ(warnings.Total(), 5);
     ASSERT_EQ(d.materials.size(), 1u);
     const Parameters& m = d.materials[0].parameters;
     EXPECT_EQ(d.materials[0].name, "metallicroughness");
@@ -191,6 +192,28 @@ TEST(GltfMaterials, CarrySheenAndAnisotropy) {
     const auto tangents = FloatsOf(d.shapes.at(0), ParameterType::Float, "tangent");
     ASSERT_EQ(tangents.size(), 12u);
     EXPECT_NEAR(tangents[1], 1, 1e-6);
+}
+
+// What is left out, or misplaced, is named: extensions that no list has, and uvs that meshes lack.
+TEST(GltfMaterials, WarnOfWhatIsMissing) {
+    GltfFile file;
+    file.root["images"] = {{{"uri", "a.webp"}}};
+    file.root["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+    file.root["extensionsUsed"] = {"EXT_texture_webp"};
+    file.root["materials"] = {
+        {{"extensions", {{"KHR_materials_iridescence", json::object()}}},
+         {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}};
+    const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"material", 0}})}});
+    Warnings warnings;
+    const Description d = kFolder.Parse(file, {}, &warnings);
+    EXPECT_EQ(d.textures.at(0).parameters.GetString("filename", ""), "a.webp");
+    EXPECT_EQ(warnings.Total(), 2);
+    EXPECT_EQ(warnings.Counts().count(
+                  "extension \"KHR_materials_iridescence\" is not supported and left out"),
+              1u);
+    EXPECT_EQ(warnings.Counts().count("a texture is misplaced, since its mesh lacks TEXCOORD_1"),
+              1u);
 }
 
 TEST(GltfMaterials, CarryDiffuseTransmission) {

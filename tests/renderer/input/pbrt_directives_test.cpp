@@ -74,6 +74,10 @@ TEST_F(Directives, Scale) {
     EXPECT_EQ(ShapeTransform("Scale 2 3 -4").diagonal(), Eigen::Vector4d(2, 3, -4, 1));
 }
 
+TEST_F(Directives, RotateByNothingNeedsNoAxis) {
+    EXPECT_EQ(ShapeTransform("Rotate 0 0 0 0"), Mat4d::Identity());
+}
+
 TEST_F(Directives, RotateTurnsCounterclockwise) {
     const Mat4d m = ShapeTransform("Rotate 90 0 0 2");
     EXPECT_TRUE(

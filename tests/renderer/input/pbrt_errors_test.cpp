@@ -192,6 +192,10 @@ TEST_F(PbrtErrors, Spectra) {
     folder.Write("bad.spd", "400 1\n\n500 x\n");
     Expect("Film \"f\" \"spectrum c\" \"bad.spd\"",
            "bad.spd:3: 'x' in a spectrum file is not a number");
+    folder.Write("comma.spd", "# 1,2 3\n400, 1\n500,1\n\n600 ,1\n700,0 1,5\n");
+    Expect(
+        "Film \"f\" \"spectrum c\" \"comma.spd\"",
+        "comma.spd:6: numbers of a line are apart by commas and by blanks; write decimal points");
     folder.Write("odd.spd", "400 1\n500\n");
     Expect("Film \"f\" \"spectrum c\" \"odd.spd\"", "odd.spd: a spectrum needs pairs");
 }

@@ -36,6 +36,12 @@ TEST_F(PbrtParameters, SingleValuesWithAndWithoutBrackets) {
     EXPECT_EQ(p.All()[0].loc.line, 1);
 }
 
+TEST_F(PbrtParameters, TheLaterOneCounts) {
+    const auto p = Read("\"float a\" 1 \"integer a\" 2 \"float a\" 3");
+    EXPECT_EQ(p.GetFloat("a", 0), 3);
+    EXPECT_EQ(warnings.Counts().at("parameter given again; the later one counts"), 1);
+}
+
 TEST_F(PbrtParameters, BareBooleans) {
     const auto p = Read("\"bool a\" true \"bool b\" [false] \"bool c\" [true \"false\"]");
     EXPECT_TRUE(p.GetBool("a", false));

@@ -1,7 +1,9 @@
 #include "renderer/input/ply_loader.h"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "tests/renderer/input/test_files.h"
@@ -100,7 +102,7 @@ TEST_F(Ply, TrianglesInEveryEncodingPlainAndPacked) {
     EXPECT_EQ(warnings.Total(), 0);
 }
 
-TEST_F(Ply, QuadsSplitAndOtherPolygonsAreLeftOut) {
+TEST_F(Ply, PolygonsAreDivided) {
     for (const std::string format : kFormats) {
         PlyWriter ply(format);
         ply.Header("element vertex 5\n" + std::string(kPositions) + "element face 5\n" + kFaces +
@@ -112,10 +114,59 @@ TEST_F(Ply, QuadsSplitAndOtherPolygonsAreLeftOut) {
         ply.Put<uint8_t>({3}).Put<int>({4, 1, 2, 73});
         ply.Put<uint8_t>({1}).Put<int>({9, 74});
         const MeshData mesh = Load(ply.text);
-        EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {4, 1, 2}}));
-        EXPECT_EQ(mesh.faceIndices, (std::vector{70, 70, 73}));
+        EXPECT_EQ(mesh.triangles,
+                  (std::vector<Triangle>{
+                      {0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {4, 1, 2}}));
+        EXPECT_EQ(mesh.faceIndices, (std::vector{70, 70, 71, 71, 71, 73}));
     }
-    EXPECT_EQ(warnings.Counts().at("face left out that is neither triangle nor quad"), 9);
+    EXPECT_EQ(warnings.Counts().at("face left out that has not 3 to 256 vertices"), 6);
+}
+
+// Also where they are not convex: with the area that they have, and no corner lost.
+TEST_F(Ply, ConcavePolygonsAreDividedWithin) {
+    const auto areaOf = [&](const std::vector<Vec3f>& corners) {
+        PlyWriter ply("ascii");
+        ply.Header(fmt::format("element vertex {}\n{}element face 1\n{}", corners.size(),
+                               kPositions, kFaces));
+        for (const Vec3f& p : corners) ply.Put<float>({p.x(), p.y(), p.z()});
+        ply.text += fmt::format("{}", corners.size());
+        for (size_t i = 0; i < corners.size(); ++i) ply.text += fmt::format(" {}", i);
+        const MeshData mesh = Load(ply.text);
+        EXPECT_EQ(mesh.triangles.size(), corners.size() - 2);
+        double area = 0;
+        for (const Triangle& t : mesh.triangles) {
+            const Vec3f &a = corners[t[0]], &b = corners[t[1]], &c = corners[t[2]];
+            area += double((b - a).cross(c - a).norm()) / 2;
+        }
+        return area;
+    };
+    // An arrow head, begun at each of its corners, and an L, upright in space.
+    const std::vector<Vec3f> arrow = {{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {0.5f, 1, 0}};
+    for (size_t first = 0; first < 4; ++first) {
+        std::vector<Vec3f> turned = arrow;
+        std::ranges::rotate(turned, turned.begin() + long(first));
+        EXPECT_NEAR(areaOf(turned), 1.5, 1e-6) << first;
+        std::ranges::reverse(turned);
+        EXPECT_NEAR(areaOf(turned), 1.5, 1e-6) << first;
+    }
+    EXPECT_NEAR(areaOf({{0, 0, 1}, {0, 3, 1}, {0, 3, 2}, {0, 1, 2}, {0, 1, 4}, {0, 0, 4}}), 5,
+                1e-6);
+}
+
+// Marks that old programs end texts by, colours, and triangles that are no faces.
+TEST_F(Ply, WarnsOfWhatIsLeftOut) {
+    const std::string vertices = "0 0 0 9\n1 0 0 9\n0 1 0 9\n";
+    PlyWriter ply("ascii");
+    ply.Header("element vertex 3\n" + std::string(kPositions) +
+               "property uchar red\nelement face 1\n" + kFaces +
+               "element tristrips 1\nproperty list int int vertex_indices\n");
+    for (const char* end : {"", "\n", "\x1a", "\n\x1a", "\n\x1a garbage"})
+        Load(ply.text + vertices + "3 0 1 2\n3 0 1 2" + end);
+    EXPECT_EQ(warnings.Counts().size(), 2u);
+    EXPECT_EQ(
+        warnings.Counts().at("triangle strips of a PLY file are left out; save them as faces"), 5);
+    EXPECT_EQ(warnings.Counts().at("colours of a PLY file are left out; glTF files can have them"),
+              5);
 }
 
 TEST_F(Ply, PropertiesInAnyOrderAndType) {

@@ -53,6 +53,21 @@ TEST(RoundedZeros, AreZeroInScenes) {
     }
 }
 
+// Only 0 is cut out, and so is what rounding makes of it.
+TEST(RoundedZeros, OfAlphaAreCutOut) {
+    const auto isHit = [](const char* alpha) {
+        const auto scene = SceneOf(WorldText(fmt::format(
+            "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [-1 -1 1 1 -1 1 0 2 1] "
+            "\"float alpha\" {}",
+            alpha)));
+        return scene->shapes.shapes.at(0).alpha.has_value();
+    };
+    EXPECT_TRUE(isHit("0"));
+    EXPECT_TRUE(isHit("-1e-8"));
+    EXPECT_FALSE(isHit("0.5"));
+    EXPECT_FALSE(isHit("-0.5"));
+}
+
 TEST(RoundedZeros, AreZeroAsParameters) {
     EXPECT_EQ(RaisedToZero(-1e-9f), 0);
     EXPECT_EQ(RaisedToZero(-0.1f), -0.1f);

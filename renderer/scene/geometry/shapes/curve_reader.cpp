@@ -104,7 +104,8 @@ std::vector<Vec3f> ReadNormals(const Entity& entity, CurveKind kind, size_t piec
 }
 
 std::array<float, 2> ReadWidths(const Entity& entity) {
-    const float width = GetNonnegative(entity, "width", 1);
+    const float width = entity.parameters.GetFloat("width", 1);
+    // Nothing asks for the width where both ends have their own.
     return {GetNonnegative(entity, "width0", width), GetNonnegative(entity, "width1", width)};
 }
 

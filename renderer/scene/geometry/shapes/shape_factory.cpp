@@ -28,8 +28,8 @@ std::vector<std::array<uint32_t, 3>> TrianglesOf(const ShapeEntity& entity, size
     const auto indices = entity.parameters.GetInts("indices");
     if (indices.empty() || indices.size() % 3 != 0)
         throw Error(entity.loc, fmt::format("\"indices\" has {} values; a mesh needs three for "
-                                            "each triangle",
-                                            indices.size()));
+                                            "each triangle{}",
+                                            indices.size(), entity.parameters.Mistyped("indices")));
     std::vector<std::array<uint32_t, 3>> triangles(indices.size() / 3);
     for (size_t i = 0; i < indices.size(); ++i) {
         if (indices[i] < 0 || size_t(indices[i]) >= vertexCount)
@@ -45,7 +45,8 @@ std::vector<Vec3f> PositionsOf(const ShapeEntity& entity) {
     const auto positions =
         VectorsOf<Vec3f>(entity.parameters.GetFloats(ParameterType::Point3, "P"));
     if (positions.empty())
-        throw Error(entity.loc, "the mesh has no vertices: \"point P\" is missing");
+        throw Error(entity.loc, "the mesh has no vertices: \"point P\" is missing" +
+                                    entity.parameters.Mistyped("P"));
     for (const Vec3f& p : positions)
         if (!p.allFinite()) throw Error(entity.loc, "a vertex of the mesh is not finite");
     return positions;
@@ -209,7 +210,8 @@ Revolved MakeRevolved(const ShapeEntity& entity) {
 // Reads an alpha parameter, in which only 0 matters: such points are cut out.
 std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeEntity& entity,
                                       const char* name) {
-    const FloatTexture alpha = textures.GetFloat(entity, name, 1);
+    FloatTexture alpha = textures.GetFloat(entity, name, 1);
+    if (alpha.IsConstant()) alpha.constant = RaisedToZero(alpha.constant);
     if (alpha.IsConstant() && alpha.constant != 0) return {};
     return alpha;
 }
@@ -275,7 +277,14 @@ Shape MakePatches(const ShapeReader& in) {
 }
 template <auto Make>
 Shape MakeSolid(const ShapeReader& in) {
-    return {.geometry = Make(in.entity)};
+    const ShapeEntity& entity = in.entity;
+    if (entity.areaLight && Mirrors(entity.worldFromObject) &&
+        !entity.areaLight->parameters.GetBool("twosided", false))
+        in.warnings.Add(entity.loc,
+                        "a mirrored sphere, disk or cylinder is seen to shine to one side, and "
+                        "lights the other, as in pbrt-v3; use a mesh, or no mirroring transform",
+                        entity.name);
+    return {.geometry = Make(entity)};
 }
 Shape MakeCurves(const ShapeReader& in) { return {.geometry = ReadCurves(in.entity, in.warnings)}; }
 

@@ -109,6 +109,18 @@ TEST(ComparedFiles, LetPicturesForDisplaysBeOfAnyPart) {
                          "b.exr: shows another part of the image than the scene would"));
 }
 
+// Of other programs' layers, as `lull denoise` does.
+TEST(ComparedFiles, TakeColoursOfLayers) {
+    const TemporaryDirectory directory;
+    ExrImage layers;
+    layers.width = layers.height = 1;
+    for (const char* name : {"Depth.Z", "View.Combined.R", "View.Combined.G", "View.Combined.B"})
+        layers.channels.push_back({name, {float(layers.channels.size())}});
+    WriteExr(directory.File("a.exr"), layers);
+    EXPECT_EQ(ReadComparedFile(directory.File("a.exr"), "x").image.image.values,
+              (std::vector<float>{1, 2, 3}));
+}
+
 TEST(ComparedFiles, SayWhatDoesNotFit) {
     const TemporaryDirectory directory;
     const ComparedFile wide = ReadComparedFile(WriteDisplay(directory, 7), "automatic"),
@@ -126,7 +138,7 @@ TEST(ComparedFiles, SayWhatDoesNotFit) {
     grey.channels.push_back({"R", {1.f}});
     WriteExr(directory.File("c.exr"), grey);
     EXPECT_TRUE(Contains(ErrorOf([&] { ReadComparedFile(directory.File("c.exr"), "x"); }),
-                         "c.exr: has no channel G"));
+                         "c.exr: it has no channels R, G and B, nor Y; its channels are R"));
 }
 
 }  // namespace

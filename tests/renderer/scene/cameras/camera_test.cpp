@@ -228,8 +228,16 @@ TEST(Camera, EnvironmentSeesAllDirections) {
     EXPECT_FALSE(WorldToNdc(camera, film).has_value());
 }
 
+// 180 degrees, which a plane does not show, and what rounding makes of them.
+TEST(Camera, IsNearlyAsWideAsAsked) {
+    for (const float fov : {180.f, 180.0001f, 179.94f}) {
+        const Camera camera = MakeTestCamera(FilmOf(10, 10), {FloatParameter("fov", {fov})});
+        EXPECT_NEAR(std::acos(Direction(camera, 0, 5).z()) * 180 / kPi, 89.97, 1e-3) << fov;
+    }
+}
+
 TEST(Camera, RefusesNonsense) {
-    for (const float fov : {0.f, -5.f, 180.f, std::nanf("")})
+    for (const float fov : {0.f, -5.f, 181.f, std::nanf("")})
         EXPECT_TRUE(
             Contains(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {FloatParameter("fov", {fov})}); }),
                      "scene.pbrt:3: "));
@@ -238,6 +246,17 @@ TEST(Camera, RefusesNonsense) {
                   MakeTestCamera(FilmOf(9, 9), {FloatParameter("screenwindow", {1, 2})});
               }),
               "");
+    for (const float aspect : {0.f, -1.f, kInfinity})
+        EXPECT_TRUE(Contains(ErrorOf([&] {
+                                 MakeTestCamera(FilmOf(9, 9),
+                                                {FloatParameter("frameaspectratio", {aspect})});
+                             }),
+                             "has to be above 0"));
+    EXPECT_TRUE(
+        Contains(ErrorOf([] {
+                     MakeTestCamera(FilmOf(9, 9), {FloatParameter("screenwindow", {1, 1, -1, 1})});
+                 }),
+                 "no extent"));
     Description description;
     description.camera.name = "fisheye";
     Warnings warnings;

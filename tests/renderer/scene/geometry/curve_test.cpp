@@ -250,6 +250,12 @@ TEST(Curves, RefuseNonsense) {
     EXPECT_TRUE(Contains(error({Points(kBend), StringParameter("basis", "hermite")}), "hermite"));
     EXPECT_TRUE(Contains(error({Points(kBend), StringParameter("type", "tube")}), "tube"));
     EXPECT_TRUE(Contains(error({Points(kBend), FloatParameter("width", {-1})}), "is -1"));
+    EXPECT_TRUE(Contains(
+        error({Points(kBend), FloatParameter("width", {-1}), FloatParameter("width0", {1})}),
+        "\"width1\" is -1"));
+    EXPECT_EQ(error({Points(kBend), FloatParameter("width", {-1}), FloatParameter("width0", {1}),
+                     FloatParameter("width1", {1})}),
+              "");
     EXPECT_TRUE(Contains(error({Points(kBend), FloatParameter("width0", {kInfinity})}), "width"));
     EXPECT_TRUE(Contains(error({Points(kBend), IntParameter("splitdepth", 11)}), "is 11"));
     EXPECT_TRUE(Contains(error({Points(kBend), FloatParameter("splitdepth", {-4e20f})}), "is -1"));

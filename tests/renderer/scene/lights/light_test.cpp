@@ -466,8 +466,23 @@ TEST(SunLight, RefusesAnglesThatAreNone) {
     }
 }
 
+// They are pbrt-v3's, whose two sides disagree.
+TEST(AreaLights, WarnOfMirroredQuadrics) {
+    const auto countOf = [](const std::string& text) {
+        Warnings warnings;
+        SceneOf(WorldText("AreaLightSource \"diffuse\" " + text), {}, &warnings);
+        return warnings.Total();
+    };
+    for (const char* shape : {"sphere", "disk", "cylinder"}) {
+        const std::string rest = fmt::format("\nShape \"{}\"", shape);
+        EXPECT_EQ(countOf("Scale -1 1 1" + rest), 1) << shape;
+        EXPECT_EQ(countOf("Scale -1 -1 1" + rest), 0) << shape;
+        EXPECT_EQ(countOf("\"bool twosided\" \"true\" Scale -1 1 1" + rest), 0) << shape;
+    }
+}
+
 TEST(ImageLights, RefuseWhatTheyCannotRead) {
-    for (const char* light : {"\"projection\" \"float fov\" 180", "\"projection\" \"float fov\" 0",
+    for (const char* light : {"\"projection\" \"float fov\" 181", "\"projection\" \"float fov\" 0",
                               "\"goniometric\" \"string mapname\" \"missing.exr\"",
                               "\"projection\" \"string mapname\" \"missing.exr\""}) {
         const std::string error =
