@@ -63,7 +63,9 @@ TEST(Study, TakesPicturesOfOtherRenderers) {
     WriteScene(directory);
     std::filesystem::create_directory(directory.path / "pictures");
     for (const char* spp : {"20", "40", "80"}) {
-        ExpectSuccess(directory, fmt::format("render scene.pbrt --quiet --spp {0} -o r.exr", spp));
+        ExpectSuccess(
+            directory,
+            fmt::format("render scene.pbrt --sampler random --quiet --spp {0} -o r.exr", spp));
         std::filesystem::rename(directory.File("r.png"),
                                 directory.File(fmt::format("pictures/r-{}spp.png", spp)));
     }
