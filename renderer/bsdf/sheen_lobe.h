@@ -37,7 +37,9 @@ struct CharlieSheen {
     static constexpr float kLeastAlpha = 0.01f;
 
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
-        const Vec3f h = wo + wi;
+        // Behind a tilted normal light comes for that from opposite, which the surface hides.
+        const bool isBehind = !SameHemisphere(wo, wi);
+        const Vec3f h = isBehind ? Vec3f(wo - wi) : Vec3f(wo + wi);
         const float h2 = h.squaredNorm();
         const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
         if (std::min(cosO, cosI) < kMinCosine || !(h2 > kMinHalf2)) return {};
@@ -47,7 +49,7 @@ struct CharlieSheen {
         // Nearer to the horizon the fit would give more light than comes in.
         const float o = std::max(cosO, 1e-3f), i = std::max(cosI, 1e-3f);
         const float f = d / (4 * o * i * (1 + masking.Lambda(o) + masking.Lambda(i)));
-        return {Rgb(r) * f, SameHemisphere(wo, wi) ? cosI * kInvPi : 0};
+        return {Rgb(r) * f, isBehind ? 0 : cosI * kInvPi};
     }
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
         *wi = SampleCosine(wo, u, false);

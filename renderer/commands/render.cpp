@@ -175,7 +175,7 @@ std::string FirstDifference(const std::string& text, const std::string& other) {
 // render.
 bool IsFinished(const PreparedRender& p) {
     const RenderFiles& files = p.files;
-    if (!IsThere(files.exr) || !AreWhole(files, p.render.provenance)) return false;
+    if (!IsThere(files.exr) || !AreWhole(files, p.render.provenance, p.blocks.size())) return false;
     std::string found;
     try {
         const ExrImage image = ReadExr(files.exr);

@@ -34,6 +34,12 @@ bool IsWhole(const std::string& file) try {
     return false;
 }
 
+bool HasLines(const std::string& file, size_t count) try {
+    return IsThere(file) && size_t(std::ranges::count(ReadFile(file).View(), '\n')) == count;
+} catch (const Error&) {
+    return false;
+}
+
 }  // namespace
 
 bool HasImageExtension(const std::string& output) {
@@ -64,9 +70,9 @@ std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
     return outputs;
 }
 
-bool AreWhole(const RenderFiles& files, const Provenance& provenance) {
+bool AreWhole(const RenderFiles& files, const Provenance& provenance, size_t blockCount) {
+    if (HasRanges(provenance) && !HasLines(files.ranges, 1 + blockCount)) return false;
     const std::initializer_list<std::string> others = {files.png, files.sppMap, files.thresholds,
-                                                       HasRanges(provenance) ? files.ranges : "",
                                                        files.report};
     return std::ranges::all_of(
         others, [](const std::string& file) { return file.empty() || IsWhole(file); });

@@ -28,8 +28,9 @@ bool HasImageExtension(const std::string& output);
 // Returns all files that may be written or removed, for CheckOutputs().
 std::vector<NamedFile> OutputsOf(const RenderFiles&);
 
-// Returns whether all files but the EXR that a render ends with are there, none of them cut short.
-bool AreWhole(const RenderFiles&, const Provenance&);
+// Returns whether all files but the EXR that a render of so many blocks ends with are there, none
+// of them cut short.
+bool AreWhole(const RenderFiles&, const Provenance&, size_t blockCount);
 
 // A finished render; `histories` have the curves for a page.
 struct FinishedRender {

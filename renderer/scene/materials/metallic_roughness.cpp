@@ -40,6 +40,11 @@ float Weight(const UvSlot<FloatTexture>& slot, float factor, const MaterialInput
     return factor == 0 ? 0 : std::clamp(factor * Look(slot, in), 0.f, 1.f);
 }
 
+// Of the frame in which light to the view is scattered.
+float CosineTowards(const MaterialInputs& in, const Bsdf& bsdf) {
+    return std::min(1.f, std::abs(bsdf.FrameTowards(in.hit->wo).n.dot(in.hit->wo)));
+}
+
 float AlphaOf(float roughness) { return Sqr(std::clamp(roughness, 0.f, 1.f)); }
 
 }  // namespace
@@ -94,9 +99,8 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     });
     if (vertexColors) traits.Need(kNeedsColor);
     if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
-    // The light that a coat or sheen leaves to the rest depends on the view.
-    if (hasSheen || (diffuseTransmissionFactor > 0 && clearcoatFactor > 0))
-        traits.isConstant = false;
+    // The light that sheen or the interface leaves to the rest depends on the view.
+    if (hasSheen || diffuseTransmissionFactor > 0) traits.isConstant = false;
     if (CanLetThrough()) traits.needs = traits.needs | kLetsThrough;
     return traits;
 }
@@ -147,7 +151,7 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsd
     const float roughness =
         sheenRoughnessFactor > 0 ? sheenRoughnessFactor * Look(sheenRoughness, in) : 0;
     const float alpha = std::max(AlphaOf(roughness), CharlieSheen::kLeastAlpha);
-    const float cosine = std::abs(in.hit->ns.dot(in.hit->wo));
+    const float cosine = CosineTowards(in, *bsdf);
     const float albedo = SheenAlbedo(cosine, alpha);
     const float kept = std::min(1.f, 1 / std::max(albedo, 1e-6f));  // it reflects all at the most
     bsdf->Scale(0, bsdf->LobeCount(LobeSet::All),
@@ -155,13 +159,14 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsd
     bsdf->Add(CharlieSheen{Rgb(color * (kept * ThroughCoat(coat, cosine, 1))), alpha});
 }
 
-// The interface above takes what it reflects at normal incidence, by whatever angle light comes.
-void MetallicRoughness::AddDiffuseTransmission(const MaterialInputs& in, float share, float f0,
-                                               float coat, Bsdf* bsdf) const {
+// The interface above takes what it reflects to the view.
+void MetallicRoughness::AddDiffuseTransmission(const MaterialInputs& in, float share,
+                                               const InterfaceAbove& above, float alpha, float coat,
+                                               Bsdf* bsdf) const {
     const Rgb color = Look(diffuseTransmissionColor, in) * diffuseTransmissionColorFactor;
-    const float uncoated =
-        coat > 0 ? ThroughCoat(coat, std::abs(in.hit->ns.dot(in.hit->wo)), 1) : 1;
-    const float left = uncoated * (1 - f0);
+    const float cosine = CosineTowards(in, *bsdf);
+    const float reflected = DirectionalAlbedo(cosine, alpha)(above.f0, above.f90);
+    const float left = ThroughCoat(coat, cosine, 1) * std::max(0.f, 1 - reflected);
     if (!IsBlack(color))
         bsdf->Add(LambertianTransmission{Rgb(share * left * color.max(0.f).min(1.f))});
 }
@@ -249,7 +254,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     }
 
     if (const float share = (dielectric - transmitting) * toOtherSide; share > 0)
-        AddDiffuseTransmission(in, share, aboveBase.f0, coat, bsdf);
+        AddDiffuseTransmission(in, share, aboveBase, isSmooth ? 0 : alpha, coat, bsdf);
     AddSheen(in, coat, bsdf);
     if (coat > 0) AddClearcoat(in, coat, bsdf);
 }

@@ -61,8 +61,8 @@ struct MetallicRoughness {
     // Adds sheen over all lobes that there are, below a coat.
     void AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
     // Adds the `share` of the base's light that leaves on the other side, below an interface.
-    void AddDiffuseTransmission(const MaterialInputs& in, float share, float f0, float coat,
-                                Bsdf* bsdf) const;
+    void AddDiffuseTransmission(const MaterialInputs& in, float share, const InterfaceAbove& above,
+                                float alpha, float coat, Bsdf* bsdf) const;
     void AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
     // Adds the interface of a solid that reflects and transmits so much.
     void AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth, const Vec2f& alphas,

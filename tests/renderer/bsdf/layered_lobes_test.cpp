@@ -147,6 +147,29 @@ TEST(CharlieSheen, HasHandComputedValues) {
     EXPECT_NEAR(f.y(), expected / 2, 1e-5);
 }
 
+// A normal map moves light of one side of the surface to that of the other: none is made.
+TEST(CharlieSheen, ReflectsAsMuchWhereTheNormalIsTilted) {
+    Random random(45);
+    for (const float tilt : {0.f, 30.f, 60.f})
+        for (const float angle : {0.f, 50.f, 85.f}) {
+            const Vec3f normal = FromAngles(tilt), wo = FromAngles(angle, 180);
+            Frame frame{{}, {}, normal};
+            CoordinateSystem(normal, &frame.s, &frame.t);
+            Bsdf bsdf(frame, Vec3f::UnitZ(), 1, true);
+            bsdf.Add(CharlieSheen{Rgb(1, 1, 1), 0.25f});
+            double sum = 0;
+            constexpr int kCount = 100000;
+            for (int i = 0; i < kCount; ++i) {
+                const Vec3f wi = random.Direction();
+                sum +=
+                    double(bsdf.Evaluate(wo, wi, LobeSet::All).f.x() * std::abs(wi.dot(normal))) *
+                    4 * kPi / kCount;
+            }
+            EXPECT_NEAR(sum, SheenAlbedo(std::abs(wo.dot(normal)), 0.25f), 0.05)
+                << tilt << " " << angle;
+        }
+}
+
 TEST(ThinSpecular, DividesLightByFresnel) {
     const Bsdf bsdf = MakeBsdf(
         {ThinSpecular{Rgb(0.04f, 0.04f, 0.04f), 1, Rgb(1, 1, 1), InterfaceAbove{0.04f, 1}, 0}});

@@ -82,6 +82,24 @@ TEST(MetallicRoughness, ScattersToTheOtherSide) {
     EXPECT_FLOAT_EQ(LobeAt<LambertianTransmission>(bsdf, 1).t.r, 0.25f);  // white by default
 }
 
+// A white base reflects and transmits what the interface above leaves: in all, all light.
+TEST(MetallicRoughness, TransmitsWhatTheInterfaceLeaves) {
+    for (const float roughness : {0.f, 0.5f, 1.f})
+        for (const double angle : {0., 60., 80., 88.}) {
+            SceneWith b({{"metallicfactor", 0},
+                         {"roughnessfactor", roughness},
+                         {"diffusetransmissionfactor", 1}});
+            const MaterialTable table = b.Make();
+            SurfaceInteraction hit = MaterialScene::Hit(0);
+            hit.wo = FromAngles(angle);
+            const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+            ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 2);
+            const GgxAlbedo reflected = DirectionalAlbedo(hit.wo.z(), Sqr(roughness));
+            EXPECT_NEAR(LobeAt<LambertianTransmission>(bsdf, 1).t.r + reflected(0.04f, 1), 1, 1e-3)
+                << roughness << " " << angle;
+        }
+}
+
 TEST(MetallicRoughness, TakesItsInterfaceFromTheIndex) {
     const Bsdf bsdf = SceneWith({{"metallicfactor", 0}, {"ior", 2}}).MakeBsdf(0);
     EXPECT_NEAR(LobeAt<LayeredReflection>(bsdf, 0).f0.r, 1 / 9., 1e-6);
