@@ -42,6 +42,9 @@ void AddSphere(const tinygltf::Light& source, const Rgb& intensity, double radiu
     sphere.name = "sphere";
     sphere.loc = loc;
     sphere.worldFromObject = light.worldFromLight;
+    // Mirrored about the light's axis it is the same, and pbrt's spheres shine inwards if mirrored.
+    if (sphere.worldFromObject.topLeftCorner<3, 3>().determinant() < 0)
+        sphere.worldFromObject.col(0) *= -1;
     sphere.label = light.label;
     sphere.material = int(description->materials.size());
     ParameterWriter(&sphere.parameters, loc).Float("radius", radius);

@@ -103,6 +103,22 @@ TEST(GltfLights, AreSpheresThatShineAsSpots) {
 }
 
 // They shine along the -z axis that a node's negative scale has turned, whatever its size.
+// A sphere under a mirroring transform shines inwards; their axis is that of the node.
+TEST(GltfLights, AreSpheresThatShineOutwardsInMirroredNodes) {
+    for (const json& scale : {json{-1, 1, 1}, json{1, 1, -1}, json{-2, -2, -2}}) {
+        GltfFile file;
+        file.root["extensions"] = {{"KHR_lights_punctual",
+                                    {{"lights",
+                                      {{{"type", "spot"},
+                                        {"spot", json::object()},
+                                        {"extras", {{"lull", {{"radius", 0.5}}}}}}}}}}};
+        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"scale", scale}});
+        const Mat4d m = kFolder.Parse(file).shapes.at(0).worldFromObject;
+        EXPECT_NEAR((m.topLeftCorner<3, 3>().determinant()), 1, 1e-12) << scale;
+        EXPECT_EQ(m(2, 2), scale[2] < 0 ? -1 : 1) << scale;
+    }
+}
+
 TEST(GltfLights, AreMirroredWithTheirNodes) {
     const auto axisOf = [](const std::vector<double>& scale) {
         GltfFile file;

@@ -278,8 +278,8 @@ Shape MakePatches(const ShapeReader& in) {
 template <auto Make>
 Shape MakeSolid(const ShapeReader& in) {
     const ShapeEntity& entity = in.entity;
-    if (entity.areaLight && Mirrors(entity.worldFromObject) &&
-        !entity.areaLight->parameters.GetBool("twosided", false))
+    if (entity.areaLight && entity.areaLight->name == "diffuse" &&
+        Mirrors(entity.worldFromObject) && !entity.areaLight->parameters.GetBool("twosided", false))
         in.warnings.Add(entity.loc,
                         "a mirrored sphere, disk or cylinder is seen to shine to one side, and "
                         "lights the other, as in pbrt-v3; use a mesh, or no mirroring transform",
