@@ -63,6 +63,15 @@ def without(*names):
         bpy.data.objects.remove(the(name))
 
 
+def set_apart(scene, o, name):
+    """Moves an object to a new collection. Returns the collection's settings in the first view layer."""
+    made = bpy.data.collections.new(name)
+    scene.collection.children.link(made)
+    made.objects.link(o)
+    scene.collection.objects.unlink(o)
+    return scene.view_layers[0].layer_collection.children[name]
+
+
 def cube(made, size=1.0, at=(0, 0, 0.5), **more):
     bpy.ops.mesh.primitive_cube_add(size=size, location=at, **more)
     return dress(made)

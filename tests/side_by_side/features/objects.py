@@ -3,7 +3,7 @@ import os
 
 import bpy
 
-from cases import ball, case, cube, dressed, folder, node, principled, surface, textured, the, wall, without
+from cases import ball, case, cube, dressed, folder, node, principled, set_apart, surface, textured, the, wall, without
 from scenes import dress, lamp, matte
 
 
@@ -37,11 +37,7 @@ def catcher(scene):
 
 @case("collection: indirect only")
 def indirect_only(scene):
-    made = bpy.data.collections.new("indirect")
-    scene.collection.children.link(made)
-    made.objects.link(the("ball"))
-    scene.collection.objects.unlink(the("ball"))
-    scene.view_layers[0].layer_collection.children["indirect"].indirect_only = True
+    set_apart(scene, the("ball"), "indirect").indirect_only = True
 
 
 @case("background set, and a grease pencil")

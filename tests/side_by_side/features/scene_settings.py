@@ -4,7 +4,8 @@ import os
 import bpy
 import numpy as np
 
-from cases import case, checks, cover, cube, dressed, folder, image, node, principled, surface, textured, the, wall, without
+from cases import (
+    case, checks, cover, cube, dressed, folder, image, node, principled, set_apart, surface, textured, the, wall, without)
 from camera import border, keyed, orthographic, shift
 from lamps import noded, only
 from mixed_surfaces import link
@@ -112,12 +113,8 @@ def looks(scene):
 
 @case("two view layers, one with an excluded collection")
 def layers(scene):
-    made = bpy.data.collections.new("out")
-    scene.collection.children.link(made)
-    made.objects.link(the("ball"))
-    scene.collection.objects.unlink(the("ball"))
     scene.view_layers.new("other")
-    scene.view_layers[0].layer_collection.children["out"].exclude = True
+    set_apart(scene, the("ball"), "out").exclude = True
 
 
 @case("world: mirror ball, through hue and strength")
@@ -278,13 +275,9 @@ def bump_by_displacement(scene):
 
 @case("objects and collections that are hidden in the viewport alone")
 def hidden_in_viewport(scene):
-    made = bpy.data.collections.new("hidden")
-    scene.collection.children.link(made)
     for x, o in (-1.5, cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.8)), (1.5, cube(matte("two", (0.1, 0.1, 0.6, 1)), 0.8)):
         o.location.x = x
-    made.objects.link(o)
-    scene.collection.objects.unlink(o)
-    scene.view_layers[0].layer_collection.children["hidden"].hide_viewport = True
+    set_apart(scene, o, "hidden").hide_viewport = True
     scene.objects[-2].hide_set(True)
     the("ball").hide_viewport = True
     key = the("key")
