@@ -23,8 +23,8 @@ inline std::optional<double> InRange(double x, double least, double most) {
     return std::clamp(x, least, most);
 }
 
-// Returns a field of view in degrees, of which 180, which no plane shows, becomes as much as one
-// does; nothing for what is not from above 0 to 180.
+// Returns a field of view in degrees, in (0, 180]; for 180, which needs an infinite image plane,
+// 179.94. Nothing for all other numbers.
 inline std::optional<double> FieldOfView(double degrees) {
     constexpr double kWidest = 179.94;
     const auto inRange = InRange(degrees, 0, 180);

@@ -63,7 +63,7 @@ std::vector<uint8_t> ReadColors(std::vector<char> bytes, int width, int height) 
     return colors;
 }
 
-// What the header of a Radiance picture says that OpenImageIO leaves out, or mistakes.
+// Fields of a Radiance picture's header that OpenImageIO ignores or misreads.
 struct RadianceHeader {
     float scale[3] = {1, 1, 1};  // of the colours, which have been exposed and corrected
     // Rows of the file are columns; its rows come from the bottom or the right, its columns too.
@@ -183,7 +183,7 @@ class OpenImageIoFile final : public lull::ImageFile {
             radiance = RadianceHeader(header());
             if (radiance.turns) std::swap(shape.width, shape.height);
         }
-        if (format == "tiff" && spec.nchannels == 1) {
+        if (format == "tiff" && spec.nchannels == 1 && shape.type == TexelType::Byte) {
             const std::vector<char> whole = contents();
             if (LacksBitsPerSample({whole.data(), whole.size()}))
                 throw std::runtime_error(

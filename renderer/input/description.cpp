@@ -33,36 +33,9 @@ const Parameter* Search(const std::vector<Parameter>& parameters, ParameterType 
     return nullptr;
 }
 
-const char* NameOf(ParameterType type) {
-    switch (type) {
-        case ParameterType::Integer:
-            return "integer";
-        case ParameterType::Float:
-            return "float";
-        case ParameterType::Bool:
-            return "bool";
-        case ParameterType::String:
-            return "string";
-        case ParameterType::Texture:
-            return "texture";
-        case ParameterType::Point2:
-            return "point2";
-        case ParameterType::Vector2:
-            return "vector2";
-        case ParameterType::Point3:
-            return "point";
-        case ParameterType::Vector3:
-            return "vector";
-        case ParameterType::Normal:
-            return "normal";
-        default:
-            return "rgb";
-    }
-}
-
 std::string TypesOf(const Parameter& parameter) {
     if (parameter.lookedUp || !parameter.wanted) return "";
-    return std::string("; it is given as \"") + NameOf(parameter.type) + "\" and has to be \"" +
+    return "; it is given as \"" + NameOf(parameter.type) + "\" and has to be \"" +
            NameOf(*parameter.wanted) + "\"";
 }
 

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/base/enum_names.h"
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
 
@@ -34,6 +35,17 @@ enum class ParameterType {
     Normal,
     Spectrum,
     Texture
+};
+// As in scenes; spectra have more kinds.
+template <>
+struct EnumNames<ParameterType> {
+    static constexpr std::pair<ParameterType, const char*> all[] = {
+        {ParameterType::Integer, "integer"}, {ParameterType::Float, "float"},
+        {ParameterType::Bool, "bool"},       {ParameterType::String, "string"},
+        {ParameterType::Point2, "point2"},   {ParameterType::Vector2, "vector2"},
+        {ParameterType::Point3, "point"},    {ParameterType::Vector3, "vector"},
+        {ParameterType::Normal, "normal"},   {ParameterType::Spectrum, "rgb"},
+        {ParameterType::Texture, "texture"}};
 };
 
 // One "type name" [values]. Points, vectors, normals and spectra lie flat in a vector of
@@ -72,8 +84,8 @@ class Parameters {
     // Returns the texture that a "texture" parameter names, null where there is no such parameter.
     const TextureRef* GetTexture(const std::string& name) const;
 
-    // Returns "; it is given as a TYPE, not a TYPE" of a parameter that was looked up by that name
-    // as another type alone; else "".
+    // Returns "; it is given as "TYPE" and has to be "TYPE"" for a parameter of that name that was
+    // looked up as another type only; else "".
     std::string Mistyped(const std::string& name) const;
 
     // Warns of every parameter that nothing has looked up; `owner` names whose it is.

@@ -5,7 +5,7 @@
 
 namespace lull {
 
-// Chromaticities x and y (CIE 1931) of linear R, G, B, and of what equal parts of them are.
+// Chromaticities x and y (CIE 1931) of linear R, G, B and of white, their sum.
 struct Primaries {
     Vec2f red, green, blue, white;
 };
