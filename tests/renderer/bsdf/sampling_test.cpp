@@ -44,7 +44,7 @@ double PValue(const Bsdf& bsdf, const Vec3f& wo, const SphereGrid& grid, uint64_
     *total = 0;
     for (double e : expected) *total += e;
 
-    constexpr int kSamples = 100'000;
+    constexpr int kSamples = 50'000;
     Random random(seed);
     std::vector<int64_t> observed(expected.size());
     for (int i = 0; i < kSamples; ++i)

@@ -60,7 +60,7 @@ TEST(RunDenoiser, TellsTheShareThatIsDone) {
     };
     for (const std::vector<double>& shares :
          {sharesOf(NoisyExample()),
-          sharesOf(AddNoise(Planes(30, 600, 3, 0.5f), FlatFeatures(30, 600), 0.1, 1)),
+          sharesOf(AddNoise(Planes(30, 300, 3, 0.5f), FlatFeatures(30, 300), 0.1, 1)),
           sharesOf(OppositeLamps(FlatFeatures(40, 30)))}) {
         ASSERT_FALSE(shares.empty());
         EXPECT_GT(shares.front(), 0);

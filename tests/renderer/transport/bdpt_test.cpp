@@ -27,7 +27,7 @@ class BdptLights : public testing::TestWithParam<Lit> {};
 // Every kind of light gives the same mean by paths and by all strategies.
 TEST_P(BdptLights, HaveTheMeanOfPaths) {
     for (const int depth : {1, 4})
-        Compare(BothOf(std::string(GetParam().lights) + kBox, 32, depth), 8, 32,
+        Compare(BothOf(std::string(GetParam().lights) + kBox, 32, depth), 4, 32,
                 fmt::format("{} to {} bounces", GetParam().name, depth), kWays);
 }
 
@@ -191,13 +191,13 @@ TEST_P(BdptScenes, HaveTheMeanOfPaths) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, BdptScenes,
-    testing::Values(Room{"Glossy", LULL_SCENES_DIR "/glossy/scene.pbrt", 4, 16},
-                    Room{"ManyLights", LULL_SCENES_DIR "/many-lights/scene.pbrt", 3, 8},
-                    Room{"CornellBox", "pbrt-scenes/cornell-box/scene.pbrt", 5, 16},
-                    Room{"VeachMis", "pbrt-scenes/veach-mis/scene.pbrt", 4, 16},
-                    Room{"Staircase2", "pbrt-scenes/staircase2/scene.pbrt", 4, 16},
-                    Room{"Matpreview", "pbrt-scenes/matpreview/scene.pbrt", 4, 16},
-                    Room{"Killeroo", "pbrt-scenes/killeroo-simple/scene.pbrt", 4, 16}),
+    testing::Values(Room{"Glossy", LULL_SCENES_DIR "/glossy/scene.pbrt", 4, 8},
+                    Room{"ManyLights", LULL_SCENES_DIR "/many-lights/scene.pbrt", 3, 4},
+                    Room{"CornellBox", "pbrt-scenes/cornell-box/scene.pbrt", 5, 8},
+                    Room{"VeachMis", "pbrt-scenes/veach-mis/scene.pbrt", 4, 8},
+                    Room{"Staircase2", "pbrt-scenes/staircase2/scene.pbrt", 4, 8},
+                    Room{"Matpreview", "pbrt-scenes/matpreview/scene.pbrt", 4, 8},
+                    Room{"Killeroo", "pbrt-scenes/killeroo-simple/scene.pbrt", 4, 8}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

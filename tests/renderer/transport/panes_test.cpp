@@ -140,7 +140,7 @@ TEST_P(Panes, HaveTheMeanOfBidirectionalPaths) {
     if (std::string(GetParam().name) == "Hidden") GTEST_SKIP();
     for (const int depth : {1, 5})
         for (const std::string& roof : {Roof(glass) + Roof(coated, 1.1), Roof(half)})
-            Compare(BothOf(GetParam().lights + kBox + roof, 16, depth, kCamera), 16, 16,
+            Compare(BothOf(GetParam().lights + kBox + roof, 16, depth, kCamera), 8, 16,
                     fmt::format("{}, {} bounces, {}", GetParam().name, depth, roof), kWays);
 }
 
