@@ -1,0 +1,152 @@
+#include "renderer/commands/prepared_render.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <numeric>
+
+#include "renderer/commands/denoising.h"
+#include "renderer/commands/guide_options.h"
+#include "renderer/commands/input_files.h"
+#include "renderer/commands/layer_options.h"
+#include "renderer/mpi/job.h"
+#include "renderer/render/film_picture.h"
+#include "renderer/results/denoiser_channels.h"
+
+namespace lull::render {
+
+namespace {
+
+// Returns the length of passes: shorter where the rule counts samples and stops blocks within the
+// first, as one that repeats a render that was short of time.
+int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule) {
+    int length = schedule.passLength;
+    if (!rule.stopAt) return length;
+    for (int i = 0; i < blocks; ++i)
+        if (const int stop = rule.stopAt({.index = i}); stop < std::min(length, schedule.cap))
+            length = std::gcd(length, stop);
+    return std::max(1, length);
+}
+
+// Reads the rule, lets the schedule suit it, and cuts the blocks.
+void PrepareRule(PreparedRender* p) {
+    RenderSettings& settings = p->render.settings;
+    ScheduleOptions& schedule = settings.schedule;
+    const std::string rule = p->request.Rule();
+    // A fixed number of samples is its own cap; with --cap the smaller of both holds.
+    if (settings.cap) schedule.cap = *settings.cap;
+    if (const int spp = FixedSpp(rule))
+        schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;
+    if (p->request.denoise) {
+        p->render.DenoiseBlocks();
+        p->render.denoiser->Grade(GradingsOf(p->grades));
+    }
+    p->rule = p->render.ReadRule("--stop", rule);
+    if (p->request.gradedBy != 0 && p->rule.stopAt && !p->request.denoise)
+        throw UsageError(fmt::format(
+            "--graded-by: {} does not judge the image; choose a rule that does", p->rule.text));
+    schedule.smallestSide = p->rule.smallestSide;
+    p->blocks = MakeBlocks(p->render.input.region, schedule);
+    schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
+}
+
+// Warns of blocks that no criterion will ever stop.
+void CheckBlocks(std::span<const Block> blocks, int smallestSide, Warnings& warnings) {
+    for (const Block& block : blocks)
+        if (!block.votes && block.leader < 0)
+            warnings.Add({},
+                         fmt::format("block of less than {} pixels a side continues to the cap, "
+                                     "as it is too small to be judged",
+                                     smallestSide));
+}
+
+// Returns whether a rule looks at the half after any of the passes of a block.
+bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
+    const std::unique_ptr<Criterion> criterion = MakeCriterion(rule);
+    for (int spp = 0; spp < schedule.cap;) {
+        spp = int(std::min<int64_t>(int64_t(spp) + schedule.passLength, schedule.cap));
+        if (criterion->Need(spp) >= ViewNeed::MeanAndHalf) return true;
+    }
+    return false;
+}
+
+// Returns how the film is kept, with no light groups yet: whoever goes on from a checkpoint may
+// look at the half.
+FilmOptions FilmOf(const PreparedRender& p) {
+    const RenderSettings& settings = p.render.settings;
+    const LayerOptions layers = p.request.WantedLayers();
+    return {.grid = GridOf(settings.schedule),
+            .withHalf = p.clock || p.request.HasPage() || layers.features ||
+                        !settings.checkpoint.file.empty() || LooksAtHalf(p.rule, settings.schedule),
+            .layers = layers};
+}
+
+void SetProvenance(const PreparedRender& p, Provenance* provenance) {
+    provenance->sampler = ChooseSampler(p.request.render, *p.render.scene);
+    if (provenance->sampler != p.render.scene->sampler &&
+        p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
+        !p.request.render.quiet && p.render.Leads())
+        TalkOf(p.request.render)
+            .Note(
+                "the samples are those of \"sobol-halves\", which has less noise than the scene's "
+                "Sampler \"random\"; --sampler random keeps that");
+    p.render.CheckSampler(provenance->sampler);
+    provenance->criterion = p.rule.text;
+    provenance->checksum = p.rule.checksum;
+    provenance->clock = p.request.clock.Text();
+    provenance->grades = NamesOf(p.grades);
+    provenance->logRatios = p.rule.logRatios;
+    provenance->trend = p.rule.trend;
+    provenance->guide = p.request.guide.mode;
+    provenance->guideMegabytes = p.request.guide.megabytes;
+}
+
+RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) {
+    const std::string output = request.output.empty()
+                                   ? DefaultOutput(film.filename, request.render.scene.file)
+                                   : request.output;
+    if (const int frame = request.frameNumber; frame > 0)
+        return NameFiles(NumberedFile(output, frame), NumberedFile(request.report, frame));
+    return NameFiles(output, request.report);
+}
+
+// Returns the bytes a pixel of what is made beside the film and its layers: of previews, which
+// leave them as they are, and of the denoiser's inputs as they are written.
+int64_t BytesBeside(const RenderRequest& request) {
+    const bool hasPreviews = request.denoise && request.pictures.preview > 0;
+    return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);
+}
+
+}  // namespace
+
+SamplerKind ChooseSampler(const RenderSettings& settings, const Scene& scene) {
+    if (settings.sampler) return *settings.sampler;
+    return settings.estimator == Estimator::Combined ? SamplerKind::SobolHalves : scene.sampler;
+}
+
+std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
+    auto p = std::make_unique<PreparedRender>(request, ranks);
+    RenderJob& render = p->render;
+    const PixelRect& region = render.input.region;
+    PrepareRule(p.get());
+    CheckBlocks(p->blocks, render.settings.schedule.smallestSide, render.input.warnings);
+    p->film = FilmOf(*p);
+    CheckFilmFits(region, p->film, BytesBeside(request));
+    p->files = NameFilesOf(request, render.input.film);
+    std::vector<NamedFile> inputs;
+    AddFileOfRule(p->rule.text, &inputs);
+    render.CheckFiles(OutputsOf(p->files), std::move(inputs));
+    render.LockResults(p->files.exr);
+    p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
+                             region, ranks->Count(), TalkOf(render.settings));
+    render.Compile();
+    p->film.layers.groups =
+        ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);
+    CheckFilmFits(region, FilmFor(*render.scene, p->film), BytesBeside(request));
+    CheckGuide(request.guide, *render.scene, render.settings.estimator);
+    SetProvenance(*p, &render.provenance);
+    p->histories.resize(p->blocks.size());
+    return p;
+}
+
+}  // namespace lull::render

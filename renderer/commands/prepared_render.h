@@ -1,0 +1,38 @@
+// A render of `lull render` that is ready to begin.
+#pragma once
+
+#include "renderer/commands/grading.h"
+#include "renderer/commands/render_files.h"
+#include "renderer/commands/render_job.h"
+#include "renderer/commands/render_options.h"
+
+namespace lull::render {
+
+struct PreparedRender {
+    PreparedRender(const RenderRequest& request, MpiJob* ranks)
+        : request(request),
+          clock(StartClock(request.clock)),
+          grades(request.Grades()),
+          render(request.render, ranks, false) {}
+
+    const RenderRequest request;
+    const std::function<double()> clock;
+    const std::vector<Grade> grades;
+    RenderJob render;
+    Rule rule;
+    std::vector<Block> blocks;  // without samples
+    FilmOptions film;
+    RenderFiles files;
+    std::unique_ptr<Display> display;  // null: none
+    std::vector<BlockHistory> histories;
+};
+
+// Reads the scene and the rule, and names the files. Throws Error, or UsageError, for all that can
+// be wrong before the work begins.
+std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks);
+
+// Returns the sampler of an image, unless the user has chosen one: that of least noise with
+// independent halves, from which noise is estimated. pbrt-v3's noise needs the scene's.
+SamplerKind ChooseSampler(const RenderSettings& settings, const Scene& scene);
+
+}  // namespace lull::render
