@@ -28,6 +28,9 @@ class ImageFile {
     // Reads all texels once: rows from the top, channels side by side, alpha unassociated. Throws
     // std::runtime_error with the reason, without the path.
     virtual void Read(void* texels) = 0;
+    // Returns x and y of the chromaticities of red, green, blue and white of what Read() reads;
+    // null where they are those of Rec. 709.
+    virtual const float* Chromaticities() const { return nullptr; }
 };
 
 // Returns how many channels of a file are read: of 4 or more the first 4 if the last of these is

@@ -5,6 +5,8 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -21,6 +23,12 @@
 namespace {
 
 using lull::ImageShape, lull::TexelType;
+
+// Of some formats the library fails without a word.
+std::runtime_error FailureOf(const OIIO::ImageInput& input) {
+    const std::string reason = input.geterror();
+    return std::runtime_error(reason.empty() ? "it is cut short or damaged" : reason);
+}
 
 std::vector<char> ReadBytes(const char* path, size_t most) {
     std::ifstream in(path, std::ios::binary | std::ios::ate);
@@ -59,7 +67,7 @@ std::vector<uint8_t> ReadColors(std::vector<char> bytes, int width, int height) 
     std::vector<uint8_t> colors(size_t(width) * size_t(height) * 3);
     if (input->spec().width != width || input->spec().height != height ||
         !input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, colors.data()))
-        throw std::runtime_error(input->geterror());
+        throw FailureOf(*input);
     return colors;
 }
 
@@ -68,6 +76,8 @@ struct RadianceHeader {
     float scale[3] = {1, 1, 1};  // of the colours, which have been exposed and corrected
     // Rows of the file are columns; its rows come from the bottom or the right, its columns too.
     bool turns = false, flipsRows = false, flipsColumns = false;
+    std::array<float, 8> chromaticities{};
+    bool isRec709 = true;  // else the chromaticities are given
 
     explicit RadianceHeader(std::string_view text) {
         for (size_t end; (end = text.find('\n')) != text.npos; text.remove_prefix(end + 1)) {
@@ -92,6 +102,19 @@ struct RadianceHeader {
             Divide(by[0], by[0], by[0]);
         else if (std::sscanf(line.c_str(), "COLORCORR=%f %f %f", by, by + 1, by + 2) == 3)
             Divide(by[0], by[1], by[2]);
+        else
+            ReadChromaticities(line);
+    }
+    void ReadChromaticities(const std::string& line) {
+        // Radiance's own differ by less from those that its pictures are shown with anywhere.
+        constexpr float kSlack = 0.025f;
+        constexpr float kRec709[] = {.64f, .33f, .3f, .6f, .15f, .06f, .3127f, .329f};
+        auto& c = chromaticities;
+        if (std::sscanf(line.c_str(), "PRIMARIES=%f %f %f %f %f %f %f %f", &c[0], &c[1], &c[2],
+                        &c[3], &c[4], &c[5], &c[6], &c[7]) != 8)
+            return;
+        isRec709 = true;
+        for (size_t i = 0; i < 8; ++i) isRec709 &= std::abs(c[i] - kRec709[i]) <= kSlack;
     }
     void Divide(float r, float g, float b) {
         if (!(r > 0 && g > 0 && b > 0)) return;
@@ -195,13 +218,15 @@ class OpenImageIoFile final : public lull::ImageFile {
     }
 
     ImageShape Shape() const override { return shape; }
+    const float* Chromaticities() const override {
+        return radiance.isRec709 ? nullptr : radiance.chromaticities.data();
+    }
 
     void Read(void* texels) override {
         const OIIO::TypeDesc type = shape.type == TexelType::Byte   ? OIIO::TypeDesc::UINT8
                                     : shape.type == TexelType::Half ? OIIO::TypeDesc::HALF
                                                                     : OIIO::TypeDesc::FLOAT;
-        if (!input->read_image(0, 0, 0, shape.channels, type, texels))
-            throw std::runtime_error(input->geterror());
+        if (!input->read_image(0, 0, 0, shape.channels, type, texels)) throw FailureOf(*input);
         if (!radiance.IsPlain()) FinishRadiance(static_cast<float*>(texels));
         if (webp.empty()) return;
         const std::vector<uint8_t> colors = ReadColors(std::move(webp), shape.width, shape.height);

@@ -13,6 +13,7 @@
 #include "renderer/image/files/exr_file.h"
 #include "renderer/image/files/other_formats.h"
 #include "renderer/image/files/png_file.h"
+#include "renderer/image/files/primaries.h"
 
 namespace lull {
 
@@ -80,6 +81,18 @@ std::unique_ptr<ImageFile> Open(const std::string& type, std::span<const std::by
     return OpenOtherFormat("memory." + type, bytes);
 }
 
+// Converts the float texels of a file of other primaries.
+void ToRec709(const ImageFile& file, Image* image) {
+    const float* const xy = file.Chromaticities();
+    auto* const texels = std::get_if<std::vector<float>>(&image->texels);
+    if (!xy || !texels || image->channels < 3) return;
+    const Eigen::Matrix3f matrix =
+        Rec709From({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}});
+    if (!matrix.allFinite()) throw std::runtime_error("its chromaticities are no primaries");
+    Convert(matrix, size_t(image->channels), size_t(image->width) * size_t(image->height),
+            texels->data());
+}
+
 // Reads an image by `open`. Errors get the name here, which readers do not know.
 template <typename Open>
 Image Read(const std::string& name, size_t fileSize, const Open& open) try {
@@ -95,6 +108,7 @@ Image Read(const std::string& name, size_t fileSize, const Open& open) try {
             file->Read(texels.data());
         },
         image.texels);
+    ToRec709(*file, &image);
     return image;
 } catch (const Error&) {
     throw;

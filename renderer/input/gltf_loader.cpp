@@ -15,6 +15,7 @@
 #include "renderer/input/gltf/parameters.h"
 #include "renderer/input/gltf/primitives.h"
 #include "renderer/input/gltf/skins.h"
+#include "renderer/input/gltf/uri.h"
 #include "renderer/input/gltf/variants.h"
 
 namespace lull {
@@ -210,7 +211,7 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
     description.sources = {file};
     for (const tinygltf::Buffer& buffer : document.model.buffers)
         if (!buffer.uri.empty() && !buffer.uri.starts_with("data:"))
-            description.sources.push_back(ResolvePath(description, buffer.uri));
+            description.sources.push_back(ResolvePath(description, DecodeUri(buffer.uri)));
     for (const GltfNode& node : nodes) AddLight(document, node, &description, warnings);
     SetView(document, nodes, framing, options, &description);
 

@@ -1,6 +1,7 @@
 #include "renderer/input/pbrt_parser.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <utility>
@@ -84,9 +85,11 @@ const Directive& DirectiveAt(const Token& token, PbrtBuilder::Stage stage) {
 }
 
 // Returns whether the directives after one that failed can still be judged: not after one that
-// opens or closes a scope.
+// opens or closes a scope, misspelled ones included.
 bool CanContinueAfter(const Token& token) {
-    return !token.text.ends_with("Begin") && !token.text.ends_with("End");
+    std::string text = token.text;
+    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return text.find("begin") == text.npos && text.find("end") == text.npos;
 }
 
 // Returns false where the rest cannot be cut into tokens.

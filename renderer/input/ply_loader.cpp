@@ -29,6 +29,16 @@ enum Slot { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
 // Maps each slot to the property that fills it, -1 for none.
 using SlotMap = std::array<int, kSlots>;
 
+// Names of texture coordinates of vertices; pbrt-v3 reads the first four pairs.
+constexpr std::pair<const char*, const char*> kUvs[] = {{"u", "v"},
+                                                        {"s", "t"},
+                                                        {"texture_u", "texture_v"},
+                                                        {"texture_s", "texture_t"},
+                                                        {"texcoord_u", "texcoord_v"},
+                                                        {"tex_u", "tex_v"},
+                                                        {"u0", "v0"},
+                                                        {"s0", "t0"}};
+
 SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
     SlotMap slots;
     slots.fill(-1);
@@ -48,8 +58,8 @@ SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
     if (!assign(kX, {"x", "y", "z"}))
         throw Error(loc, "the vertices of the PLY file have no x, y and z");
     assign(kNx, {"nx", "ny", "nz"});
-    assign(kU, {"u", "v"}) || assign(kU, {"s", "t"}) || assign(kU, {"texture_u", "texture_v"}) ||
-        assign(kU, {"texture_s", "texture_t"});
+    for (const auto& [u, v] : kUvs)
+        if (assign(kU, {u, v})) break;
     return slots;
 }
 
@@ -311,8 +321,16 @@ void WarnOfOmissions(const PlyElement& element, const FileLoc& loc, Warnings& wa
     if (element.count == 0) return;
     if (element.name == "tristrips")
         warnings.Add(loc, "triangle strips of a PLY file are left out; save them as faces");
-    if ((element.name == "vertex" || element.name == "face") && (has("red") || has("diffuse_red")))
+    const bool isVertex = element.name == "vertex";
+    if ((isVertex || element.name == "face") && (has("red") || has("diffuse_red") || has("r")))
         warnings.Add(loc, "colours of a PLY file are left out; glTF files can have them");
+    const bool hasUvs = std::ranges::any_of(kUvs, [&](const auto& uv) { return has(uv.first); });
+    for (const PlyProperty& property : element.properties)
+        if (isVertex && !hasUvs && (IsWedgeUvs(property) || property.name.starts_with("tex")))
+            warnings.Add(loc,
+                         "texture coordinates of a PLY file are left out; call them u and v, one "
+                         "property each",
+                         Printable(property.name));
 }
 
 template <typename T>

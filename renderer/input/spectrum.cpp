@@ -1,5 +1,7 @@
 #include "renderer/input/spectrum.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -43,7 +45,7 @@ Rgb RgbFromXyz(double x, double y, double z) {
                float(0.055648 * x - 0.204043 * y + 1.057311 * z));
 }
 
-Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc) {
+Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc, Warnings* warnings) {
     if (pairs.empty() || pairs.size() % 2 != 0)
         throw Error(loc, "a spectrum needs pairs of wavelength and value, but there are " +
                              std::to_string(pairs.size()) + " numbers");
@@ -56,6 +58,12 @@ Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc) {
         return a.wavelength < b.wavelength;
     };
     std::stable_sort(samples.begin(), samples.end(), before);
+
+    const double first = samples.front().wavelength, last = samples.back().wavelength;
+    if (warnings && first < last && (last < kCieFirst || first > kCieLast))
+        warnings->Add(loc,
+                      "a spectrum has no wavelength from 360 to 830 nm; its end counts for all",
+                      fmt::format("it has {:g} to {:g}", first, last));
 
     // Wavelengths are asked for in rising order, so one pass over the samples serves them all.
     // Where two were rounded to the same one, values jump.
@@ -84,9 +92,9 @@ Rgb RgbFromBlackbody(double kelvin, const FileLoc& loc) {
     return rgb;
 }
 
-Rgb LoadSpectrum(const std::string& path, const FileLoc& loc) {
+Rgb LoadSpectrum(const std::string& path, const FileLoc& loc, Warnings* warnings) {
     return RgbFromSamples(ReadNumberFile(path, "spectrum", loc),
-                          {std::make_shared<const std::string>(path), 0});
+                          {std::make_shared<const std::string>(path), 0}, warnings);
 }
 
 // Both follow from the tabulated optical constants of copper (56 wavelengths from 299 to 886 nm)

@@ -14,9 +14,11 @@ Rgb RgbFromXyz(double x, double y, double z);
 
 // Returns the RGB of a spectrum given as pairs (wavelength in nm, value), in any order, linear
 // between them and constant beyond: the integrals with the colour matching functions, scaled so
-// that a constant 1 has Y near 1. Throws Error at `loc` for no pairs, half a pair, a wavelength
-// that appears twice, and a result beyond float's range.
-Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc = {});
+// that a constant 1 has Y near 1. `warnings` receives one of spectra that no visible wavelength
+// has, such as those in micrometres. Throws Error at `loc` for no pairs, half a pair, and a result
+// beyond float's range.
+Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc = {},
+                   Warnings* warnings = nullptr);
 
 // Returns the RGB of a black body at `kelvin` > 0 whose spectrum is scaled to a maximum of 1.
 // Throws Error at `loc` for other temperatures.
@@ -25,7 +27,7 @@ Rgb RgbFromBlackbody(double kelvin, const FileLoc& loc = {});
 // Reads a file of wavelengths (nm) and values, separated by white space or commas, with comments
 // from '#' to the end of the line. `loc` is the place that names the file. Throws Error if it
 // cannot be read.
-Rgb LoadSpectrum(const std::string& path, const FileLoc& loc = {});
+Rgb LoadSpectrum(const std::string& path, const FileLoc& loc = {}, Warnings* warnings = nullptr);
 
 // Return pbrt-v3's defaults for metals: copper's index of refraction and absorption as RGB.
 Rgb CopperEta();

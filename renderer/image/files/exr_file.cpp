@@ -255,15 +255,6 @@ void ExrFile::ReadDisplayed(TexelType type, size_t count, void* texels) try {
 
 namespace {
 
-template <typename T>
-void Convert(const Eigen::Matrix3f& matrix, size_t channels, size_t pixels, T* texels) {
-    for (size_t i = 0; i < pixels; ++i) {
-        T* const c = texels + i * channels;
-        const Vec3f color = matrix * Vec3f(float(c[0]), float(c[1]), float(c[2]));
-        for (int k = 0; k < 3; ++k) c[k] = T(color[k]);
-    }
-}
-
 class ExrPicture final : public ImageFile {
   public:
     explicit ExrPicture(std::span<const std::byte> bytes) : file(bytes) {

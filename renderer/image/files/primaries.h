@@ -14,4 +14,16 @@ struct Primaries {
 // Bradford's. Not finite where the primaries are none.
 Eigen::Matrix3f Rec709From(const Primaries& primaries);
 
+// Multiplies the colours of an image of three channels or more by such a matrix. Parts of them that
+// Rec. 709 lacks become 0: neither lights nor surfaces have negative ones.
+template <typename T>
+void Convert(const Eigen::Matrix3f& matrix, size_t channels, size_t pixels, T* texels) {
+    for (size_t i = 0; i < pixels; ++i) {
+        T* const c = texels + i * channels;
+        const Vec3f given{float(c[0]), float(c[1]), float(c[2])}, color = matrix * given;
+        const float least = given.minCoeff() >= 0 ? 0 : -kInfinity;
+        for (int k = 0; k < 3; ++k) c[k] = T(std::max(color[k], least));
+    }
+}
+
 }  // namespace lull

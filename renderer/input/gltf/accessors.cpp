@@ -79,7 +79,7 @@ size_t SizeOf(int type) { return size_t(tinygltf::GetComponentSizeInBytes(uint32
 
 // Puts the sparse values of an accessor into their places.
 void ReadSparse(const GltfDocument& document, const FileLoc& loc,
-                const tinygltf::Accessor& accessor, GltfArray* array) {
+                const tinygltf::Accessor& accessor, bool isNormalized, GltfArray* array) {
     const auto& sparse = accessor.sparse;
     const auto count = size_t(sparse.count);
     if (count > array->Count())
@@ -98,15 +98,15 @@ void ReadSparse(const GltfDocument& document, const FileLoc& loc,
             throw Error(loc, fmt::format("sparse index {} is out of range: there are {} elements",
                                          at, array->Count()));
         for (size_t c = 0; c < components; ++c)
-            array->values[at * components + c] =
-                Component(values.bytes + i * values.stride + c * size, accessor.componentType,
-                          accessor.normalized);
+            array->values[at * components + c] = Component(
+                values.bytes + i * values.stride + c * size, accessor.componentType, isNormalized);
     }
 }
 
 }  // namespace
 
-GltfArray ReadFloats(const GltfDocument& document, int index, int least, int most) {
+GltfArray ReadFloats(const GltfDocument& document, int index, int least, int most,
+                     bool normalizes) {
     const tinygltf::Accessor& accessor = document.model.accessors[size_t(index)];
     const FileLoc loc = document.At(fmt::format("/accessors/{}", index));
     GltfArray array;
@@ -117,6 +117,7 @@ GltfArray ReadFloats(const GltfDocument& document, int index, int least, int mos
                                                      least, most));
     const size_t size = SizeOf(accessor.componentType);
     const auto components = size_t(array.components);
+    const bool isNormalized = accessor.normalized || normalizes;
     Elements elements;
     if (accessor.bufferView >= 0)
         elements = Find(document, loc, accessor.bufferView, accessor.byteOffset, size * components,
@@ -129,8 +130,8 @@ GltfArray ReadFloats(const GltfDocument& document, int index, int least, int mos
         for (size_t c = 0; c < components; ++c)
             array.values[i * components + c] =
                 Component(elements.bytes + i * elements.stride + c * size, accessor.componentType,
-                          accessor.normalized);
-    if (accessor.sparse.isSparse) ReadSparse(document, loc, accessor, &array);
+                          isNormalized);
+    if (accessor.sparse.isSparse) ReadSparse(document, loc, accessor, isNormalized, &array);
     for (size_t i = 0; i < array.values.size(); ++i)
         if (!std::isfinite(array.values[i]))
             throw Error(loc, fmt::format("element {} is not finite", i / components));

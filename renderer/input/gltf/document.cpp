@@ -10,6 +10,7 @@
 #include "renderer/files/file_contents.h"
 #include "renderer/files/text_file.h"
 #include "renderer/input/gltf/decompression.h"
+#include "renderer/input/gltf/uri.h"
 #include "renderer/input/gltf/validation.h"
 
 namespace lull {
@@ -105,14 +106,15 @@ void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnin
     };
     for (size_t i = 0; i < used.size(); ++i)
         if (!IsModelled(used[i])) warnings.Add(place("extensionsUsed", i), kindOf(used[i]));
-    if (!root.contains("materials")) return;
     // Some exporters do not list all that they write.
-    const nlohmann::json& materials = root.at("materials");
-    for (size_t i = 0; i < materials.size(); ++i) {
-        if (!materials[i].contains("extensions")) continue;
-        for (const auto& [name, value] : materials[i].at("extensions").items())
-            if (!IsModelled(name) && std::find(used.begin(), used.end(), name) == used.end())
-                warnings.Add(place("materials", i), kindOf(name));
+    for (const auto& [list, objects] : root.items()) {
+        if (!objects.is_array()) continue;
+        for (size_t i = 0; i < objects.size(); ++i) {
+            if (!objects[i].is_object() || !objects[i].contains("extensions")) continue;
+            for (const auto& [name, value] : objects[i].at("extensions").items())
+                if (!IsModelled(name) && std::find(used.begin(), used.end(), name) == used.end())
+                    warnings.Add(place(list.c_str(), i), kindOf(name));
+        }
     }
 }
 
@@ -165,7 +167,7 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
         nlohmann::json root = ParseGltfJson(file, text);
         CheckGltfJson(file, root);
         CheckExtensions(file, root, warnings);
-        if (HideCompressed(&root))
+        if (const bool isUnified = UnifyDataUris(&root); HideCompressed(&root) || isUnified)
             rewritten = WithJson(bytes, root.dump());
         else if (text.size() != raw.size())
             rewritten = WithJson(bytes, std::string(text));

@@ -92,17 +92,19 @@ std::vector<Mat4d> ReadCopies(const GltfDocument& document, int index) {
     const tinygltf::Value& attributes = extension->second.Get("attributes");
     const FileLoc loc = document.At(PathOf(index) + "/extensions/EXT_mesh_gpu_instancing");
     size_t count = 0;
-    const auto read = [&](const char* name, int components) {
+    const auto read = [&](const std::string& name, int least, int most) {
         GltfArray array;
         if (!attributes.Has(name)) return array;
-        array = ReadFloats(document, attributes.Get(name).GetNumberAsInt(), components, components);
+        array = ReadFloats(document, attributes.Get(name).GetNumberAsInt(), least, most);
         if (count > 0 && array.Count() != count)
             throw Error(loc, "its attributes have different counts");
         count = array.Count();
         return array;
     };
-    const GltfArray translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
-                    scales = read("SCALE", 3);
+    // Those of other names count the copies as well.
+    for (const std::string& name : attributes.Keys()) read(name, 1, 16);
+    const GltfArray translations = read("TRANSLATION", 3, 3), rotations = read("ROTATION", 4, 4),
+                    scales = read("SCALE", 3, 3);
     std::vector<Mat4d> copies;
     for (size_t i = 0; i < count; ++i) {
         const auto three = [&](const GltfArray& a, double otherwise) -> Eigen::Vector3d {

@@ -11,6 +11,15 @@
 namespace lull {
 namespace {
 
+// Returns whether integers of an attribute are normalised whatever their accessors say, as others
+// are no valid ones (3.7.2.1): some exporters leave the property out.
+bool Normalizes(const GltfDocument& document, const std::string& attribute) {
+    if (attribute.starts_with("COLOR_")) return true;
+    const std::vector<std::string>& used = document.model.extensionsUsed;
+    return attribute.starts_with("TEXCOORD_") &&
+           std::find(used.begin(), used.end(), "KHR_mesh_quantization") == used.end();
+}
+
 // Adds the morph targets of an attribute, each by its weight (3.7.2.2). A tangent's sign, or an
 // alpha, that a target lacks stays.
 void AddTargets(const GltfDocument& document, const FileLoc& loc,
@@ -22,8 +31,8 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
     for (size_t i = 0; i < weights.size(); ++i) {
         const auto found = primitive.targets[i].find(name);
         if (weights[i] == 0 || found == primitive.targets[i].end()) continue;
-        const GltfArray target =
-            ReadFloats(document, found->second, std::min(array->components, 3), array->components);
+        const GltfArray target = ReadFloats(document, found->second, std::min(array->components, 3),
+                                            array->components, Normalizes(document, name));
         if (target.Count() != array->Count())
             throw Error(loc, fmt::format("has {} {} in morph target {} for {} vertices",
                                          target.Count(), name, i, array->Count()));
@@ -41,10 +50,17 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
 // is absent.
 GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
                         const tinygltf::Primitive& primitive, const std::string& name, int least,
-                        int most, const std::vector<double>& weights, size_t vertexCount) {
+                        int most, const std::vector<double>& weights, size_t vertexCount,
+                        Warnings& warnings) {
     const auto found = primitive.attributes.find(name);
     if (found == primitive.attributes.end()) return {};
-    GltfArray array = ReadFloats(document, found->second, least, most);
+    const bool normalizes = Normalizes(document, name);
+    GltfArray array = ReadFloats(document, found->second, least, most, normalizes);
+    const tinygltf::Accessor& accessor = document.model.accessors[size_t(found->second)];
+    if (normalizes && !accessor.normalized &&
+        accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+        warnings.Add(loc, "integers count as normalized, though their accessor does not say so",
+                     name);
     if (array.Count() != vertexCount)
         throw Error(loc,
                     fmt::format("has {} {} for {} vertices", array.Count(), name, vertexCount));
@@ -81,6 +97,15 @@ std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
     return triangles;
 }
 
+// Returns whether all tangents have a direction, and one that is not the normal's.
+bool AreTangential(const GltfTriangles& t) {
+    for (size_t i = 0; 4 * i < t.tangents.size(); ++i) {
+        const Eigen::Map<const Vec3f> tangent(&t.tangents[4 * i]), normal(&t.normals[3 * i]);
+        if (!(tangent.cross(normal).norm() > 1e-6f * tangent.norm() * normal.norm())) return false;
+    }
+    return true;
+}
+
 std::vector<uint32_t> IndicesOf(const GltfDocument& document, const tinygltf::Primitive& primitive,
                                 size_t vertexCount) {
     if (primitive.indices >= 0) return ReadIndices(document, primitive.indices, vertexCount);
@@ -110,11 +135,13 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
     GltfTriangles t;
     const auto count = size_t(document.model.accessors[size_t(positions->second)].count);
     const auto read = [&](const char* name, int least, int most) {
-        return ReadAttribute(document, loc, primitive, name, least, most, weights, count);
+        return ReadAttribute(document, loc, primitive, name, least, most, weights, count, warnings);
     };
     t.positions = read("POSITION", 3, 3).values;
     t.normals = read("NORMAL", 3, 3).values;
     if (!t.normals.empty()) t.tangents = read("TANGENT", 4, 4).values;
+    // Exporters write 0 where they found none; MakeTangents() finds one wherever it is asked to.
+    if (!AreTangential(t)) t.tangents.clear();
     t.uvs[0] = read("TEXCOORD_0", 2, 2).values;
     t.uvs[1] = read("TEXCOORD_1", 2, 2).values;
     for (std::vector<float>& uvs : t.uvs)

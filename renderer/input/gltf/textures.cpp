@@ -6,6 +6,7 @@
 
 #include "renderer/files/file_contents.h"
 #include "renderer/input/gltf/parameters.h"
+#include "renderer/input/gltf/uri.h"
 
 namespace lull {
 namespace {
@@ -49,22 +50,6 @@ std::string TypeOf(const tinygltf::Image& image) {
     if (startsWith("\xff\xd8")) return "jpg";
     if (startsWith("RIFF")) return "webp";
     return image.mimeType == "image/jpeg" ? "jpg" : "png";
-}
-
-// Undoes the percent-encoding of a URI.
-std::string DecodeUri(const std::string& uri) {
-    const auto digit = [](char c) {
-        return c >= '0' && c <= '9' ? c - '0'
-                                    : std::tolower(static_cast<unsigned char>(c)) - 'a' + 10;
-    };
-    std::string decoded;
-    for (size_t i = 0; i < uri.size(); ++i) {
-        const bool isCode = uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(uri[i + 1]) &&
-                            std::isxdigit(uri[i + 2]);
-        decoded += isCode ? char(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
-        if (isCode) i += 2;
-    }
-    return decoded;
 }
 
 // Returns the image of a texture, as WebP if need be (EXT_texture_webp); -1: none.

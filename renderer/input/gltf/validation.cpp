@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/input/gltf/json_at.h"
+#include "renderer/input/gltf/uri.h"
 
 namespace lull {
 namespace {
@@ -17,16 +18,15 @@ void CheckUri(const JsonAt& owner) {
     owner.String("uri");
     if (!owner.Has("uri")) return;
     const auto uri = owner.value.at("uri").get<std::string>();
-    if (!uri.starts_with("data:")) return;
+    if (!IsDataUri(uri)) return;
     const JsonAt at = owner.Member("uri");
-    const size_t comma = uri.find(',');
-    if (comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64"))
-        at.Fail("is a data URI that is not base64");
-    for (size_t i = comma + 1; i < uri.size(); ++i) {
-        const char c = uri[i];
-        const bool isPadding = c == '=' && i + 2 >= uri.size();
+    const std::optional<std::string> data = Base64Of(uri);
+    if (!data) at.Fail("is a data URI that is not base64");
+    for (size_t i = 0; i < data->size(); ++i) {
+        const char c = (*data)[i];
+        const bool isPadding = c == '=' && i + 2 >= data->size();
         if (!std::isalnum(static_cast<unsigned char>(c)) && c != '+' && c != '/' && !isPadding)
-            at.Fail(fmt::format("is a data URI whose character {} is not base64", i));
+            at.Fail(fmt::format("is a data URI whose data are not base64 at character {}", i));
     }
 }
 
@@ -46,7 +46,8 @@ void CheckBufferView(const JsonAt& o) {
     const auto size = buffer.at("byteLength").get<uint64_t>();
     if (offset + length > size)
         o.Fail(fmt::format("ends at byte {} of a buffer of {}", offset + length, size));
-    if (o.Whole("byteStride", 4, 252, 4) % 4 != 0)
+    // Some write 0 for elements that follow each other.
+    if (o.Whole("byteStride", 0, 252, 4) % 4 != 0)
         o.Member("byteStride").Fail("has to be a multiple of 4");
     o.Extension("EXT_meshopt_compression", [](const JsonAt& e) {
         for (const char* name : {"buffer", "byteLength", "byteStride", "count", "mode"})
@@ -265,8 +266,10 @@ void CheckCamera(const JsonAt& o) {
     view.Object();
     for (const char* name : {"yfov", "aspectRatio", "znear", "zfar", "xmag", "ymag"})
         view.Number(name);
-    for (const char* name : {"yfov", "xmag", "ymag"})
-        if ((name[0] == 'y' && name[1] == 'f') == (type == "perspective")) view.Required(name);
+    if (type == "perspective")
+        for (const char* name : {"yfov", "znear"}) view.Required(name);
+    else
+        for (const char* name : {"xmag", "ymag", "znear", "zfar"}) view.Required(name);
     o.Extras([](const JsonAt& lens) {
         lens.Numbers("shift", 2);
         lens.Number("lensRadius");
@@ -296,12 +299,20 @@ void CheckNumbers(const JsonAt& o) {
 
 void CheckVersion(const JsonAt& root) {
     if (!root.value.contains("asset") || !root.value.at("asset").is_object() ||
-        !root.value.at("asset").contains("version") ||
-        !root.value.at("asset").at("version").is_string())
+        !root.value.at("asset").contains("version"))
         root.Fail("lacks \"asset\" with a \"version\": it is not a glTF file");
-    const std::string version = root.value.at("asset").at("version");
-    if (!version.starts_with("2."))
+    const JsonAt asset = root.Member("asset");
+    asset.String("version");
+    asset.String("minVersion");
+    const auto is2 = [](const std::string& version) { return version == "2" || version == "2.0"; };
+    const auto version = asset.value.at("version").get<std::string>();
+    if (!is2(version) && !version.starts_with("2."))
         root.Fail("is of glTF version " + Printable(version) + "; 2.0 is modelled");
+    if (!asset.Has("minVersion")) return;
+    // That of readers which can read the file.
+    const auto least = asset.value.at("minVersion").get<std::string>();
+    if (!is2(least))
+        asset.Member("minVersion").Fail("is " + Printable(least) + "; 2.0 is modelled");
 }
 
 void CheckLights(const JsonAt& root) {
@@ -316,7 +327,8 @@ void CheckLights(const JsonAt& root) {
                 for (const char* name : {"radius", "angle"}) e.Number(name);
                 e.String("profile");
             });
-            if (light.value.at("type") == "spot" && light.Has("spot")) {
+            if (light.value.at("type") == "spot") {
+                light.Required("spot");
                 light.Member("spot").Object();
                 light.Member("spot").Number("innerConeAngle");
                 light.Member("spot").Number("outerConeAngle");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "renderer/input/pbrt/shape_material.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
@@ -237,6 +238,10 @@ void PbrtBuilder::Shape() {
     shape.worldFromObject = state.ctm.at[0];
     shape.reverseOrientation = state.reverseOrientation;
     shape.material = CurrentMaterial();
+    if (auto own = MaterialOfShape(description.materials[size_t(shape.material)], shape)) {
+        shape.material = int(description.materials.size());
+        description.materials.push_back(std::move(*own));
+    }
     shape.insideMedium = MediumNamed(state.insideMedium);
     shape.outsideMedium = MediumNamed(state.outsideMedium);
     if (state.ctm.IsAnimated()) {

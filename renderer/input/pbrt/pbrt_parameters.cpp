@@ -155,9 +155,9 @@ void Append(const Rgb& rgb, std::vector<float>* values) {
 
 // Reads a file of a spectrum, for which pbrt-v3 takes black if it is not there.
 Rgb SpectrumOfFile(const std::string& path, const FileLoc& loc, Warnings& warnings) {
-    if (ReasonNotToRead(path).empty()) return LoadSpectrum(path, loc);
+    if (ReasonNotToRead(path).empty()) return LoadSpectrum(path, loc, &warnings);
     try {
-        return LoadSpectrum(path, loc);
+        return LoadSpectrum(path, loc, &warnings);
     } catch (const Error& error) {
         warnings.Substitute(error, "black stands in");
         return Rgb::Zero();
@@ -178,8 +178,8 @@ std::vector<float> ReadSpectrumFiles(PbrtLexer& lexer, const Token& owner,
 }
 
 // Turns the numbers of a spectrum parameter into RGB triplets.
-std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding,
-                                   const Token& owner) {
+std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding, const Token& owner,
+                                   Warnings& warnings) {
     std::vector<float> values;
     switch (encoding) {
         case Encoding::Xyz:
@@ -191,7 +191,7 @@ std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding,
                 Append(RgbFromBlackbody(given[i], owner.loc) * given[i + 1], &values);
             break;
         case Encoding::Sampled:
-            Append(RgbFromSamples(given, owner.loc), &values);
+            Append(RgbFromSamples(given, owner.loc, &warnings), &values);
             break;
         default:
             values = std::move(given);
@@ -237,8 +237,8 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings&
                 if (type.encoding == Encoding::Sampled && lexer.NextIsText())
                     parameter.values = ReadSpectrumFiles(lexer, owner, context, warnings);
                 else
-                    parameter.values =
-                        ConvertSpectrum(ReadFloatsOf(type, lexer, owner), type.encoding, owner);
+                    parameter.values = ConvertSpectrum(ReadFloatsOf(type, lexer, owner),
+                                                       type.encoding, owner, warnings);
                 break;
             default:
                 parameter.values = ReadFloatsOf(type, lexer, owner);

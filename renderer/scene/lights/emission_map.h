@@ -13,6 +13,7 @@ struct EmissionMap {
     SpectrumTexture emission;  // multiplies the light's L
     bool secondUv = false;
     bool vertexColors = false;  // multiply it, too
+    bool cutsOut = false;       // where the shape's alpha is 0, as rays see it
 
     // Returns the factor of the radiance at a point of a triangle.
     Rgb At(uint32_t triangle, float b1, float b2) const {
@@ -29,8 +30,17 @@ struct EmissionMap {
     // Returns the same for light sampling, times the probability that a ray hits the surface.
     Rgb Covered(uint32_t triangle, float b1, float b2) const {
         const Rgb e = At(triangle, b1, b2);
+        if (cutsOut && IsCutOut(triangle, b1, b2)) return Rgb::Zero();
         if (!shape->coverage) return e;
         return e * CoverageAt(*shape, *textures, Vec3f::Zero(), triangle, b1, b2);
+    }
+
+    bool IsCutOut(uint32_t triangle, float b1, float b2) const {
+        const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
+        const auto& p = mesh.corners[triangle].p;
+        return textures->Evaluate(*shape->alpha,
+                                  TextureContext{(1 - b1 - b2) * p[0] + b1 * p[1] + b2 * p[2],
+                                                 mesh.Uv(triangle, b1, b2)}) == 0;
     }
 
     // Returns the mean over a triangle, from a few points: for the choice of lights only.

@@ -1,6 +1,7 @@
 #include "renderer/scene/lights/infinite.h"
 
 #include "renderer/base/color.h"
+#include "renderer/base/rounding.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/lights/light_color.h"
 #include "renderer/scene/lights/studio.h"
@@ -15,7 +16,8 @@ Vec2f CoordinatesOf(const Vec3f& w) {
             std::acos(std::clamp(w.z(), -1.f, 1.f)) / kPi};
 }
 
-// Blackens texels that are not finite or negative once multiplied by L; returns how many.
+// Blackens texels that are not finite once multiplied by L, and parts of others that are negative,
+// as compression and filters leave them. Returns how many texels that were, for more than rounding.
 int Blacken(const Rgb& L, Image* image) {
     int count = 0;
     std::visit(
@@ -23,14 +25,16 @@ int Blacken(const Rgb& L, Image* image) {
             using T = std::decay_t<decltype(texels[0])>;
             const int colors = image->channels < 3 ? 1 : 3;
             for (size_t at = 0; at < texels.size(); at += size_t(image->channels)) {
-                bool isGood = true;
+                bool isGood = true, isFinite = true;
                 for (int c = 0; c < 3; ++c) {
-                    const float value = float(texels[at + size_t(c % colors)]) * L[c];
-                    isGood &= value >= 0 && value <= EnvironmentMap::kMaxTexel;
+                    T& texel = texels[at + size_t(c % colors)];
+                    const float value = float(texel) * L[c];
+                    isGood &= value >= -float(kRounding);
+                    isFinite &= std::abs(value) <= EnvironmentMap::kMaxTexel;
+                    if (value < 0) texel = T();
                 }
-                if (isGood) continue;
-                std::fill_n(&texels[at], colors, T());
-                ++count;
+                if (!isFinite) std::fill_n(&texels[at], colors, T());
+                count += !(isGood && isFinite);
             }
         },
         image->texels);
@@ -46,6 +50,12 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
     light.worldRadius = in.worldRadius;
     light.worldFromLight = entity.worldFromLight.topLeftCorner<3, 3>().cast<float>();
     light.lightFromWorld = entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>();
+    // Directions alone are transformed; powers of a large scale would be infinite.
+    const Mat3f unit = light.lightFromWorld / light.lightFromWorld.cwiseAbs().maxCoeff();
+    if (!ScalesEvenly(unit)) {
+        light.lightFromWorld = unit;
+        light.stretch = std::abs(unit.determinant());
+    }
     const Rgb L = LightColor(entity, "L", in.warnings);
     const std::string file = params.GetString("mapname", "");
     light.constant = L;
@@ -87,10 +97,10 @@ std::optional<LightSample> InfiniteLight::Sample(const TileShares& shares, const
 std::optional<LightSample> InfiniteLight::SampleAt(const Vec2f& st, float mapPdf) const {
     const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
     const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
-    const float pdf = mapPdf / (2 * kPi * kPi * sinTheta);
-    if (!(pdf > 0) || !std::isfinite(pdf)) return {};
     const Vec3f local(sinTheta * cosPhi, sinTheta * sinPhi, cosTheta);
     const Vec3f wi = (worldFromLight * local).normalized();
+    const float pdf = mapPdf / (2 * kPi * kPi * sinTheta) * Stretch(wi);
+    if (!(pdf > 0) || !std::isfinite(pdf)) return {};
     if (map) map->Prefetch(st);
     return LightSample{.L = map ? Rgb::Ones() : constant,
                        .wi = wi,
@@ -108,7 +118,13 @@ Emitted InfiniteLight::LeAndPdf(const Vec3f& w, const TileShares* shares) const 
     const Vec2f st = map ? CoordinatesOf(local) : Vec2f::Zero();
     const float mapPdf = !map ? 1 : shares ? map->Pdf(*shares, st) : map->Pdf(st);
     return {map ? map->Radiance(st) : constant,
-            sinTheta > 0 ? mapPdf / (2 * kPi * kPi * sinTheta) : 0};
+            sinTheta > 0 ? mapPdf / (2 * kPi * kPi * sinTheta) * Stretch(w) : 0};
+}
+
+float InfiniteLight::Stretch(const Vec3f& w) const {
+    if (stretch == 0) return 1;
+    const float length = (lightFromWorld * w).norm();
+    return stretch / (length * length * length);
 }
 
 // Used only by the choice of lights by power; the mean over the map is the topmost mip level of

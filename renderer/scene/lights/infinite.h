@@ -15,8 +15,8 @@ class InfiniteLight {
   public:
     static constexpr LightType kType = LightType::Infinite;
 
-    // Reads the image, if any. Throws Error if it cannot be read; texels that are negative or not
-    // finite count as black, with a counted warning.
+    // Reads the image, if any. Throws Error if it cannot be read; texels that are not finite, and
+    // negative parts of others, count as black, with a counted warning.
     static InfiniteLight Make(const LightReader&);
 
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
@@ -36,10 +36,14 @@ class InfiniteLight {
 
   private:
     std::optional<LightSample> SampleAt(const Vec2f& st, float mapPdf) const;
+    // Returns the solid angle in light space over that in the world, about the direction `w` of the
+    // world: 1 unless the transform scales unevenly.
+    float Stretch(const Vec3f& w) const;
 
     Mat3f lightFromWorld = Mat3f::Identity(), worldFromLight = Mat3f::Identity();
     float worldRadius = 1;
-    Rgb constant = Rgb::Ones();                 // where there is no map
+    float stretch = 0;           // |determinant| of lightFromWorld; 0: the transform scales evenly
+    Rgb constant = Rgb::Ones();  // where there is no map
     std::shared_ptr<const EnvironmentMap> map;  // null: none
 };
 

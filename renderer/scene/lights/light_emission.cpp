@@ -31,9 +31,7 @@ Cone ConeOf(const SpotLight& light) { return ConeOf(light.cone); }
 // A transform that stretches the picture could make the cone wider: then all directions do.
 Cone ConeOf(const ProjectionLight& light) {
     const Mat3f& m = light.lightFromWorld;
-    const Mat3f square = m * m.transpose();
-    const float scale2 = square.trace() / 3;
-    if (!((square - scale2 * Mat3f::Identity()).norm() <= 1e-3f * scale2)) return {};
+    if (!ScalesEvenly(m)) return {};
     const float tangent = light.screen.norm() / light.perTangent;
     return {Vec3f(m.transpose().col(2)).normalized(),
             std::min(1 / std::sqrt(1 + Sqr(1.001f * tangent)), 1 - 1e-6f)};

@@ -19,4 +19,11 @@ inline std::string LightGroupOf(const Entity& entity) {
     return entity.parameters.GetString("lightgroup", "");
 }
 
+// Returns whether a matrix scales all axes alike, but for rounding.
+inline bool ScalesEvenly(const Mat3f& m) {
+    const Mat3f square = m * m.transpose();
+    const float scale2 = square.trace() / 3;
+    return (square - scale2 * Mat3f::Identity()).norm() <= 1e-4f * scale2;
+}
+
 }  // namespace lull

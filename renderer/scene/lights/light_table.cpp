@@ -158,17 +158,19 @@ std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
 
 // Reads the textures of a mesh's emission: "emission", multiplying L, looked up with the second
 // texture coordinates where "emissionuv" is 1, and the alpha textures of the mesh. Returns null
-// where neither is.
+// where neither is. What an alpha cuts out shines in pbrt-v3; with an alpha of 0 all over it is a
+// hidden light.
 std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const Shape& shape,
-                                                   const TextureTable& textures) {
+                                                   const TextureTable& textures, bool asPbrtV3) {
     const SpectrumTexture emission = textures.GetSpectrum(entity, "emission", Rgb::Ones());
     const bool secondUv = entity.parameters.GetInt("emissionuv", 0) == 1;
     const bool vertexColors = entity.parameters.GetBool("emissioncolors", false);
     const bool isPlain = !vertexColors && emission.IsConstant() && (emission.constant == 1).all();
-    const bool isWhole = !shape.coverage || shape.coverage->IsWhole();
+    const bool cutsOut = !asPbrtV3 && shape.alpha && !shape.alpha->IsConstant();
+    const bool isWhole = !cutsOut && (!shape.coverage || shape.coverage->IsWhole());
     if (!shape.IsMesh() || (isPlain && isWhole)) return {};
     return std::make_unique<const EmissionMap>(
-        EmissionMap{&textures, &shape, emission, secondUv, vertexColors});
+        EmissionMap{&textures, &shape, emission, secondUv, vertexColors, cutsOut});
 }
 
 }  // namespace
@@ -204,7 +206,8 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         const auto& entity = description.shapes[i].areaLight;
         if (!entity || !IsKnownAreaLight(*entity, warnings)) continue;
         Shape& shape = shapes.shapes[i];
-        std::unique_ptr<const EmissionMap> map = MakeEmissionMap(*entity, shape, textures);
+        std::unique_ptr<const EmissionMap> map =
+            MakeEmissionMap(*entity, shape, textures, asPbrtV3);
         std::unique_ptr<const EmissionProfile> profile =
             MakeProfile(*entity, description.shapes[i].worldFromObject);
         AreaLight light = MakeAreaLight(*entity, shape, warnings);
@@ -213,7 +216,10 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         light.map = map.get();
         if (map) emissionMaps.push_back(std::move(map));
         if (shape.PrimitiveCount() == 0) {
-            warnings.Add(description.shapes[i].loc, "area light without area", "it gives no light");
+            const bool isMade = shape.material >= 0;  // else an error says what is wrong with it
+            if (isMade)
+                warnings.Add(description.shapes[i].loc, "area light without area",
+                             "it gives no light");
             continue;
         }
         shape.firstLight = Count();

@@ -135,7 +135,7 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
 }
 
 // Makes the material of an entity; a matte one substitutes unsupported ones.
-Material MakeMaterial(const MaterialReader& in, Warnings& warnings) {
+Material MakeMaterial(const MaterialReader& in) {
     const MaterialEntity& entity = in.entity;
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name
     std::string problem = "material \"" + Printable(entity.name) + "\" is not supported";
@@ -144,11 +144,11 @@ Material MakeMaterial(const MaterialReader& in, Warnings& warnings) {
         problem = ProblemOf(kind, in);
         if (problem.empty()) {
             const Material m = Complete(kind, in);
-            entity.parameters.ReportUnused("material \"" + entity.name + "\"", warnings);
+            entity.parameters.ReportUnused("material \"" + entity.name + "\"", in.warnings);
             return m;
         }
     }
-    warnings.Substitute(entity.loc, problem, "a matte material stands in");
+    in.warnings.Substitute(entity.loc, problem, "a matte material stands in");
     return Complete(Matte(in), in);
 }
 
@@ -195,9 +195,9 @@ MaterialTable::MaterialTable(const Description& description, const TextureTable&
     plain.name = "matte";
     materials.reserve(description.materials.size());
     for (const MaterialEntity& entity : description.materials) {
-        const MaterialReader in{entity, textures, materials, description};
-        if (warnings.Try([&] { materials.push_back(MakeMaterial(in, warnings)); })) continue;
-        const MaterialReader other{plain, textures, materials, description};
+        const MaterialReader in{entity, textures, materials, description, warnings};
+        if (warnings.Try([&] { materials.push_back(MakeMaterial(in)); })) continue;
+        const MaterialReader other{plain, textures, materials, description, warnings};
         materials.push_back(Complete(Matte(other), other));
     }
 }

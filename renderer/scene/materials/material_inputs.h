@@ -58,6 +58,7 @@ struct MaterialReader {
     const TextureTable& textures;
     std::span<const Material> made;
     const Description& description;  // relative file names start at its directory
+    Warnings& warnings;
 
     FloatTexture Float(const std::string& name, float otherwise) const {
         return textures.GetFloat(entity, name, otherwise);

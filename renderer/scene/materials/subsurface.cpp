@@ -5,6 +5,7 @@
 #include "renderer/base/rounding.h"
 #include "renderer/bsdf/medium_presets.h"
 #include "renderer/input/nonnegative.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -67,7 +68,12 @@ Subsurface::Subsurface(const MaterialReader& in)
       sigmaA(in.textures.GetSpectrum(in.entity, "sigma_a",
                                      PresetOr(in, false, Rgb(0.0011f, 0.0024f, 0.014f)))),
       sigmaS(in.textures.GetSpectrum(in.entity, "sigma_s",
-                                     PresetOr(in, true, Rgb(2.55f, 3.21f, 3.77f)))) {}
+                                     PresetOr(in, true, Rgb(2.55f, 3.21f, 3.77f)))) {
+    const std::string preset = in.entity.parameters.GetString("name", "");
+    if (Rgb ignored; !preset.empty() && !FindMediumPreset(preset, &ignored, &ignored))
+        in.warnings.Add(in.entity.loc, "unknown medium preset, pbrt-v3's default is used",
+                        Printable(preset));
+}
 
 std::optional<SubsurfaceProfile> Subsurface::Profile(const MaterialInputs& in) const {
     return SubsurfaceProfile{

@@ -98,6 +98,10 @@ Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input
         return ConstantTexture<T>(grey);
     }
 
+    if (map.image->notFinite > 0)
+        input.warnings.Add(
+            entity.loc, "values of a texture that are not finite count as 0",
+            fmt::format("{} of \"{}\"", map.image->notFinite, Printable(filename, 200)));
     if (map.image->uniform && map.wrap != Wrap::Black && map.wrapT != Wrap::Black)
         return TextureHandle<T>{FromRgb<T>(map.scale * *map.image->uniform)};
     if (input.filtering == TextureFiltering::PbrtV3)

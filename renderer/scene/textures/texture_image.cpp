@@ -51,6 +51,22 @@ std::optional<Rgb> FindUniform(const Texels<T, Count>& texels,
     return Rgb(value(0), value(Count > 1 ? 1 : 0), value(Count > 1 ? 2 : 0));
 }
 
+// Sets values that are not finite to 0, as one would darken all that are filtered with it. Returns
+// how many.
+size_t ReplaceNonFinite(TextureImage* image) {
+    size_t count = 0;
+    std::visit(
+        [&](auto& texels) {
+            for (auto& v : texels.values) {
+                if (std::isfinite(float(v))) continue;
+                v = std::decay_t<decltype(v)>();
+                ++count;
+            }
+        },
+        image->texels);
+    return count;
+}
+
 // Returns a grey image of one channel, white where there is none such.
 Image ExtractChannel(const Image& image, TextureChannels wanted) {
     const bool hasColor = image.channels >= 3, hasAlpha = image.channels % 2 == 0;
@@ -140,6 +156,8 @@ TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels wa
         }
     };
     std::visit(convert, image.texels);
+    if (!std::holds_alternative<std::vector<uint8_t>>(image.texels))
+        result.notFinite = ReplaceNonFinite(&result);
     result.uniform =
         std::visit([&](const auto& t) { return FindUniform(t, result.decode); }, result.texels);
     return result;

@@ -32,6 +32,7 @@ struct TextureImage {
         texels;
     std::array<float, 256> decode{};  // 8-bit texel to linear
     std::optional<Rgb> uniform;       // the value of all texels, if they are equal
+    size_t notFinite = 0;             // values that were not; they are 0
 
     size_t Bytes() const;
     bool IsGrey() const;

@@ -235,6 +235,17 @@ TEST(ReadImage, UndoesExposureOfRadianceHdr) {
     EXPECT_TRUE(Contains(ErrorOf([&] { ReadImage(xyz); }), "X, Y and Z"));
 }
 
+TEST(ReadImage, ConvertsRadianceHdrOfOtherPrimaries) {
+    const auto red = [](const std::string& primaries) {
+        return Texels<float>(ReadFromBytes("a.hdr", "#?RADIANCE\nPRIMARIES= " + primaries +
+                                                        "\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
+                                                        FromHex("80000081")));
+    };
+    ExpectNear(red(".708 .292 .17 .797 .131 .046 .3127 .329"), {1.6605f, 0, 0}, 2e-3f);
+    // Radiance's own.
+    ExpectNear(red("0.640 0.330 0.290 0.600 0.150 0.060 0.333 0.333"), {1, 0, 0}, 1e-6f);
+}
+
 TEST(ReadImage, ReadsPfmTopDown) {
     const float values[6] = {1, 2, 3, -4, 5e6f, 6};  // the lower row comes first
     std::string pfm = "PF\n1 2\n-1.0\n";
@@ -254,6 +265,9 @@ TEST(ReadImage, SaysWhatIsWrong) {
     EXPECT_TRUE(Contains(read(directory.Write("empty.exr", "")), "empty.exr"));
     const std::string cut = read(directory.Write("cut.png", FromHex(kRgbPng).substr(0, 50)));
     EXPECT_TRUE(Contains(cut, "cut.png\": it is cut short")) << cut;
+    const std::string cutPfm =
+        read(directory.Write("cut.pfm", "PF\n2 2\n-1.0\n" + std::string(8, 0)));
+    EXPECT_TRUE(Contains(cutPfm, "cut.pfm\": it is cut short")) << cutPfm;
     EXPECT_TRUE(Contains(read(directory.Write("huge.png", FromHex(kHugePng))), "60000x60000x3"));
 }
 

@@ -32,6 +32,8 @@ TEST(GltfErrors, NameTheirPlace) {
     ASSERT_EQ(folder.ErrorOf(GoodFile()), "");
     const Case cases[] = {
         {"/asset/version", "1.0", "/: is of glTF version 1.0; 2.0 is modelled"},
+        {"/asset/version", 2.0, "/asset/version: has to be a string"},
+        {"/asset/minVersion", "2.1", "/asset/minVersion: is 2.1; 2.0 is modelled"},
         {"/scene", 1, "/scene: is 1, but there are only 1 scenes"},
         {"/scenes/0/nodes/0", 7, "/scenes/0/nodes/0: is 7, but there are only 2 nodes"},
         {"/nodes/0/mesh", -1, "/nodes/0/mesh: has to be an index, a whole number"},
@@ -163,12 +165,31 @@ TEST(GltfErrors, RefuseBadUris) {
         return folder.ErrorOf(whole.dump());
     };
     EXPECT_EQ(errorOf("data:application/octet-stream;base64,AA*A", 66),
-              "scene.gltf: /buffers/0/uri: is a data URI whose character 39 is not base64");
+              "scene.gltf: /buffers/0/uri: is a data URI whose data are not base64 at character 2");
     EXPECT_EQ(errorOf("data:application/octet-stream,AAAA", 66),
               "scene.gltf: /buffers/0/uri: is a data URI that is not base64");
     EXPECT_NE(errorOf("data:application/octet-stream;base64,AAAA", 66), "");
     EXPECT_NE(errorOf("no-such-file.bin", 66), "");
     EXPECT_NE(errorOf("/etc", 66), "");
+}
+
+TEST(GltfErrors, ReadDataUrisOfAnyType) {
+    const GltfFolder folder;
+    json whole = json::parse(GoodFile().Text());
+    json& uri = whole["buffers"][0]["uri"];
+    const std::string good = uri, data = good.substr(good.find(',') + 1);
+    std::string encoded, lines;
+    for (const char c : data) {
+        encoded += c == '=' ? "%3D" : c == '+' ? "%2b" : std::string(1, c);
+        lines += std::string(1, c) + (lines.size() % 10 == 0 ? "\r\n" : "");
+    }
+    for (const std::string& other :
+         {"data:;base64," + data, "DATA:Application/X-Bin;charset=utf-8;BASE64," + data,
+          "data:application/octet-stream;base64," + encoded,
+          "data:application/octet-stream;base64," + lines}) {
+        uri = other;
+        EXPECT_EQ(folder.ErrorOf(whole.dump()), "") << other;
+    }
 }
 
 TEST(GltfErrors, RefuseWhatIsNoGltf) {

@@ -204,11 +204,15 @@ TEST(GltfMaterials, WarnOfWhatIsMissing) {
         {{"extensions", {{"KHR_materials_iridescence", json::object()}}},
          {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}};
     const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
-    file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"material", 0}})}});
+    file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"material", 0}})},
+               {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
     Warnings warnings;
     const Description d = kFolder.Parse(file, {}, &warnings);
     EXPECT_EQ(d.textures.at(0).parameters.GetString("filename", ""), "a.webp");
-    EXPECT_EQ(warnings.Total(), 2);
+    EXPECT_EQ(warnings.Total(), 3);
+    EXPECT_EQ(
+        warnings.Counts().count("extension \"KHR_node_visibility\" is not supported and left out"),
+        1u);
     EXPECT_EQ(warnings.Counts().count(
                   "extension \"KHR_materials_iridescence\" is not supported and left out"),
               1u);

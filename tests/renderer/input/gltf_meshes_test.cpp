@@ -63,6 +63,29 @@ TEST(GltfMeshes, ReadQuantizedAndNormalizedNumbers) {
     ExpectNear(std::vector<float>(colors.begin(), colors.begin() + 4), {1.f, 0.f, 0.2f, 1.f});
 }
 
+// Only colours and texture coordinates can be nothing else.
+TEST(GltfMeshes, NormalizeIntegersThatDoNotSayThatTheyAre) {
+    for (const bool isQuantized : {false, true}) {
+        GltfFile file;
+        const int uv = file.Accessor(file.View(std::vector<uint16_t>{0, 65535, 0, 0, 65535, 0}),
+                                     5123, 3, "VEC2");
+        const int color = file.Accessor(
+            file.View(std::vector<uint8_t>{51, 102, 153, 255, 0, 0, 0, 0, 0, 0, 0, 0}), 5121, 3,
+            "VEC4");
+        const int position = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+        file.Node({{"mesh",
+                    file.Mesh({{"POSITION", position}, {"TEXCOORD_0", uv}, {"COLOR_0", color}})}});
+        if (isQuantized) file.root["extensionsUsed"] = {"KHR_mesh_quantization"};
+        Warnings warnings;
+        const Description d = GltfFolder().Parse(file, {}, &warnings);
+        const std::vector<float> colors = FloatsOf(d.shapes[0], ParameterType::Float, "color");
+        ExpectNear(std::vector<float>(colors.begin(), colors.begin() + 4), {.2, .4, .6, 1});
+        const double most = isQuantized ? 65535 : 1;
+        ExpectNear(FloatsOf(d.shapes[0], ParameterType::Float, "uv"), {0, 1 - most, 0, 1, most, 1});
+        EXPECT_EQ(warnings.Total(), isQuantized ? 1 : 2);
+    }
+}
+
 TEST(GltfMeshes, ReplaceSparseValues) {
     GltfFile file;
     const int indices = file.View(std::vector<uint8_t>{1, 2});
@@ -104,7 +127,7 @@ TEST(GltfMeshes, LeaveOutPointsAndLines) {
 }
 
 // Adds a quad in the plane z = 0 whose material has a normal map; u runs along x, or against it.
-Description MappedQuad(bool isMirrored) {
+Description MappedQuad(bool isMirrored, const std::vector<float>& tangents = {}) {
     GltfFile file;
     const int p = file.Floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
     const int n = file.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
@@ -113,22 +136,28 @@ Description MappedQuad(bool isMirrored) {
     file.root["images"] = {{{"uri", "normals.png"}}};
     file.root["textures"] = {{{"source", 0}}};
     file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
-    file.Node(
-        {{"mesh", file.Mesh({{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}},
-                            {{"indices", file.Indices({0, 1, 2, 0, 2, 3})}, {"material", 0}})}});
+    json attributes = {{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}};
+    if (!tangents.empty()) attributes["TANGENT"] = file.Floats(tangents, "VEC4");
+    file.Node({{"mesh", file.Mesh(attributes, {{"indices", file.Indices({0, 1, 2, 0, 2, 3})},
+                                               {"material", 0}})}});
     return GltfFolder().Parse(file);
 }
 
+// Also where those of the file are none.
 TEST(GltfMeshes, MakeTangentsAlongTheTexture) {
-    for (const bool isMirrored : {false, true}) {
-        const Description d = MappedQuad(isMirrored);
-        const std::vector<float> t = FloatsOf(d.shapes[0], ParameterType::Float, "tangent");
-        ASSERT_EQ(t.size(), 16u);
-        const float side = isMirrored ? -1.f : 1.f;
-        for (size_t i = 0; i < 16; i += 4)
-            ExpectNear(std::vector<float>(t.begin() + long(i), t.begin() + long(i) + 4),
-                       {side, 0.f, 0.f, side});
-    }
+    for (const bool isMirrored : {false, true})
+        for (const std::vector<float>& tangents :
+             {std::vector<float>{},
+              std::vector<float>(16, 0.f),
+              {0, 1, 0, 1, 0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 0, 1}}) {
+            const Description d = MappedQuad(isMirrored, tangents);
+            const std::vector<float> t = FloatsOf(d.shapes[0], ParameterType::Float, "tangent");
+            ASSERT_EQ(t.size(), 16u);
+            const float side = isMirrored ? -1.f : 1.f;
+            for (size_t i = 0; i < 16; i += 4)
+                ExpectNear(std::vector<float>(t.begin() + long(i), t.begin() + long(i) + 4),
+                           {side, 0.f, 0.f, side});
+        }
 }
 
 // Two triangles share an edge; the texture of one is the mirror image of the other's.

@@ -83,6 +83,14 @@ TEST(GltfNodes, PlaceCopiesByTheExtension) {
         TransformPoint(d.instances[2].worldFromInstance, {1, 0, 0}).isApprox(Vec3f(3, 2, 0)));
 }
 
+TEST(GltfNodes, CountCopiesByAttributesOfAnyName) {
+    GltfFile file;
+    const int id = file.Floats({7, 8}, "SCALAR");
+    file.Node({{"mesh", file.Triangle()},
+               {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"_ID", id}}}}}}}});
+    EXPECT_EQ(kFolder.Parse(file).instances.size(), 2u);
+}
+
 TEST(GltfNodes, LeaveOutWhatIsScaledToNothing) {
     GltfFile file;
     file.Node({{"mesh", file.Triangle()}, {"scale", {1, 0, 1}}});

@@ -255,6 +255,27 @@ TEST_F(Directives, NamedMaterials) {
     EXPECT_EQ(warnings.Total(), 0);
 }
 
+TEST_F(Directives, ParametersOfShapesReplaceThoseOfTheirMaterial) {
+    const auto d = folder.ParseWorld(
+        "Texture \"t\" \"spectrum\" \"constant\"\n"
+        "MakeNamedMaterial \"a\" \"string type\" \"plastic\" \"rgb Kd\" [1 0 0] "
+        "\"texture Ks\" \"t\" NamedMaterial \"a\"\n"
+        "Shape \"sphere\" \"float radius\" 2\n"
+        "Shape \"sphere\" \"texture Kd\" \"t\" \"rgb Ks\" [0 1 0] \"float roughness\" .5",
+        &warnings);
+    const MaterialEntity &own = d.materials.at(size_t(d.shapes.at(1).material)),
+                         &common = d.materials.at(size_t(d.shapes.at(0).material));
+    EXPECT_EQ(own.name, "plastic");
+    EXPECT_EQ(own.parameters.GetTexture("Kd")->name, "t");
+    EXPECT_EQ(own.parameters.GetTexture("Ks"), nullptr);
+    EXPECT_EQ(own.parameters.GetSpectrum("Kd", Rgb::Zero()).x(), 0);
+    EXPECT_EQ(own.parameters.GetSpectrum("Ks", Rgb::Zero()).y(), 1);
+    EXPECT_EQ(own.parameters.GetFloat("roughness", 0), .5f);
+    EXPECT_EQ(common.parameters.GetSpectrum("Kd", Rgb::Zero()).x(), 1);
+    d.shapes[1].parameters.ReportUnused("", warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
 TEST_F(Directives, RedefinedMaterialCountsForWhatFollows) {
     const auto d = folder.ParseWorld(
         "MakeNamedMaterial \"a\" \"string type\" \"matte\" NamedMaterial \"a\" Shape \"sphere\"\n"

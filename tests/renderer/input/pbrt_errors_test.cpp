@@ -30,6 +30,8 @@ TEST_F(PbrtErrors, Structure) {
            "line 1");
     Expect("WorldBegin WorldEnd\nWorldBegin", "scene.pbrt:2: 'WorldBegin' after WorldEnd");
     Expect("\nShape \"sphere\"", "scene.pbrt:2: 'Shape' must come after WorldBegin");
+    EXPECT_EQ(folder.ErrorOf("\nworldbegin\nShape \"sphere\""),
+              "scene.pbrt:2: unknown directive 'worldbegin'");
     ExpectInWorld("Camera \"perspective\"", "'Camera' must come before WorldBegin");
     ExpectInWorld("WorldBegin", "'WorldBegin' must come before WorldBegin");
     ExpectInWorld("Sphere", "unknown directive 'Sphere'");

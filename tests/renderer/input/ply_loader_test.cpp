@@ -203,7 +203,9 @@ TEST_F(Ply, EveryNameOfTextureCoordinates) {
     for (const auto& [u, v] : {std::pair("u", "v"),
                                {"s", "t"},
                                {"texture_u", "texture_v"},
-                               {"texture_s", "texture_t"}}) {
+                               {"texture_s", "texture_t"},
+                               {"texcoord_u", "texcoord_v"},
+                               {"u0", "v0"}}) {
         PlyWriter ply("ascii");
         ply.Header("element vertex 3\n" + std::string(kPositions) + "property float " + u +
                    "\nproperty float " + v + "\nelement face 1\n" + kFaces);
@@ -211,6 +213,17 @@ TEST_F(Ply, EveryNameOfTextureCoordinates) {
         ply.Put<int>({3, 0, 1, 2});
         EXPECT_EQ(Load(ply.text).uvs.at(2), Vec2f(.25f, .75f)) << u;
     }
+}
+
+TEST_F(Ply, OtherTextureCoordinatesAndColoursAreLeftOutWithAWarning) {
+    for (const std::string property : {"list uchar float uv", "float tex0"}) {
+        PlyWriter ply("ascii");
+        ply.Header("element vertex 3\n" + std::string(kPositions) + "property " + property +
+                   "\nproperty uchar r\nelement face 1\n" + kFaces);
+        const std::string rest = property.starts_with("list") ? " 1 .5 9\n" : " .5 9\n";
+        Load(ply.text + "0 0 0" + rest + "1 0 0" + rest + "0 1 0" + rest + "3 0 1 2\n");
+    }
+    EXPECT_EQ(warnings.Total(), 4);
 }
 
 TEST_F(Ply, IncompleteNormalsAndUvsAreIgnored) {
@@ -431,7 +444,7 @@ TEST_F(Ply, LinesMayEndInCarriageReturnsAlone) {
         "0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r";
     EXPECT_EQ(Load(ascii).positions[1], Vec3f(1, 0, 0));
     EXPECT_EQ(Load("\xef\xbb\xbf" + ascii).positions[1], Vec3f(1, 0, 0));
-    ascii.replace(ascii.find("1 0 0"), 1, "x");
+    ascii[ascii.find("1 0 0")] = 'x';
     EXPECT_EQ(ErrorOf(ascii), "a.ply:11: 'x' is not a number that can be used");
 }
 

@@ -93,6 +93,19 @@ TEST(Spectrum, FilesOfAnyTextEditor) {
               directory.File("a.spd") + ":2: 'x' in a spectrum file is not a number");
 }
 
+// Tables of refractive indices have micrometres.
+TEST(Spectrum, WavelengthsThatNobodySeesAreWarnedOf) {
+    Warnings warnings;
+    const auto read = [&](const std::vector<float>& pairs) {
+        return RgbFromSamples(pairs, {}, &warnings);
+    };
+    read({300, .2f, 900, .4f});
+    read({0, .5f});
+    EXPECT_EQ(warnings.Total(), 0);
+    EXPECT_TRUE(read({.4f, .2f, .8f, .4f}).isApprox(read({0, .4f})));
+    EXPECT_EQ(warnings.Total(), 1);
+}
+
 // Values jump where two wavelengths were rounded to the same one, as they do in pbrt-v3.
 TEST(Spectrum, WavelengthsMayBeRoundedToTheSame) {
     const std::vector<float> same = {400, .2f, 500, .9f, 500, .9f, 700, .1f},

@@ -275,14 +275,32 @@ template <auto Make>
 Shape MakePatches(const ShapeReader& in) {
     return {.geometry = PlaceMesh(Make(in.entity), in.entity, in.warnings)};
 }
+bool IsOneSidedLight(const ShapeEntity& entity) {
+    return entity.areaLight && entity.areaLight->name == "diffuse" &&
+           !entity.areaLight->parameters.GetBool("twosided", false);
+}
+// Returns whether light that passes the surface differs by the side that it comes from.
+bool HasAnInside(const Description& description, const ShapeEntity& entity) {
+    if (entity.insideMedium != entity.outsideMedium) return true;
+    if (entity.material < 0) return false;
+    const MaterialEntity& material = description.materials[size_t(entity.material)];
+    return material.name == "glass" || material.name == "subsurface" ||
+           material.name == "kdsubsurface";
+}
+
 template <auto Make>
 Shape MakeSolid(const ShapeReader& in) {
     const ShapeEntity& entity = in.entity;
-    if (entity.areaLight && entity.areaLight->name == "diffuse" &&
-        Mirrors(entity.worldFromObject) && !entity.areaLight->parameters.GetBool("twosided", false))
+    if (Mirrors(entity.worldFromObject) && IsOneSidedLight(entity))
         in.warnings.Add(entity.loc,
                         "a mirrored sphere, disk or cylinder is seen to shine to one side, and "
                         "lights the other, as in pbrt-v3; use a mesh, or no mirroring transform",
+                        entity.name);
+    if (Mirrors(entity.worldFromObject) && !entity.reverseOrientation &&
+        HasAnInside(in.description, entity))
+        in.warnings.Add(entity.loc,
+                        "a mirrored quadric is inside out, as in pbrt-v3; add ReverseOrientation, "
+                        "or use no mirroring transform",
                         entity.name);
     return {.geometry = Make(entity)};
 }

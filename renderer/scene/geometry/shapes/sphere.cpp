@@ -10,6 +10,11 @@ bool IsClipped(const Sphere& sphere, const Eigen::Vector3d& p) {
            (sphere.phiMax < 2 * kPi && Azimuth(p.x(), p.y()) > sphere.phiMax);
 }
 
+bool IsWhole(const Sphere& sphere) {
+    return sphere.zMin <= -sphere.radius && sphere.zMax >= sphere.radius &&
+           sphere.phiMax >= 2 * kPi;
+}
+
 Vec3f Center(const Sphere& sphere) {
     return sphere.place.worldFromShape.topRightCorner<3, 1>().cast<float>();
 }
@@ -94,6 +99,12 @@ void Interact(const Sphere& sphere, const Ray& worldRay, const Hit& found, Surfa
 std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const Vec2f& u) {
     const Vec3f center = Center(sphere);
     ShapeSample sample;
+    if (!IsWhole(sphere)) {
+        sample = SampleArea(sphere, u);
+        sample.pdf = SolidAnglePdf(1 / sphere.Area(), from, sample.p, sample.n);
+        if (!(sample.pdf > 0)) return {};
+        return sample;
+    }
     if (IsInside(sphere, from)) {
         const Vec3f p = sphere.radius * SampleUniformSphere(u);
         std::tie(sample.p, sample.pError) =
@@ -138,7 +149,8 @@ ShapeSample SampleArea(const Sphere& sphere, const Vec2f& u) {
 }
 
 float Pdf(const Sphere& sphere, const Vec3f& from, const Vec3f& p, const Vec3f& n) {
-    if (IsInside(sphere, from)) return SolidAnglePdf(1 / sphere.Area(), from, p, n);
+    if (!IsWhole(sphere) || IsInside(sphere, from))
+        return SolidAnglePdf(1 / sphere.Area(), from, p, n);
     const float sin2Max = Sqr(sphere.radius) / (Center(sphere) - from).squaredNorm();
     const float pdf = 1 / (2 * kPi * OneMinusCosMax(sin2Max));
     return std::isfinite(pdf) ? pdf : 0;

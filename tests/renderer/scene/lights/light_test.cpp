@@ -78,6 +78,19 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
         {"triangles", fmt::format(kPlaced, "false", mesh)},
         {"two-sided triangles", fmt::format(kPlaced, "true", mesh)},
         {"sphere", fmt::format(kPlaced, "false", "Shape \"sphere\" \"float radius\" [.7]")},
+        {"sphere under a matrix of three digits",
+         "AttributeBegin\nConcatTransform [.707 .707 0 0 -.707 .707 0 0 0 0 -1 0 .3 .2 2 1]\n"
+         "AreaLightSource \"diffuse\" \"bool twosided\" \"true\"\nShape \"sphere\"\nAttributeEnd"},
+        {"part of a sphere",
+         fmt::format(kPlaced, "false",
+                     "Shape \"sphere\" \"float radius\" [.7] \"float zmax\" [.5] "
+                     "\"float phimax\" [300]")},
+        {"triangles of which an alpha cuts half out",
+         "Texture \"squares\" \"float\" \"checkerboard\" \"float uscale\" 4 "
+         "\"float vscale\" 4\n" +
+             fmt::format(kPlaced, "false",
+                         mesh + " \"float uv\" [0 0 1 0 1 1 0 1] \"texture alpha\" "
+                                "\"squares\"")},
         {"disk", fmt::format(kPlaced, "true", "Shape \"disk\" \"float radius\" [.7]")},
         {"spot with a radius",
          "AttributeBegin\nTranslate .3 .2 2\nAreaLightSource \"spot-squared\" "
@@ -89,6 +102,9 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
              mesh + "\nAttributeEnd"},
         {"infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]"},
         {"sun", "LightSource \"distant\" \"point from\" [1 2 -3] \"float angle\" [70]"},
+        {"infinite, stretched", "Rotate 40 1 1 0\nScale 1 3 -.5\nLightSource \"infinite\""},
+        {"image, stretched",
+         "Scale 1 .4 1.5\nLightSource \"infinite\" \"string mapname\" \"sky.exr\""},
         {"image", "Rotate 40 1 1 0\nLightSource \"infinite\" \"string mapname\" \"sky.exr\""},
     };
     for (const auto& [name, world] : worlds) {
@@ -479,6 +495,47 @@ TEST(AreaLights, WarnOfMirroredQuadrics) {
         EXPECT_EQ(countOf("Scale -1 -1 1" + rest), 0) << shape;
         EXPECT_EQ(countOf("\"bool twosided\" \"true\" Scale -1 1 1" + rest), 0) << shape;
     }
+}
+
+// A part that compression left below 0 costs a texel nothing else.
+TEST(Skies, LoseWhatIsNegativeOrNotFiniteAlone) {
+    const TemporaryDirectory directory;
+    ExrImage sky;
+    sky.width = 4;
+    sky.height = 1;
+    sky.channels = {{"R", {.5f, .5f, NAN, .5f}, false},
+                    {"G", {.25f, .25f, .25f, .25f}, false},
+                    {"B", {-1e-7f, -1, 1, 1}, false}};
+    WriteExr(directory.File("sky.exr"), sky);
+    Warnings warnings;
+    const auto scene =
+        SceneIn(directory.Write("test.pbrt",
+                                "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\" "
+                                "\"string mapname\" \"sky.exr\"\nShape \"sphere\"\nWorldEnd\n"),
+                {}, &warnings);
+    const Rgb expected[] = {{.5f, .25f, 0}, {.5f, .25f, 0}, {0, 0, 0}, {.5f, .25f, 1}};
+    for (int i = 0; i < 4; ++i) {
+        const float phi = (float(i) + .5f) * kPi / 2;
+        const Rgb L = LeAndPdf(scene->lights[0], Vec3f(std::cos(phi), std::sin(phi), 0)).L;
+        EXPECT_LT((L - expected[i]).abs().maxCoeff(), 1e-3f) << i;
+    }
+    EXPECT_EQ(warnings.Counts().at("environment map texel that is not finite or negative"), 2);
+}
+
+// In pbrt-v3 they are balls of air in glass.
+TEST(Shapes, WarnOfMirroredQuadricsOfGlass) {
+    const auto isWarnedOf = [](const std::string& text) {
+        Warnings warnings;
+        SceneOf(WorldText(text + "\nShape \"sphere\""), {}, &warnings);
+        for (const auto& [kind, count] : warnings.Counts())
+            if (Contains(kind, "inside out")) return true;
+        return false;
+    };
+    const std::string mirror = "Scale 1 -1 1 ";
+    EXPECT_TRUE(isWarnedOf(mirror + "Material \"glass\""));
+    EXPECT_FALSE(isWarnedOf(mirror + "Material \"glass\" ReverseOrientation"));
+    EXPECT_FALSE(isWarnedOf(mirror + "Material \"mirror\""));
+    EXPECT_FALSE(isWarnedOf("Material \"glass\""));
 }
 
 TEST(ImageLights, RefuseWhatTheyCannotRead) {

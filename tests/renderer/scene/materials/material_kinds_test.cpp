@@ -64,6 +64,14 @@ TEST(Subsurface, Parameters) {
         EXPECT_TRUE(profile(2)(r).isApprox(expected(r), 1e-5f)) << r;
 }
 
+TEST(Subsurface, UnknownNamesAreWarnedOf) {
+    MaterialScene b;
+    b.AddMaterial("subsurface", {String("name", "Marbel")});
+    b.Make();
+    ASSERT_EQ(b.messages.size(), 1u);
+    EXPECT_TRUE(Contains(b.messages[0], "Marbel")) << b.messages[0];
+}
+
 TEST(Plastic, Defaults) {
     const Bsdf bsdf = BsdfOf("plastic", 2);
     ExpectGrey(LobeAt<LambertianReflection>(bsdf, 0).r, 0.25f);

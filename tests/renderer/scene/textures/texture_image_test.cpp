@@ -184,6 +184,25 @@ TEST(ImageMap, FoldsUniformImages) {
     EXPECT_NEAR(builder.Float(table, luminance).constant, Luminance({1, 0, 137 / 255.f}), 1e-6f);
 }
 
+TEST(ImageMap, CountsWhatIsNotFiniteAsZero) {
+    const TemporaryDirectory directory;
+    const std::string file = directory.File("bad.exr");
+    ExrImage image;
+    image.width = 2;
+    image.height = 1;
+    for (const char* name : {"R", "G", "B"})
+        image.channels.push_back({name, {.5f, name[0] == 'G' ? kInfinity : NAN}, false});
+    WriteExr(file, image);
+    TextureBuilder builder;
+    const int texture =
+        builder.Add(true, "imagemap", {Filename(file), StringParameter("wrap", "clamp")});
+    const TextureTable table = builder.Build();
+    const SpectrumTexture map = builder.Spectrum(table, texture);
+    ExpectRgb(table.Evaluate(map, At(.9f, .5f)), Rgb::Zero());
+    ExpectRgb(table.Evaluate(map, At(.5f, .5f)), Rgb::Constant(.25f));
+    EXPECT_EQ(builder.warnings.Total(), 1);
+}
+
 TEST(ImageMap, SaysWhichTextureCannotBeRead) {
     TextureBuilder strict, builder(true);
     for (TextureBuilder* b : {&strict, &builder}) {
