@@ -235,12 +235,12 @@ def main():
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])
         flat.collection.objects.unlink(o)
-    baker.end()
     if what["panes"]:
         panes.prepare(made, notes)
     flatten.move_sheared(made)
     base = os.path.join(what["folder"], what["name"])
-    lights.add(lamps, scene, flat, base, notes)
+    lights.add(lamps, scene, flat, base, baker, notes)
+    baker.end()
     flatten.leave_copies(flat)
     flatten.undress_others(flat)
     is_sharp = what["sharp"] and not moving.moves(scene.camera)

@@ -3,6 +3,7 @@ metaballs and text. Copies share their mesh."""
 import bpy
 from mathutils import Matrix
 
+import matrices
 import strands
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
@@ -131,7 +132,7 @@ def _place(flat, original, mesh, matrix):
     if is_sheared(matrix):
         o.parent = bpy.data.objects.get(_PARENT) or bpy.data.objects.new(_PARENT, None)
         o.matrix_parent_inverse = matrix
-        o["lull_matrix"] = [v for row in matrix for v in row]
+        o["lull_matrix"] = matrices.packed(matrix)
     o.matrix_world = matrix
     o["lull_source"], o["lull_group"] = original.name, original.lightgroup
     o.color, o.pass_index = original.color, original.pass_index
@@ -146,7 +147,7 @@ def move_sheared(made):
         if values is None:
             continue
         del o["lull_matrix"]
-        matrix = Matrix([values[i:i + 4] for i in range(0, 16, 4)])
+        matrix, = matrices.unpacked(values)
         o.data = o.data.copy()
         o.data.transform(matrix)
         if matrix.determinant() < 0:
@@ -154,8 +155,7 @@ def move_sheared(made):
         o.parent = None
         o.matrix_world = Matrix.Identity(4)
         if moves := o.get("lull_moves"):
-            places = [Matrix([moves[i:i + 4] for i in range(j, j + 16, 4)]) for j in (0, 16)]
-            o["lull_moves"] = [v for place in places for row in place @ matrix.inverted() for v in row]
+            o["lull_moves"] = matrices.packed(*(place @ matrix.inverted() for place in matrices.unpacked(moves)))
 
 
 def leave_copies(flat):

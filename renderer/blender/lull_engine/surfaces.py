@@ -16,7 +16,7 @@ from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 # Nodes that the exporter follows from an input of a Principled BSDF to an image.
 _KNOWN = {'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP', 'SEPRGB', 'SEPARATE_COLOR', 'VERTEX_COLOR', 'REROUTE', 'TEX_COORD'}
 # What depends on the direction from which a surface is seen, or on who asks.
-_BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA'}
+_BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA', 'LIGHT_FALLOFF', 'TEX_IES'}
 _OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': ('Backfacing', 'Incoming'), 'TEX_COORD': ('Camera', 'Window', 'Reflection')}
 _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT_INFO', 'TANGENT', 'AMBIENT_OCCLUSION', 'BEVEL',
              'WIREFRAME', 'VERTEX_COLOR', 'ATTRIBUTE', 'TEX_NOISE', 'TEX_MUSGRAVE', 'TEX_VORONOI', 'TEX_WAVE', 'TEX_MAGIC',
@@ -79,7 +79,7 @@ def _convert(material, meshes, baker, notes):
     if _is_empty(material):
         return material
     output = material.node_tree.get_output_node('CYCLES')
-    if output is None or _source(output.inputs['Surface']) is None:
+    if output is None or source_of(output.inputs['Surface']) is None:
         return _of_colour(material.name, (0, 0, 0))
     surface = _Surface(material, meshes, notes)
     if surface.parameters is None:
@@ -111,7 +111,7 @@ def _of_viewport(material):
     return _of_colour(material.name, material.diffuse_color[:3])
 
 
-def _source(socket):
+def source_of(socket):
     """Returns the output that an input comes from, None for none."""
     while socket.links:
         link = socket.links[0]
@@ -128,7 +128,21 @@ def _source(socket):
     return None
 
 
-def _upstream(socket):
+def value_of(socket):
+    """Returns an input's source, or its plain value: a number, or three."""
+    output = source_of(socket)
+    if output is not None and output.node.type not in ('RGB', 'VALUE'):
+        return output
+    value = (output or socket).default_value
+    return value if isinstance(value, (int, float)) else tuple(value)[:3]
+
+
+def is_even(output):
+    """Returns whether an output is the same everywhere, from all sides and for all rays."""
+    return not _is_by_view(output) and _place_of(output) == 'all'
+
+
+def upstream(socket):
     """Returns the nodes that an output depends on."""
     found, todo = [], [socket.node]
     while todo:
@@ -142,7 +156,7 @@ def _upstream(socket):
 def _is_by_view(socket):
     """Returns whether an output depends on the direction from which a surface is seen, or on who asks."""
     return any(n.type in _BY_VIEW or any(o.links for o in n.outputs if o.name in _OUTPUTS_BY_VIEW.get(n.type, ()))
-               for n in _upstream(socket))
+               for n in upstream(socket))
 
 
 def _is_whole(value):
@@ -152,7 +166,7 @@ def _is_whole(value):
 def _place_of(socket):
     """Returns 'all' for a value that is the same everywhere, 'uv' for one that the UVs decide, which repeats, else 'mesh'."""
     place = 'all'
-    for node in _upstream(socket):
+    for node in upstream(socket):
         if node.type in _BY_PLACE:
             return 'mesh'
         if node.type == 'TEX_COORD':
@@ -192,9 +206,9 @@ class _Surface:
         if self.parameters is None:
             notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
             return
-        self._mark(_source(output.inputs['Surface']).node)
-        if _source(output.inputs['Displacement']) and not displacement.moves(material):
-            self.parameters['Normal'] = _source(output.inputs['Displacement'])  # with which the normals are baked
+        self._mark(source_of(output.inputs['Surface']).node)
+        if source_of(output.inputs['Displacement']) and not displacement.moves(material):
+            self.parameters['Normal'] = source_of(output.inputs['Displacement'])  # with which the normals are baked
         self._note_what_holds_of_the_whole(output)
         for name, value in self.parameters.items():
             if name == 'Normal':
@@ -204,17 +218,17 @@ class _Surface:
 
     def differs_by_mesh(self):
         """Returns whether meshes have UV maps that it names in other places: materials of glTF have their numbers."""
-        names = {n.uv_map for v in self.parameters.values() if self._is_output(v) for n in _upstream(v)
+        names = {n.uv_map for v in self.parameters.values() if self._is_output(v) for n in upstream(v)
                  if n.type in ('UVMAP', 'NORMAL_MAP') and n.uv_map}
         return len({tuple(mesh.uv_layers.find(n) for n in sorted(names)) for mesh in self.meshes}) > 1
 
     def _note_what_holds_of_the_whole(self, output):
         p, notes = self.parameters, self.notes
-        if _source(output.inputs['Displacement']) and displacement_method(self.original) == 'BOTH':
+        if source_of(output.inputs['Displacement']) and displacement_method(self.original) == 'BOTH':
             notes.add("displaced as finely as meshes are, without bump", self.name, "materials")
         if not getattr(self.original.cycles, "use_transparent_shadow", True) and (p['Alpha'] != 1 or self.copy.get("lull_thin")):
             notes.add("letting light through where transparent", self.name, "materials")
-        nodes = [n for v in p.values() if self._is_output(v) for n in _upstream(v)]
+        nodes = [n for v in p.values() if self._is_output(v) for n in upstream(v)]
         if any(n.type == 'ATTRIBUTE' and n.attribute_type == 'OBJECT' for n in nodes):
             notes.add("without properties of objects", self.name, "materials")
         if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for n in nodes):
@@ -239,42 +253,31 @@ class _Surface:
 
     def _closure(self, socket):
         """Returns the parameters of a surface; None where nothing is known of it."""
-        source = _source(socket)
+        source = source_of(socket)
         if source is None:
             return None
         node = source.node
         read = getattr(self, "_" + node.type.lower(), None)
         return read(node) if read else None
 
-    def _value(self, socket):
-        """Returns an input's source, or its plain value: a number, or three."""
-        source = _source(socket)
-        if source is not None:
-            if source.node.type in ('RGB', 'VALUE'):
-                plain = source.default_value
-                return plain if source.node.type == 'VALUE' else tuple(plain)[:3]
-            return source
-        value = socket.default_value
-        return value if isinstance(value, (int, float)) else tuple(value)[:3]
-
     def _made(self, node, **parameters):
         found = dict(_DEFAULTS, **{k.replace('_', ' '): v for k, v in parameters.items()})
         normal = node.inputs.get('Normal')
-        if normal is not None and _source(normal) is not None:
-            found['Normal'] = _source(normal)
+        if normal is not None and source_of(normal) is not None:
+            found['Normal'] = source_of(normal)
         return found
 
     def _bsdf_principled(self, node):
         found = self._made(node)
         for name in _INPUTS:
-            found[name] = self._value(principled_input(node, name))
+            found[name] = value_of(principled_input(node, name))
         if HAS_ADDED_INTERFACE:
             found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
             self.copy["lull_adds"] = True
         if found['Clearcoat'] != 0 and principled_input(node, 'Clearcoat Normal').links:
             self.notes.add("with the normals of the surface on its clear coat", self.name, "materials")
         emission = principled_input(node, 'Emission')
-        found['Radiance'] = self._times(self._value(emission), self._value(node.inputs['Emission Strength']))
+        found['Radiance'] = self._times(value_of(emission), value_of(node.inputs['Emission Strength']))
         for name in _UNSAID:
             unsaid = principled_input(node, name)
             if unsaid is not None and (unsaid.links or not _is_neutral(unsaid)):
@@ -282,10 +285,10 @@ class _Surface:
         return found
 
     def _bsdf_diffuse(self, node):
-        return self._made(node, Base_Color=self._value(node.inputs['Color']))
+        return self._made(node, Base_Color=value_of(node.inputs['Color']))
 
     def _bsdf_translucent(self, node):
-        return self._made(node, Base_Color=(0, 0, 0), Through=self._value(node.inputs['Color']))
+        return self._made(node, Base_Color=(0, 0, 0), Through=value_of(node.inputs['Color']))
 
     def _as_diffuse(self, node):
         self.notes.add("shown as diffuse ones", self.name, "materials")
@@ -294,7 +297,7 @@ class _Surface:
     _bsdf_velvet = _bsdf_sheen = _bsdf_toon = _subsurface_scattering = _bsdf_hair = _as_diffuse
 
     def _bsdf_glossy(self, node):
-        return self._made(node, Base_Color=self._value(node.inputs['Color']), Metallic=1, Roughness=self._roughness(node))
+        return self._made(node, Base_Color=value_of(node.inputs['Color']), Metallic=1, Roughness=self._roughness(node))
 
     def _bsdf_anisotropic(self, node):
         if node.inputs['Anisotropy'].links or node.inputs['Anisotropy'].default_value != 0:
@@ -302,26 +305,26 @@ class _Surface:
         return self._bsdf_glossy(node)
 
     def _bsdf_glass(self, node):
-        return self._made(node, Base_Color=self._value(node.inputs['Color']), Transmission=1, Specular=0.5,
-                          Roughness=self._roughness(node), IOR=self._value(node.inputs['IOR']))
+        return self._made(node, Base_Color=value_of(node.inputs['Color']), Transmission=1, Specular=0.5,
+                          Roughness=self._roughness(node), IOR=value_of(node.inputs['IOR']))
 
     def _bsdf_refraction(self, node):
         self.notes.add("reflecting as glass does", self.name, "materials")
         return self._bsdf_glass(node)
 
     def _roughness(self, node):
-        return 0 if getattr(node, "distribution", '') == 'SHARP' else self._value(node.inputs['Roughness'])
+        return 0 if getattr(node, "distribution", '') == 'SHARP' else value_of(node.inputs['Roughness'])
 
     def _bsdf_transparent(self, node):
-        return dict(_DEFAULTS, Alpha=0, Tint=self._value(node.inputs['Color']))
+        return dict(_DEFAULTS, Alpha=0, Tint=value_of(node.inputs['Color']))
 
     def _emission(self, node):
-        light = self._times(self._value(node.inputs['Color']), self._value(node.inputs['Strength']))
+        light = self._times(value_of(node.inputs['Color']), value_of(node.inputs['Strength']))
         return self._made(node, Base_Color=(0, 0, 0), Radiance=light)
 
     def _mix_shader(self, node):
         a, b = self._closure(node.inputs[1]), self._closure(node.inputs[2])
-        factor = self._value(node.inputs[0])
+        factor = value_of(node.inputs[0])
         if a is None and b is None:
             return None
         a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[1]), (b, node.inputs[2])))
@@ -370,7 +373,7 @@ class _Surface:
         """Returns the parameters of a half of a mixture: black where nothing is linked, as in Cycles."""
         if found is not None:
             return found
-        if _source(socket) is None:
+        if source_of(socket) is None:
             return dict(_DEFAULTS, **{'Base Color': (0, 0, 0)})
         self.notes.add("in part in the viewport colour, as one of its surfaces is unknown", self.name, "materials")
         return dict(_DEFAULTS, **{'Base Color': tuple(self.original.diffuse_color)[:3]})
@@ -378,7 +381,7 @@ class _Surface:
     def _mix_by_view(self, a, b, factor):
         """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what lights
         the scene holds, else what the camera sees."""
-        kinds = {n.type for n in _upstream(factor)}
+        kinds = {n.type for n in upstream(factor)}
         is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
         if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
             return self._coated(a, b, factor)
@@ -446,7 +449,7 @@ class _Surface:
 
     def _absorption(self, output):
         """Returns the absorption coefficient of a homogeneous volume, per metre; None without one."""
-        source = _source(output.inputs['Volume'])
+        source = source_of(output.inputs['Volume'])
         if source is None:
             return None
         node = source.node
@@ -509,7 +512,7 @@ class _Surface:
 
     def _is_known(self, name, value):
         """Returns whether the exporter finds the image of a parameter, and nothing else changes it."""
-        nodes = _upstream(value)
+        nodes = upstream(value)
         if name == 'Base Color' and value.node.type == 'MIX' and self._is_product(value.node):
             nodes = [n for n in nodes if n != value.node]
         if any(n.type not in _KNOWN for n in nodes):
@@ -541,7 +544,7 @@ class _Surface:
         node = value.node
         if node.type != 'NORMAL_MAP' or node.space != 'TANGENT' or node.inputs['Strength'].links:
             return False
-        source = _source(node.inputs['Color'])
+        source = source_of(node.inputs['Color'])
         return source is not None and source.node.type == 'TEX_IMAGE' and self._is_known('Normal', source)
 
     # Writing
@@ -646,11 +649,11 @@ class _Surface:
 
     @staticmethod
     def _layers(value):
-        return tuple({n.uv_map for n in _upstream(value) if n.type == 'UVMAP' and n.uv_map})
+        return tuple({n.uv_map for n in upstream(value) if n.type == 'UVMAP' and n.uv_map})
 
     @staticmethod
     def _size(value):
-        sizes = [max(n.image.size) for n in _upstream(value) if n.type == 'TEX_IMAGE' and n.image]
+        sizes = [max(n.image.size) for n in upstream(value) if n.type == 'TEX_IMAGE' and n.image]
         return min(4096, max(sizes, default=0))
 
     def _image(self, pixels, what, is_colour):
@@ -745,7 +748,7 @@ class _Surface:
         self.tree.links.new(node.outputs[0], new.inputs['Normal'])
 
     def _write_known_normal(self, value):
-        strength, shown = value.node.inputs['Strength'], _source(value.node.inputs['Color']).node
+        strength, shown = value.node.inputs['Strength'], source_of(value.node.inputs['Color']).node
         pixels = images.numbers_of(shown.image)
         self._note_leaning(pixels, strength.default_value)
         if 0 < strength.default_value < 1:
@@ -835,9 +838,9 @@ def _keep_used_colours(mesh):
     wanted = set()
     for material in mesh.materials:
         node = principled(material)
-        source = _source(principled_input(node, 'Base Color')) if node else None
+        source = source_of(principled_input(node, 'Base Color')) if node else None
         if source is not None:
-            wanted |= {n.layer_name for n in _upstream(source) if n.type == 'VERTEX_COLOR'}
+            wanted |= {n.layer_name for n in upstream(source) if n.type == 'VERTEX_COLOR'}
     layers = mesh.color_attributes
     if "" in wanted and 0 <= layers.render_color_index < len(layers):
         wanted.add(layers[layers.render_color_index].name)

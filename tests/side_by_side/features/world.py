@@ -112,3 +112,15 @@ def world_behind(scene):
 def world_volume(scene):
     tree = scene.world.node_tree
     tree.links.new(node(tree, 'ShaderNodeVolumeScatter', Density=0.1).outputs[0], tree.get_output_node('ALL').inputs['Volume'])
+
+
+@case("world: strength by Math, colour by Hue, Gamma and a Mix of numbers")
+def world_constants(scene):
+    tree = scene.world.node_tree
+    background = tree.nodes["Background"]
+    power = node(tree, 'ShaderNodeMath', operation='POWER')
+    power.inputs[0].default_value, power.inputs[1].default_value = 1.3, 3
+    hue, gamma = node(tree, 'ShaderNodeHueSaturation', Hue=0.6, Saturation=1.5, Color=(0.4, 0.3, 0.2, 1)), node(tree, 'ShaderNodeGamma', Gamma=1.2)
+    mix = node(tree, 'ShaderNodeMixRGB', blend_type='SCREEN', Fac=0.5, Color2=(0, 0.3, 0.1, 1))
+    for a, b in ((power, background.inputs[1]), (hue, gamma.inputs[0]), (gamma, mix.inputs[1]), (mix, background.inputs[0])):
+        tree.links.new(a.outputs[0], b)
