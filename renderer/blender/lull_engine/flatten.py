@@ -1,9 +1,13 @@
 """Makes a scene of plain meshes, one for each that a render shows, however it came about: modifiers, instances, particles,
 metaballs and text. Copies share their mesh."""
+import functools
+
 import bpy
 from mathutils import Matrix
 
+import generated
 import matrices
+import normals
 import strands
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
@@ -22,6 +26,7 @@ def flatten(flat, wanted, override, moving, notes):
     Returns: its objects. Lights and cameras are left to others.
     """
     made, meshes, shown, copied = [], {}, set(), {}
+    undeformed = generated.undeformed()
     graph, layer = bpy.context.evaluated_depsgraph_get(), bpy.context.view_layer
     # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
     listed = {i.parent.original for i in graph.object_instances if i.is_instance}
@@ -50,7 +55,11 @@ def flatten(flat, wanted, override, moving, notes):
             continue
         key = _key(o)
         if key not in meshes:
-            meshes[key] = _mesh(o, instance.is_instance, graph, override)
+            mesh = meshes[key] = _mesh(o, instance.is_instance, graph, override)
+            if mesh is not None and o.type == 'MESH' and normals.lean_from_faces(mesh):
+                notes.add("lit otherwise along edges, where smooth normals lean far from faces", o.original.name)
+            if mesh is not None and o.type == 'MESH':
+                generated.settle(mesh, o, undeformed, notes)
         if meshes[key] is not None:
             if instance.is_instance:
                 copied[key] = copied.get(key, 0) + 1
@@ -136,8 +145,17 @@ def _place(flat, original, mesh, matrix):
     o.matrix_world = matrix
     o["lull_source"], o["lull_group"] = original.name, original.lightgroup
     o.color, o.pass_index = original.color, original.pass_index
+    for name in _properties() & set(original.keys()):
+        o[name] = original[name]
     flat.collection.objects.link(o)
     return o
+
+
+@functools.cache
+def _properties():
+    """Returns the names of properties of objects that materials ask for."""
+    trees = [m.node_tree for m in bpy.data.materials if m.use_nodes] + list(bpy.data.node_groups)
+    return {n.attribute_name for tree in trees for n in tree.nodes if n.type == 'ATTRIBUTE' and n.attribute_type == 'OBJECT'}
 
 
 def move_sheared(made):
@@ -199,9 +217,11 @@ def _asks(tree, is_copy):
         used = {o.name for o in node.outputs if o.links}
         is_placed = node.type == 'NEW_GEOMETRY' and 'Position' in used or \
             node.type == 'TEX_COORD' and node.object and 'Object' in used
-        is_named = node.type == 'OBJECT_INFO' and used & ({'Location', 'Random'} if is_copy else used)
+        is_named = node.type == 'OBJECT_INFO' and bool(used & ({'Location', 'Random'} if is_copy else used))
+        is_named |= not is_copy and node.type == 'ATTRIBUTE' and node.attribute_type == 'OBJECT'
         is_copied = is_copy and (node.type == 'PARTICLE_INFO' and used or
-                                 node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER')
+                                 node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER' or
+                                 getattr(node, "from_instancer", False) and used)
         if is_placed or is_named or is_copied or node.type == 'GROUP' and node.node_tree and _asks(node.node_tree, is_copy):
             return True
     return False

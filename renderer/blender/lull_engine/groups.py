@@ -6,12 +6,15 @@ _OF_THE_TREE = {"rna_type", "type", "inputs", "outputs", "internal_links", "dime
 
 
 def inline(tree):
-    """Replaces groups, of any depth. Those without a tree stay."""
-    while True:
-        group = next((n for n in tree.nodes if n.type == 'GROUP' and n.node_tree and not n.mute), None)
-        if group is None:
-            return
+    """Replaces groups, of any depth, and removes muted nodes, which exporters take for others. Groups without a tree stay."""
+    while group := next((n for n in tree.nodes if n.type == 'GROUP' and n.node_tree and not n.mute), None):
         _expand(tree, group)
+    for node in [n for n in tree.nodes if n.mute]:
+        for output in node.outputs:
+            inside = next((link.from_socket for link in node.internal_links if link.to_socket == output), None)
+            if inside is not None:
+                replace(tree, output, inside)
+        tree.nodes.remove(node)
 
 
 def _copy(node, tree):

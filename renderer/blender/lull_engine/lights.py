@@ -138,7 +138,10 @@ def _plain(socket, baker):
         return (value,)
     if not isinstance(value, bpy.types.NodeSocket):
         return value
-    return _baked(value, baker) if surfaces.is_even(value) else None
+    if not surfaces.is_even(value):
+        return None
+    found = _baked(value, baker)
+    return (surfaces.grey(*found),) if socket.type == 'VALUE' and value.type == 'RGBA' else found
 
 
 def _baked(output, baker):

@@ -242,3 +242,22 @@ def lamp_by_place(scene):
 def lamp_unlinked(scene):
     tree, emission = noded(lamp('POINT', 100, (0, -2, 2)).data)
     tree.links.remove(emission.outputs[0].links[0])
+
+
+@case("lamps that the camera sees")
+def lamps_seen(scene):
+    for at, kind, turned in ((-1.5, 0, 1.5), 'POINT', (0, 0, 0)), ((1.5, 0, 1.5), 'SPOT', (1.3, 0, 0)), ((0, 1, 2), 'AREA', (1.2, 0, 0)):
+        o = lamp(kind, 20, at, turned)
+        o.visible_camera = True
+        if kind == 'AREA':
+            o.data.size = 0.5
+        else:
+            o.data.shadow_soft_size = 0.3
+
+
+@case("area lamps of negative scale, one without a width")
+def area_scaled(scene):
+    without("key")
+    for x, scale in (-2, (-1, 1, 1)), (0, (1, 1, -1)), (2, (-1, -1, 1)):
+        lamp('AREA', 60, (x, -0.5, 1.5), (0.2, 0.3, 0), size=1).scale = scale
+    lamp('AREA', 60, (0, -1.5, 3), shape='RECTANGLE', size=1, size_y=0)
