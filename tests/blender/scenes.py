@@ -378,7 +378,8 @@ def sides(folder):
     muted.inputs['Scale'].default_value = (9, 9, 9)
     card(-1, made)
     made, (named, shown) = linked("lacking", ('UVMap', 'UV'), ('TexImage', 'Color'))
-    named.uv_map, shown.image = "nowhere", steps
+    named.uv_map = "nowhere"
+    shown.image = stored(folder, "framed", [[(0.7, 0.2, 0.1) if {x, y} & {0, 3} else (0.1, 0.2, 0.7) for x in range(4)] for y in range(4)])
     card(0, made)
     made, (attribute,) = linked("property", ('Attribute', 'Color'))
     attribute.attribute_type, attribute.attribute_name = 'OBJECT', "paint"

@@ -56,9 +56,10 @@ def flatten(flat, wanted, override, moving, notes):
         key = _key(o)
         if key not in meshes:
             mesh = meshes[key] = _mesh(o, instance.is_instance, graph, override)
-            if mesh is not None and o.type == 'MESH' and normals.lean_from_faces(mesh):
+            is_mesh = mesh is not None and o.original.type == 'MESH'  # a text lists a mesh, too
+            if is_mesh and normals.lean_from_faces(mesh):
                 notes.add("lit otherwise along edges, where smooth normals lean far from faces", o.original.name)
-            if mesh is not None and o.type == 'MESH':
+            if is_mesh:
                 generated.settle(mesh, o, undeformed, notes)
         if meshes[key] is not None:
             if instance.is_instance:
