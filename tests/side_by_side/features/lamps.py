@@ -259,5 +259,6 @@ def lamps_seen(scene):
 def area_scaled(scene):
     without("key")
     for x, scale in (-2, (-1, 1, 1)), (0, (1, 1, -1)), (2, (-1, -1, 1)):
-        lamp('AREA', 60, (x, -0.5, 1.5), (0.2, 0.3, 0), size=1).scale = scale
+        o = lamp('AREA', 60, (x, -0.5, 1.5), (0.2, 0.3, 0), size=1)
+        o.scale, o.visible_camera = scale, True
     lamp('AREA', 60, (0, -1.5, 3), shape='RECTANGLE', size=1, size_y=0)
