@@ -48,7 +48,7 @@ class AddOn(unittest.TestCase):
         cls.blender("--factory-startup", "--python-expr",
                     f"import bpy; bpy.ops.preferences.addon_install(filepath={ADDON!r})")
         for frame, spp, names in ((1, 4 * SPP, ["factory", "lamps", "glass", "veil", "nodes", "pane", "passes", "fur",
-                                                 "cards", "mixtures"]),
+                                                 "cards", "mixtures", "sides"]),
                                   (11, 4 * SPP, ["skin"]), (1, 0, ["doubtful"])):
             what = {"folder": str(cls.folder), "names": names, "size": SIZE, "spp": spp, "frame": frame}
             cls.blender("--factory-startup", "--python", str(HERE / "scenes.py"), "--",
@@ -162,6 +162,11 @@ class AddOn(unittest.TestCase):
     def test_mixtures_and_places_of_textures(self):
         passes, said = self.render("mixtures")
         self.assert_close("mixtures", passes, 0.01, 0.02)
+        self.assertNotIn("Warning", said)
+
+    def test_sides_corners_and_coordinates(self):
+        passes, said = self.render("sides")
+        self.assert_close("sides", passes, 0.01, 0.02)
         self.assertNotIn("Warning", said)
 
     def test_keeps_an_orthographic_camera(self):
@@ -352,7 +357,7 @@ bpy.data.lights['Light'].use_shadow = False""")
     def test_warns_of_all_that_differs(self):
         passes, said = self.render("doubtful", SAMPLES + "s.texture = 64")
         for text in (
-                "1 material is the same from all sides and for all rays: 'one-sided'",
+                "1 material is the same from all sides and for all rays: 'by rays'",
                 "1 material is with the normals of the first of mixed surfaces that has any: 'bumped'",
                 "1 material is displaced as finely as meshes are, without bump: 'moved'",
                 "1 material is letting light through where transparent: 'veiled'",
@@ -360,13 +365,15 @@ bpy.data.lights['Light'].use_shadow = False""")
                 "1 material is in part in the viewport colour, as one of its surfaces is unknown: 'half known'",
                 "1 material is of the same transmission everywhere: 'patchy'",
                 "1 material is occluded by the same object alone: 'shaded'",
-                "1 material is without properties of objects: 'named'",
                 "1 material is reflecting as a clear coat does: 'facing'",
                 "1 material is brighter where light falls flat, as normals lean far: 'leaning'",
                 "1 object is brighter near the edge of its own shadow, without its Shading Offset: 'soft'",
                 "1 light is shining in another direction, being sheared: 'askew'",
                 "passes that lull lacks are missing: cryptomatte above 6 levels",
                 "1 material is without anisotropic: 'brushed'",
+                "1 material is without diffuse roughness: 'rough'",
+                "1 material is without the length, width and direction of hair: 'haired'",
+                "1 object is lit otherwise along edges, where smooth normals lean far from faces: 'round'",
                 "blurred, by images of 64 pixels over whole meshes (Texture Size): 'fine'",
                 "1 material is the same on all copies: 'random'",
                 "1 light group is black in its pass, as one of more than 16: 'group",

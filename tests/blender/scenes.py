@@ -72,7 +72,9 @@ def lamps(folder):
     lamp('POINT', 60, (-3, -2, 2), shadow_soft_size=0.3, color=(1, 0.8, 0.6))
     noded = lamp('POINT', 10, (3, 3, 2)).data
     noded.use_nodes = True
-    noded.node_tree.nodes["Emission"].inputs['Strength'].default_value = 3
+    times = noded.node_tree.nodes.new('ShaderNodeMath')
+    times.operation, times.inputs[0].default_value, times.inputs[1].default_value = 'MULTIPLY', 1.5, 2
+    noded.node_tree.links.new(times.outputs[0], noded.node_tree.nodes["Emission"].inputs['Strength'])
     noded.node_tree.nodes["Emission"].inputs['Color'].default_value = (1, 0.5, 0.5, 1)
     lamp('SUN', 0.3, (0, 0, 5), (0.5, 0.3, 0), angle=0)
     lamp('SPOT', 150, (2, -3, 4), (0.6, 0.3, 0), spot_size=0.8)
@@ -334,6 +336,74 @@ def stored(folder, name, rows, colours='sRGB'):
     return image
 
 
+def card(x, made):
+    """Adds an upright rectangle with UVs. Returns its mesh."""
+    mesh = bpy.data.meshes.new("card")
+    mesh.from_pydata([(x - 0.45, 0, 0), (x + 0.45, 0, 0), (x + 0.45, 0, 2), (x - 0.45, 0, 2)], [], [(0, 1, 2, 3)])
+    for loop, uv in zip(mesh.uv_layers.new(name="UVMap").data, ((0, 0), (1, 0), (1, 1), (0, 1))):
+        loop.uv = uv
+    mesh.materials.append(made)
+    bpy.context.collection.objects.link(bpy.data.objects.new("card", mesh))
+    return mesh
+
+
+def linked(name, *kinds):
+    """Returns a matte material whose colour comes through nodes in a row, each linked by the output that is named after its kind,
+    and its nodes."""
+    made = matte(name)
+    tree, socket, found = made.node_tree, made.node_tree.nodes[1].inputs['Color'], []
+    for kind, output in reversed(kinds):
+        found.insert(0, tree.nodes.new('ShaderNode' + kind))
+        tree.links.new(found[0].outputs[output], socket)
+        socket = next(iter(found[0].inputs), None)
+    return made, found
+
+
+def sides(folder):
+    """Upright rectangles: colours of corners; a channel of an image; an image moved by two Mapping nodes, the second one muted, the
+    third one not; one over a UV map that is lacking; a property of the object; other surfaces on both sides. A tapered cube with
+    Generated coordinates."""
+    floor(matte())
+    lamp('SUN', 2, (0, 0, 5), (0.9, 0.2, 0), angle=0)
+    steps = stored(folder, "steps", [[(0.1 + 0.1 * x, 0.1 * y, 0.3) for x in range(8)] for y in range(8)])
+    corners = card(-3, linked("corners", ('VertexColor', 'Color'))[0]).color_attributes.new("mask", 'BYTE_COLOR', 'CORNER')
+    for one, colour in zip(corners.data, ((0.8, 0.1, 0.1, 1), (0.1, 0.8, 0.1, 1), (0.1, 0.1, 0.8, 1), (0.8, 0.8, 0.1, 1))):
+        one.color = colour
+    made, (shown, _) = linked("channel", ('TexImage', 'Color'), ('SeparateColor', 'Red'))
+    shown.image = steps
+    card(-2, made)
+    made, (_, turned, muted, moved, shown) = linked("moved", ('TexCoord', 'UV'), *[('Mapping', 'Vector')] * 3, ('TexImage', 'Color'))
+    shown.image, muted.mute = steps, True
+    turned.inputs['Rotation'].default_value, moved.inputs['Scale'].default_value = (0, 0, 0.5), (0.5, 1, 1)
+    muted.inputs['Scale'].default_value = (9, 9, 9)
+    card(-1, made)
+    made, (named, shown) = linked("lacking", ('UVMap', 'UV'), ('TexImage', 'Color'))
+    named.uv_map = "nowhere"
+    shown.image = stored(folder, "framed", [[(0.7, 0.2, 0.1) if {x, y} & {0, 3} else (0.1, 0.2, 0.7) for x in range(4)] for y in range(4)])
+    card(0, made)
+    made, (attribute,) = linked("property", ('Attribute', 'Color'))
+    attribute.attribute_type, attribute.attribute_name = 'OBJECT', "paint"
+    card(1, made)
+    bpy.context.collection.objects[-1]["paint"] = [0.2, 0.5, 0.7]
+    for x, turn in (2, 0), (3, math.pi):
+        made = matte("front", (0.7, 0.2, 0.1, 1))
+        tree = made.node_tree
+        front, (mix, back, where) = tree.nodes[1], [tree.nodes.new('ShaderNode' + kind) for kind in ('MixShader', 'BsdfDiffuse', 'NewGeometry')]
+        back.inputs['Color'].default_value = (0.1, 0.6, 0.2, 1)
+        for a, b in ((where.outputs['Backfacing'], mix.inputs[0]), (front.outputs[0], mix.inputs[1]), (back.outputs[0], mix.inputs[2]),
+                     (mix.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])):
+            tree.links.new(a, b)
+        card(0, made)
+        o = bpy.context.collection.objects[-1]
+        o.location.x, o.rotation_euler.z = x, turn
+    bpy.ops.mesh.primitive_cube_add(size=0.7, location=(0, -2, 0.35))
+    taper = dress(linked("generated", ('TexNoise', 'Color'))[0]).modifiers.new("taper", 'SIMPLE_DEFORM')
+    taper.deform_method, taper.factor, taper.deform_axis = 'TAPER', 1.5, 'Z'
+    world = bpy.context.scene.world = bpy.data.worlds.new("grey")
+    world.use_nodes = True
+    camera((0, -7, 2.2), (1.4, 0, 0), lens=32)
+
+
 def cards(folder):
     """Upright rectangles: an image of few pixels that differ much; one with an alpha that no node asks for; its alpha on a plain
     colour; an image with a mapping in its own node; colours of vertices that are not the first; light added to a
@@ -342,15 +412,6 @@ def cards(folder):
     lamp('SUN', 2, (0, 0, 5), (0.9, 0.2, 0), angle=0)
     contrast = stored(folder, "contrast", [[((x + y) % 2 * 0.9,) * 3 for x in range(4)] for y in range(4)])
     veiled = stored(folder, "veiled", [[(0.9, 0.2, 0.1, x // 4) for x in range(8)] for _ in range(8)])
-
-    def card(x, made):
-        mesh = bpy.data.meshes.new("card")
-        mesh.from_pydata([(x - 0.45, 0, 0), (x + 0.45, 0, 0), (x + 0.45, 0, 2), (x - 0.45, 0, 2)], [], [(0, 1, 2, 3)])
-        for loop, uv in zip(mesh.uv_layers.new(name="UVMap").data, ((0, 0), (1, 0), (1, 1), (0, 1))):
-            loop.uv = uv
-        mesh.materials.append(made)
-        bpy.context.collection.objects.link(bpy.data.objects.new("card", mesh))
-        return mesh
 
     def fed(kind, image=None, made=None, socket='Color', output=0):
         made = made or matte("card")
@@ -460,14 +521,12 @@ def doubtful(folder):
     veiled.cycles.use_transparent_shadow = False
     coated = fed("coated", 'Clearcoat Normal', 'Bump')
     coated.node_tree.nodes["Principled BSDF"].inputs['Clearcoat'].default_value = 1
-    shown = [mixed("one-sided", 'BsdfDiffuse', 'BsdfTransparent', 'NewGeometry', 'Backfacing')[0], bumped, moved, veiled, coated,
+    shown = [mixed("by rays", 'BsdfDiffuse', 'BsdfTransparent', 'LightPath', 'Is Glossy Ray')[0], bumped, moved, veiled, coated,
              mixed("half known", 'BsdfDiffuse', 'BsdfHairPrincipled')[0], fed("patchy", 'Transmission', 'TexChecker'),
-             fed("shaded", 'Base Color', 'AmbientOcclusion'), material("brushed", 'BsdfAnisotropic', Anisotropy=0.5)]
+             fed("shaded", 'Base Color', 'AmbientOcclusion'), material("brushed", 'BsdfAnisotropic', Anisotropy=0.5), fed("haired", 'Roughness', 'HairInfo', 'Length'),
+             material("rough", 'BsdfDiffuse', Roughness=0.5)]
     for i, made in enumerate(shown):
         sphere(made, (i - 4, 0, 0.4), 0.4)
-    named = fed("named", 'Base Color', 'Attribute')
-    next(n for n in named.node_tree.nodes if n.type == 'ATTRIBUTE').attribute_type = 'OBJECT'
-    sphere(named, (0, 2, 0.4), 0.4)
     floor(fed("fine", 'Base Color', 'TexNoise', 1, Scale=500)).scale = (10, 10, 1)
     facing, _ = mixed("facing", 'BsdfDiffuse', 'BsdfGlossy', 'LayerWeight', 1)
     sphere(facing, (2, 2, 0.4), 0.4)
@@ -478,6 +537,8 @@ def doubtful(folder):
     tree.links.new(leant.outputs[0], next(n for n in tree.nodes if n.type == 'NORMAL_MAP').inputs['Color'])
     sphere(leaning, (1, 2, 0.4), 0.4).cycles.shadow_terminator_offset = 0.5
     bpy.context.object.name = "soft"
+    bpy.ops.mesh.primitive_cube_add(size=0.5, location=(3, 3, 0.5))
+    dress(matte("plain"), smooth=True).name = "round"
 
     parts = bpy.data.collections.new("parts")
     bpy.ops.mesh.primitive_cube_add(size=0.3)

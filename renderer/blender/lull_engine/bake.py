@@ -1,9 +1,14 @@
 """Evaluates sockets of materials by Cycles: to a plain value, or to an image over UVs."""
+import bmesh
 import bpy
 import numpy as np
 
+import generated
+import scenes
+
 _UV = "lull"  # the layer of meshes whose own UVs do not fit
 _USED = 0.6  # of an image, by the faces of an unwrapped mesh
+_SHORT = 1e-6  # of the longest edge
 _PLAIN = 4  # pixels across, of a value that is the same everywhere
 
 
@@ -12,7 +17,7 @@ class Baker:
 
     def __init__(self, size, view):
         self.size, self.view = size, view
-        self.scene = bpy.data.scenes.new('lull bake')
+        self.scene = scenes.made_at('lull bake', view)
         self.scene.render.engine = 'CYCLES'
         self.scene.cycles.samples = 1
         self.scene.cycles.use_denoising = False
@@ -80,6 +85,7 @@ class Baker:
         return o
 
     def _unwrap(self, o):
+        _divide_degenerate(o.data)
         layers = o.data.uv_layers
         active = layers.active_index
         layers.active = layers.new(name=_UV)
@@ -103,17 +109,19 @@ class Baker:
         are the slots of its other materials."""
         image = bpy.data.images.new('bake', size, size, alpha=True, float_buffer=True)
         image.colorspace_settings.name = 'Non-Color'
+        image.pixels.foreach_set(np.zeros(size * size * 4, np.float32))  # clearing would leave an alpha of 1
         before, mesh = bpy.context.window.scene, o.data
         own, blank = material.copy(), bpy.data.materials.new('blank')
         blank.use_nodes = True
         if kind == 'EMIT':
             _emit(own.node_tree, own.node_tree.nodes[socket.node.name].outputs[_index(socket)])
+        generated.take(own.node_tree, mesh)
         _aim(own, image)
         _aim(blank, _scrap())
         for i in range(len(mesh.materials)):
             mesh.materials[i] = blank if i in others else own
         self._select(o)
-        bpy.ops.object.bake(type=kind)
+        bpy.ops.object.bake(type=kind, use_clear=False)
         pixels = np.empty(size * size * 4, np.float32)
         image.pixels.foreach_get(pixels)
         bpy.data.objects.remove(o)
@@ -123,6 +131,25 @@ class Baker:
         bpy.data.images.remove(image)
         bpy.context.window.scene = before
         return pixels.reshape(size, size, 4)
+
+
+def _divide_degenerate(mesh):
+    """Makes triangles of polygons with corners in one place, which would be unwrapped to a line."""
+    points, edges = np.empty(3 * len(mesh.vertices), np.float32), np.empty(2 * len(mesh.edges), int)
+    mesh.vertices.foreach_get("co", points)
+    mesh.edges.foreach_get("vertices", edges)
+    starts, ends = points.reshape(-1, 3)[edges.reshape(-1, 2)].transpose(1, 0, 2)
+    lengths = np.linalg.norm(ends - starts, axis=1)
+    short = np.flatnonzero(lengths < _SHORT * lengths.max(initial=0))
+    if not len(short):
+        return
+    edited = bmesh.new()
+    edited.from_mesh(mesh)
+    edited.edges.ensure_lookup_table()
+    faces = {f for i in short for f in edited.edges[i].link_faces if len(f.verts) > 3}
+    bmesh.ops.triangulate(edited, faces=list(faces))
+    edited.to_mesh(mesh)
+    edited.free()
 
 
 def _aim(material, image):

@@ -1,5 +1,4 @@
 """Moves the vertices of meshes as the displacement of their materials does."""
-import bpy
 import numpy as np
 
 import groups

@@ -17,6 +17,7 @@ import os
 import sys
 
 import bpy
+from mathutils import Matrix
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bake  # noqa: E402
@@ -25,6 +26,7 @@ import gltf  # noqa: E402
 import lights  # noqa: E402
 import motion  # noqa: E402
 import panes  # noqa: E402
+import scenes  # noqa: E402
 import strands  # noqa: E402
 import surfaces  # noqa: E402
 import world  # noqa: E402
@@ -169,6 +171,16 @@ def check_camera(scene):
         raise SystemExit(f"camera '{scene.camera.name}' is panoramic, which glTF does not support")
 
 
+def _upright(matrix):
+    """Returns the place of a camera without shear, of the same direction."""
+    z = matrix.col[2].xyz.normalized()
+    y = matrix.col[1].xyz
+    y = (y - y.project(z)).normalized()
+    made = Matrix((y.cross(z), y, z)).transposed().to_4x4()
+    made.translation = matrix.translation
+    return made
+
+
 def add_camera(scene, flat, moving, notes):
     """Copies the camera, with the properties that glTF lacks as `extras`."""
     camera = scene.camera
@@ -196,6 +208,9 @@ def add_camera(scene, flat, moving, notes):
     made.data["lull"] = lens
     evaluated = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
     made.matrix_world = evaluated.matrix_world
+    if flatten.is_sheared(evaluated.matrix_world):
+        made.matrix_world = _upright(evaluated.matrix_world)
+        notes.say(f"the picture of camera '{camera.name}' is not sheared as the scale of its parent has it")
     moving.mark(made, evaluated)
     flat.collection.objects.link(made)
     flat.camera = made
@@ -204,6 +219,7 @@ def add_camera(scene, flat, moving, notes):
 
 
 def export(path):
+    gltf.mend_exporter()
     bpy.ops.export_scene.gltf(
         filepath=path, export_format='GLB' if path.endswith('.glb') else 'GLTF_SEPARATE', use_active_scene=True, use_renderable=True,
         export_cameras=True, export_lights=True, export_extras=True, export_apply=False,
@@ -221,11 +237,11 @@ def main():
     scene = load(what)
     layer = bpy.context.window.view_layer
     wanted = show_as_rendered(scene, layer)
-    flat = bpy.data.scenes.new('lull')
     # A pose is evaluated at the frame only in a graph that is up to date.
     bpy.context.evaluated_depsgraph_get()
     moving = motion.Motion(scene, what["frame"] + what["subframe"], notes)
     scene.frame_set(what["frame"], subframe=what["subframe"])
+    flat = scenes.made_at('lull', scene)
     check_camera(scene)
     note_film(scene, notes)
     made = flatten.flatten(flat, wanted, what["material"] and bpy.data.materials[what["material"]], moving, notes)
@@ -235,12 +251,12 @@ def main():
     for o in surfaces.prepare(made, baker, notes):
         notes.add("left out, being nothing but a volume", o["lull_source"])
         flat.collection.objects.unlink(o)
-    baker.end()
     if what["panes"]:
         panes.prepare(made, notes)
     flatten.move_sheared(made)
     base = os.path.join(what["folder"], what["name"])
-    lights.add(lamps, scene, flat, base, notes)
+    lights.add(lamps, scene, flat, base, baker, notes)
+    baker.end()
     flatten.leave_copies(flat)
     flatten.undress_others(flat)
     is_sharp = what["sharp"] and not moving.moves(scene.camera)

@@ -1,8 +1,13 @@
 """Makes a scene of plain meshes, one for each that a render shows, however it came about: modifiers, instances, particles,
 metaballs and text. Copies share their mesh."""
+import functools
+
 import bpy
 from mathutils import Matrix
 
+import generated
+import matrices
+import normals
 import strands
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
@@ -21,6 +26,7 @@ def flatten(flat, wanted, override, moving, notes):
     Returns: its objects. Lights and cameras are left to others.
     """
     made, meshes, shown, copied = [], {}, set(), {}
+    undeformed = generated.undeformed()
     graph, layer = bpy.context.evaluated_depsgraph_get(), bpy.context.view_layer
     # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
     listed = {i.parent.original for i in graph.object_instances if i.is_instance}
@@ -49,7 +55,12 @@ def flatten(flat, wanted, override, moving, notes):
             continue
         key = _key(o)
         if key not in meshes:
-            meshes[key] = _mesh(o, instance.is_instance, graph, override)
+            mesh = meshes[key] = _mesh(o, instance.is_instance, graph, override)
+            is_mesh = mesh is not None and o.original.type == 'MESH'  # a text lists a mesh, too
+            if is_mesh and normals.lean_from_faces(mesh):
+                notes.add("lit otherwise along edges, where smooth normals lean far from faces", o.original.name)
+            if is_mesh:
+                generated.settle(mesh, o, undeformed, notes)
         if meshes[key] is not None:
             if instance.is_instance:
                 copied[key] = copied.get(key, 0) + 1
@@ -131,12 +142,21 @@ def _place(flat, original, mesh, matrix):
     if is_sheared(matrix):
         o.parent = bpy.data.objects.get(_PARENT) or bpy.data.objects.new(_PARENT, None)
         o.matrix_parent_inverse = matrix
-        o["lull_matrix"] = [v for row in matrix for v in row]
+        o["lull_matrix"] = matrices.packed(matrix)
     o.matrix_world = matrix
     o["lull_source"], o["lull_group"] = original.name, original.lightgroup
     o.color, o.pass_index = original.color, original.pass_index
+    for name in _properties() & set(original.keys()):
+        o[name] = original[name]
     flat.collection.objects.link(o)
     return o
+
+
+@functools.cache
+def _properties():
+    """Returns the names of properties of objects that materials ask for."""
+    trees = [m.node_tree for m in bpy.data.materials if m.use_nodes] + list(bpy.data.node_groups)
+    return {n.attribute_name for tree in trees for n in tree.nodes if n.type == 'ATTRIBUTE' and n.attribute_type == 'OBJECT'}
 
 
 def move_sheared(made):
@@ -146,7 +166,7 @@ def move_sheared(made):
         if values is None:
             continue
         del o["lull_matrix"]
-        matrix = Matrix([values[i:i + 4] for i in range(0, 16, 4)])
+        matrix, = matrices.unpacked(values)
         o.data = o.data.copy()
         o.data.transform(matrix)
         if matrix.determinant() < 0:
@@ -154,8 +174,7 @@ def move_sheared(made):
         o.parent = None
         o.matrix_world = Matrix.Identity(4)
         if moves := o.get("lull_moves"):
-            places = [Matrix([moves[i:i + 4] for i in range(j, j + 16, 4)]) for j in (0, 16)]
-            o["lull_moves"] = [v for place in places for row in place @ matrix.inverted() for v in row]
+            o["lull_moves"] = matrices.packed(*(place @ matrix.inverted() for place in matrices.unpacked(moves)))
 
 
 def leave_copies(flat):
@@ -199,9 +218,11 @@ def _asks(tree, is_copy):
         used = {o.name for o in node.outputs if o.links}
         is_placed = node.type == 'NEW_GEOMETRY' and 'Position' in used or \
             node.type == 'TEX_COORD' and node.object and 'Object' in used
-        is_named = node.type == 'OBJECT_INFO' and used & ({'Location', 'Random'} if is_copy else used)
+        is_named = node.type == 'OBJECT_INFO' and bool(used & ({'Location', 'Random'} if is_copy else used))
+        is_named |= not is_copy and node.type == 'ATTRIBUTE' and node.attribute_type == 'OBJECT'
         is_copied = is_copy and (node.type == 'PARTICLE_INFO' and used or
-                                 node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER')
+                                 node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER' or
+                                 getattr(node, "from_instancer", False) and used)
         if is_placed or is_named or is_copied or node.type == 'GROUP' and node.node_tree and _asks(node.node_tree, is_copy):
             return True
     return False

@@ -3,10 +3,33 @@ import json
 import math
 import struct
 
+import numpy as np
+
 import motion
 
 _MAGIC, _JSON = b"glTF", 0x4E4F534A
 _MOST_GROUPS = 16  # that lull renders
+
+
+def mend_exporter():
+    """Lets Blender's exporter write the colours of corners: that of 3.4 looks them up by the number of the vertex."""
+    import io_scene_gltf2.blender.exp.gltf2_blender_gather_primitives_extract as extract
+    name = "_PrimitiveCreator__get_color_attribute"
+    theirs = getattr(getattr(extract, "PrimitiveCreator", None), name, None)
+    if theirs is None:
+        return
+
+    def of_corners(creator, attribute):
+        if attribute["blender_domain"] != 'CORNER':
+            theirs(creator, attribute)
+            return
+        layers = creator.blender_mesh.color_attributes
+        colours = np.empty(4 * len(creator.blender_mesh.loops), np.float32)
+        layers[layers.render_color_index].data.foreach_get("color", colours)
+        for i, channel in enumerate(colours.reshape(-1, 4).T):
+            creator.dots[attribute["gltf_attribute_name"] + str(i)] = channel
+
+    setattr(extract.PrimitiveCreator, name, of_corners)
 
 
 def _read(path):
@@ -81,7 +104,7 @@ def _patch_material(material):
     # Without this, glass would be a thin sheet; Blender's is solid.
     if "KHR_materials_transmission" in extensions and not extras.pop("lull_thin", None):
         extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
-    own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"))
+    own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"), ("lull_sided", "openBehind"))
            if extras.pop(mark, None)}  # Blender has numbers only
     if spread := extras.pop("lull_spread", None):
         own["spread"] = spread

@@ -6,12 +6,15 @@ _OF_THE_TREE = {"rna_type", "type", "inputs", "outputs", "internal_links", "dime
 
 
 def inline(tree):
-    """Replaces groups, of any depth. Those without a tree stay."""
-    while True:
-        group = next((n for n in tree.nodes if n.type == 'GROUP' and n.node_tree and not n.mute), None)
-        if group is None:
-            return
+    """Replaces groups, of any depth, and removes muted nodes, which exporters take for others. Groups without a tree stay."""
+    while group := next((n for n in tree.nodes if n.type == 'GROUP' and n.node_tree and not n.mute), None):
         _expand(tree, group)
+    for node in [n for n in tree.nodes if n.mute]:
+        for output in node.outputs:
+            inside = next((link.from_socket for link in node.internal_links if link.to_socket == output), None)
+            if inside is not None:
+                replace(tree, output, inside)
+        tree.nodes.remove(node)
 
 
 def _copy(node, tree):
@@ -64,9 +67,37 @@ def _copy_parts(old, new):
                     pass
 
 
+def replace(tree, output, source):
+    """Links what an output is linked to to another output, or to that of an input, or sets it to the input's plain value."""
+    if not source.is_output and source.links:
+        source = source.links[0].from_socket
+    for link in list(output.links):
+        _connect(tree, source, link.to_socket)
+
+
+def _connect(tree, source, socket):
+    """Links a socket to an output, or sets it to the plain value of an input."""
+    if source.is_output:
+        tree.links.new(source, socket)
+        return
+    for link in list(socket.links):
+        tree.links.remove(link)
+    if hasattr(socket, "default_value") and hasattr(source, "default_value"):
+        _set(socket, source.default_value)
+
+
+def copy_into(tree, nodes):
+    """Copies nodes of another tree, with the links between them. Returns the copies by their originals."""
+    made = {n: _copy(n, tree) for n in nodes}
+    for link in [l for n in nodes for s in n.inputs for l in s.links if l.from_node in made]:
+        tree.links.new(made[link.from_node].outputs[list(link.from_node.outputs).index(link.from_socket)],
+                       made[link.to_node].inputs[list(link.to_node.inputs).index(link.to_socket)])
+    return made
+
+
 def _expand(tree, group):
     inner = group.node_tree
-    made = {n: _copy(n, tree) for n in inner.nodes if n.type not in ('GROUP_INPUT', 'GROUP_OUTPUT', 'FRAME')}
+    made = copy_into(tree, [n for n in inner.nodes if n.type not in ('GROUP_INPUT', 'GROUP_OUTPUT', 'FRAME')])
     outputs = [n for n in inner.nodes if n.type == 'GROUP_OUTPUT']
     result = next((n for n in outputs if n.is_active_output), outputs[0] if outputs else None)
 
@@ -78,24 +109,18 @@ def _expand(tree, group):
             return outside.links[0].from_socket if outside.links else outside
         return made[node].outputs[list(node.outputs).index(link.from_socket)]
 
-    def connect(link_source, socket):
-        if link_source.is_output:
-            tree.links.new(link_source, socket)
-        elif hasattr(socket, "default_value") and hasattr(link_source, "default_value"):
-            _set(socket, link_source.default_value)
-
     for link in inner.links:
-        if link.from_node.type == 'FRAME' or link.to_node not in made:
+        if link.from_node.type != 'GROUP_INPUT' or link.to_node not in made:
             continue
         target = made[link.to_node].inputs[list(link.to_node.inputs).index(link.to_socket)]
-        connect(source(link), target)
+        _connect(tree, source(link), target)
     if result is not None:
         for i, outside in enumerate(group.outputs):
             inside = result.inputs[i]
             for link in list(outside.links):
                 target = link.to_socket
                 if inside.links:
-                    connect(source(inside.links[0]), target)
+                    _connect(tree, source(inside.links[0]), target)
                 elif hasattr(inside, "default_value") and hasattr(target, "default_value"):
                     _set(target, inside.default_value)
     tree.nodes.remove(group)

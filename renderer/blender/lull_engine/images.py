@@ -7,7 +7,8 @@ _APART = 0.01  # of its mean, by which an image is lighter in lull
 _FINER = 4  # times as fine
 _COARSE, _FINE, _LARGEST, _READ = 256, 2048, 4096, 8192  # pixels across: at least, at most, of any that are changed, of any that are read
 _ROWS = 256  # that are compared
-_replaced = {}  # None: by the same
+_GREY = 0.01  # of the numbers, by which channels of a grey image may differ
+_replaced = {}  # None: by the same; whether images are grey
 
 
 def numbers_of(image):
@@ -26,6 +27,16 @@ def made_of(pixels, name, colours, has_alpha=False):
     made.update()
     made.pack()
     return made
+
+
+def is_grey(image):
+    """Returns whether the channels of an image are the same, as far as it can be read."""
+    if image.channels == 1 or max(image.size) > _READ:
+        return image.channels == 1
+    if ("grey", image) not in _replaced:
+        colours = numbers_of(image)[::max(1, image.size[1] // _ROWS), :, :3]
+        _replaced["grey", image] = bool(np.ptp(colours, axis=-1).max() < _GREY)
+    return _replaced["grey", image]
 
 
 def prepare(tree, name, notes):

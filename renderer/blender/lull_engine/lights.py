@@ -7,6 +7,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 import flatten
+import groups
 import ies
 import surfaces
 from versions import principled_input
@@ -21,7 +22,7 @@ def find(scene, wanted):
             and (i.parent.original if i.is_instance else i.object.original) in wanted]
 
 
-def add(lamps, scene, flat, base, notes):
+def add(lamps, scene, flat, base, baker, notes):
     """Adds lights to a scene, point and spot lights with a radius, suns with an angle, and meshes for area lights, which glTF
     lacks. `base` begins the names of files beside that of the scene."""
     folded = {}
@@ -30,8 +31,10 @@ def add(lamps, scene, flat, base, notes):
             continue
         light = folded.get(o.data)
         if light is None:
-            light = folded[o.data] = _folded(o.data.copy(), "%s-profile%d.exr" % (base, len(folded)), notes)
-        if min(light.energy * c for c in light.color) < 0:
+            light = folded[o.data] = _folded(o.data.copy(), baker, "%s-profile%d.exr" % (base, len(folded)), notes)
+        if light.energy * max(light.color) == 0:
+            continue
+        if light.energy < 0:
             notes.add("left out, taking light away", o.name, "lights")
             continue
         if not o.visible_camera and any(_is_in_view(scene, p) for p in _points(scene, light, matrix)):
@@ -67,9 +70,9 @@ def _place(flat, o, data, matrix):
     flat.collection.objects.link(made)
 
 
-def _folded(light, profile, notes):
+def _folded(light, baker, profile, notes):
     if light.use_nodes:
-        _fold_nodes(light, profile, notes)
+        _fold_nodes(light, baker, profile, notes)
     if light.type in ('POINT', 'SPOT') and light.shadow_soft_size > 0 and "lull" not in light:
         light["lull"] = {"radius": light.shadow_soft_size}
     if light.type == 'SUN' and light.angle > 0:
@@ -98,76 +101,98 @@ def _blend_of(light):
     return 1 - math.acos(min(1, edge + way)) / half
 
 
-def _fold_nodes(light, profile, notes):
-    """Applies strength and colour of simple nodes to the light."""
-    output = next((n for n in light.node_tree.nodes if n.type == 'OUTPUT_LIGHT'), None)
-    links = output.inputs['Surface'].links if output else ()
-    emission = links[0].from_node if links else None
-    if emission is None or emission.type != 'EMISSION':
+def _fold_nodes(light, baker, profile, notes):
+    """Applies strength and colour of nodes to the light, where they are the same for all rays."""
+    groups.inline(light.node_tree)
+    output = light.node_tree.get_output_node('CYCLES')
+    surface = surfaces.source_of(output.inputs['Surface']) if output else None
+    if surface is None:
+        light.energy = 0
+        return
+    if surface.node.type != 'EMISSION':
         notes.add("shining without nodes", light.name, "lights")
         return
-    strength, colour = emission.inputs['Strength'], emission.inputs['Color']
-    source = colour.links[0].from_node if colour.links else None
-    if source is not None and source.type == 'BLACKBODY' and not source.inputs[0].links:
-        shown = _blackbody(source.inputs[0].default_value)
-    elif source is not None and source.type == 'RGB':
-        shown = source.outputs[0].default_value
-    else:
-        shown = colour.default_value
-        if source is not None:
-            notes.add("shining in the plain colour, without nodes", light.name, "lights")
-    if strength.links and strength.links[0].from_node.type == 'VALUE':
-        light.energy *= strength.links[0].from_socket.default_value
-    elif strength.links and strength.links[0].from_node.type == 'LIGHT_FALLOFF':
-        _fold_falloff(light, strength.links[0].from_socket, notes)
-    elif strength.links and _fold_profile(light, strength.links[0].from_node, profile):
-        if light.shadow_soft_size > 0:
+    strength, colour = (surface.node.inputs[name] for name in ('Strength', 'Color'))
+    _pass_falloff(light, notes)
+    shown = _plain(colour, baker)
+    if shown is None:
+        notes.add("shining in the plain colour, without nodes", light.name, "lights")
+        shown = colour.default_value[:3]
+    factor = _plain(strength, baker)
+    if factor is None:
+        factor = _fold_profile(light, strength, baker, profile)
+        if factor is None:
+            notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
+            factor = (1,)
+        elif light.shadow_soft_size > 0:
             notes.add("casting hard shadows, having an IES profile", light.name, "lights")
-    elif strength.links:
-        notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
-    else:
-        light.energy *= strength.default_value
-    light.color = [a * b for a, b in zip(light.color, shown)]
+    # Colours of lights are not negative.
+    light.energy *= factor[0] if min(shown) >= 0 else -abs(factor[0])
+    light.color = [a * abs(b) for a, b in zip(light.color, shown)]
 
 
-def _fold_falloff(light, output, notes):
-    inputs = output.node.inputs
-    light.energy *= inputs['Strength'].default_value
-    if output.name != 'Quadratic' or inputs['Smooth'].links or inputs['Smooth'].default_value > 0:
-        notes.add("dimming with the square of the distance, whatever its falloff", light.name, "lights")
-    if inputs['Strength'].links:
-        notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
+def _plain(socket, baker):
+    """Returns an input's value, three numbers or one; None where it is not the same for all rays."""
+    value = surfaces.value_of(socket)
+    if isinstance(value, (int, float)):
+        return (value,)
+    if not isinstance(value, bpy.types.NodeSocket):
+        return value
+    if not surfaces.is_even(value):
+        return None
+    found = _baked(value, baker)
+    return (surfaces.grey(*found),) if socket.type == 'VALUE' and value.type == 'RGBA' else found
 
 
-def _fold_profile(light, node, path):
-    """Gives a point light the profile of an IES node; returns whether it can have one."""
-    if light.type != 'POINT' or node.type != 'TEX_IES' or node.inputs['Vector'].links or node.inputs['Strength'].links:
-        return False
+def _baked(output, baker):
+    material = bpy.data.materials.new('light')
+    material.use_nodes = True
+    copies = groups.copy_into(material.node_tree, surfaces.upstream(output))
+    found = baker.plain(material, copies[output.node].outputs[list(output.node.outputs).index(output)])
+    bpy.data.materials.remove(material)
+    return tuple(float(v) for v in found)
+
+
+def _pass_falloff(light, notes):
+    """Lets the light dim with the square of the distance, as glTF's do."""
+    tree = light.node_tree
+    for node in [n for n in tree.nodes if n.type == 'LIGHT_FALLOFF']:
+        smooth = node.inputs['Smooth']
+        for output in node.outputs:
+            if output.links and (output.name != 'Quadratic' or smooth.links or smooth.default_value > 0):
+                notes.add("dimming with the square of the distance, whatever its falloff", light.name, "lights")
+            groups.replace(tree, output, node.inputs['Strength'])
+
+
+def _fold_profile(light, socket, baker, path):
+    """Gives a point light the profile of an IES node on which its strength depends. Returns the factor of the profile, in a tuple; None
+    if it can have none."""
+    nodes = [n for n in surfaces.upstream(surfaces.source_of(socket)) if n.type == 'TEX_IES']
+    if light.type != 'POINT' or len(nodes) != 1 or nodes[0].inputs['Vector'].links:
+        return None
+    node, = nodes
     try:
-        strengths = ies.strengths(ies.text_of(node))
+        profile = ies.strengths(ies.text_of(node))
     except ies.Unreadable:
-        return False
-    ies.paint(strengths * node.inputs['Strength'].default_value, path)
+        return None
+    tree = light.node_tree
+    times = tree.nodes.new('ShaderNodeMath')
+    times.operation = 'MULTIPLY'
+    groups.replace(tree, node.outputs[0], times.outputs[0])
+    strength = surfaces.source_of(node.inputs['Strength'])
+    if strength is None:
+        times.inputs[1].default_value = node.inputs['Strength'].default_value
+    else:
+        tree.links.new(strength, times.inputs[1])
+    found = []
+    for value in 0, 1, 2:
+        times.inputs[0].default_value = value
+        found.append(_plain(socket, baker))
+    if None in found or abs(found[0][0]) > 1e-4 * abs(found[1][0]) or abs(found[2][0] - 2 * found[1][0]) > 1e-3 * abs(found[1][0]):
+        return None
+    ies.paint(profile, path)
     light["lull"] = {"profile": os.path.basename(path)}
-    return True
-
-
-def _blackbody(kelvin):
-    """Returns the R, G, B of a luminance of 1 of a black body: its spectrum in 10 nm, by the fit of Wyman et al. (2013) to the
-    functions of the CIE."""
-    def lobe(x, mean, below, above):
-        return math.exp(-0.5 * ((x - mean) / (below if x < mean else above)) ** 2)
-
-    total = [0, 0, 0]
-    for nm in range(380, 781, 10):
-        radiance = (nm / 560) ** -5 / (math.exp(14387768.8 / (nm * kelvin)) - 1)
-        total[0] += radiance * (1.056 * lobe(nm, 599.8, 37.9, 31) + 0.362 * lobe(nm, 442, 16, 26.7)
-                                - 0.065 * lobe(nm, 501.1, 20.4, 26.2))
-        total[1] += radiance * (0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1))
-        total[2] += radiance * (1.217 * lobe(nm, 437, 11.8, 36) + 0.681 * lobe(nm, 459, 26, 13.8))
-    x, y, z = (t / total[1] for t in total)
-    return [max(0, v) for v in (3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z,
-                                0.0557 * x - 0.2040 * y + 1.0570 * z)]
+    return found[1]
 
 
 def _points(scene, light, matrix):

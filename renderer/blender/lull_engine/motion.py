@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+import matrices
+
 _STARTS = {'START': 0, 'CENTER': -0.5, 'END': -1}  # of the time that the shutter is open
 _BENT = 0.2  # of the way, that the middle may be off a straight one
 _Y_UP = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
@@ -58,7 +60,7 @@ class Motion:
         if start is None or not instance.matrix_world.determinant():
             return
         away = instance.matrix_world.inverted() @ made.matrix_world
-        made["lull_moves"] = [v for place in (start, end) for row in place @ away for v in row]
+        made["lull_moves"] = matrices.packed(start @ away, end @ away)
 
 
 class _Moment:
@@ -105,8 +107,7 @@ def animate(root, shutter, notes, shines):
             continue
         if times is None:
             times = data.add([(0,), (shutter,)], "SCALAR", is_bounded=True)
-        places = [Matrix([values[k + 4 * row:k + 4 * row + 4] for row in range(4)]) for k in (0, 16)]
-        for path, keys in _poses(places, "camera" in node).items():
+        for path, keys in _poses(matrices.unpacked(values), "camera" in node).items():
             channels.append({"sampler": len(samplers), "target": {"node": number, "path": path}})
             samplers.append({"input": times, "output": data.add(keys, "VEC4" if path == "rotation" else "VEC3")})
     if channels:

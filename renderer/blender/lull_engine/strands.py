@@ -2,6 +2,8 @@
 import bpy
 import numpy as np
 
+import uvs as uv_maps
+
 _SIDES, _MOST = (3, 8), 1_000_000  # of tubes, at least and at most; vertices, beyond which tubes have fewer sides
 _RADIUS = 0.005  # of curves that have none, as in Cycles
 
@@ -112,4 +114,18 @@ def _tubes(name, points, radii, material, uvs):
         layer = mesh.uv_layers.new(name="UVMap")
         layer.data.foreach_set("uv", np.repeat(uvs, (steps - 1) * sides * 4, 0).ravel())
     mesh.materials.append(material)
+    if uv_maps.asks_strands(material):
+        _tell_strands(mesh, count, steps, sides)
     return mesh
+
+
+def _tell_strands(mesh, count, steps, sides):
+    """Adds the UVs by which nodes know the strand, a random number, and the place along it."""
+    if not mesh.uv_layers:  # the first is that of images
+        mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", np.zeros(2 * len(mesh.loops)))
+    along = np.arange(steps) / (steps - 1)
+    quads = np.stack([along[:-1], along[:-1], along[1:], along[1:]], -1)  # of the corners
+    found = np.empty((count, steps - 1, sides, 4, 2))
+    found[..., 0] = np.random.default_rng(0).uniform(0.001, 0.999, count)[:, None, None, None]
+    found[..., 1] = quads[:, None]
+    mesh.uv_layers.new(name=uv_maps.STRANDS).data.foreach_set("uv", found.ravel())

@@ -3,7 +3,7 @@ import math
 
 import bpy
 import numpy as np
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 _ACROSS = 128  # pixels of a photograph of the disc
 _AROUND = 1.5  # of the disc's width, that is photographed

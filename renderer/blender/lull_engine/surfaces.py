@@ -10,13 +10,13 @@ import displacement
 import groups
 import images
 import normals
+import sides
 import solids
+import uvs
 from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 
-# Nodes that the exporter follows from an input of a Principled BSDF to an image.
-_KNOWN = {'TEX_IMAGE', 'MAPPING', 'UVMAP', 'NORMAL_MAP', 'SEPRGB', 'SEPARATE_COLOR', 'VERTEX_COLOR', 'REROUTE', 'TEX_COORD'}
 # What depends on the direction from which a surface is seen, or on who asks.
-_BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA'}
+_BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA', 'LIGHT_FALLOFF', 'TEX_IES'}
 _OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': ('Backfacing', 'Incoming'), 'TEX_COORD': ('Camera', 'Window', 'Reflection')}
 _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT_INFO', 'TANGENT', 'AMBIENT_OCCLUSION', 'BEVEL',
              'WIREFRAME', 'VERTEX_COLOR', 'ATTRIBUTE', 'TEX_NOISE', 'TEX_MUSGRAVE', 'TEX_VORONOI', 'TEX_WAVE', 'TEX_MAGIC',
@@ -40,6 +40,8 @@ _UNSAID = ('Subsurface', 'Anisotropic', 'Sheen', 'Specular Tint', 'Transmission 
 def prepare(made, baker, notes):
     """Converts the materials of flattened objects. Returns those objects that have no surface, with their volume alone."""
     users, empty = {}, []
+    for mesh in dict.fromkeys(o.data for o in made):
+        uvs.complete(mesh)
     displacement.apply(made, baker)
     for o in made:
         for i, material in enumerate(o.data.materials):
@@ -55,9 +57,15 @@ def prepare(made, baker, notes):
         if o.data in done:
             continue
         done.add(o.data)
+        pairs = {}
         for i, material in enumerate(o.data.materials):
             found = converted[material]
-            o.data.materials[i] = found if not isinstance(found, dict) else found[o.data]
+            if isinstance(found, sides.Pair):
+                pairs[i] = found.of(o.data)
+            else:
+                o.data.materials[i] = found if not isinstance(found, dict) else found[o.data]
+        if pairs:
+            sides.divide(o.data, pairs)
         _keep_used_colours(o.data)
     return empty
 
@@ -70,8 +78,9 @@ def _is_empty(material):
     return output is not None and not output.inputs['Surface'].links and bool(output.inputs['Volume'].links)
 
 
-def _convert(material, meshes, baker, notes):
-    """Returns a new material, or one for each mesh."""
+def _convert(material, meshes, baker, notes, side=None):
+    """Returns a new material, or one for each mesh; a sides.Pair of these if the sides differ. Of one `side`, a number of an input of
+    the node that mixes them, also None for nothing."""
     if material is None:
         return _of_colour('plain', (0.8, 0.8, 0.8))
     if not material.use_nodes:
@@ -79,14 +88,18 @@ def _convert(material, meshes, baker, notes):
     if _is_empty(material):
         return material
     output = material.node_tree.get_output_node('CYCLES')
-    if output is None or _source(output.inputs['Surface']) is None:
+    if output is None or source_of(output.inputs['Surface']) is None:
         return _of_colour(material.name, (0, 0, 0))
-    surface = _Surface(material, meshes, notes)
+    surface = _Surface(material, meshes, notes, side)
+    if surface.has_sides:
+        return sides.Pair(*(sides.open_behind(_convert(material, meshes, baker, notes, side)) for side in (1, 2)))
     if surface.parameters is None:
         return _of_viewport(material)
+    if side and surface.parameters['Alpha'] == 0:
+        return None
     if not surface.needs_mesh and not surface.differs_by_mesh():
         return surface.write(baker, None)
-    return {mesh: _Surface(material, meshes, notes).write(baker, o) for mesh, (o, _) in meshes.items()}
+    return {mesh: _Surface(material, meshes, notes, side).write(baker, o) for mesh, (o, _) in meshes.items()}
 
 
 def principled(material):
@@ -111,7 +124,7 @@ def _of_viewport(material):
     return _of_colour(material.name, material.diffuse_color[:3])
 
 
-def _source(socket):
+def source_of(socket):
     """Returns the output that an input comes from, None for none."""
     while socket.links:
         link = socket.links[0]
@@ -128,7 +141,28 @@ def _source(socket):
     return None
 
 
-def _upstream(socket):
+def value_of(socket):
+    """Returns an input's source, or its plain value: a number, or three."""
+    output = source_of(socket)
+    if output is not None and output.node.type not in ('RGB', 'VALUE'):
+        return output
+    value = (output or socket).default_value
+    if isinstance(value, (int, float)):
+        return value
+    return grey(*value[:3]) if socket.type == 'VALUE' else tuple(value)[:3]
+
+
+def grey(red, green, blue):
+    """Returns the number that nodes make of a colour."""
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+def is_even(output):
+    """Returns whether an output is the same everywhere, from all sides and for all rays."""
+    return not _is_by_view(output) and _place_of(output) == 'all'
+
+
+def upstream(socket):
     """Returns the nodes that an output depends on."""
     found, todo = [], [socket.node]
     while todo:
@@ -141,8 +175,8 @@ def _upstream(socket):
 
 def _is_by_view(socket):
     """Returns whether an output depends on the direction from which a surface is seen, or on who asks."""
-    return any(n.type in _BY_VIEW or any(o.links for o in n.outputs if o.name in _OUTPUTS_BY_VIEW.get(n.type, ()))
-               for n in _upstream(socket))
+    return any(n.type in _BY_VIEW or any(o.links for o in n.outputs if o.name in _OUTPUTS_BY_VIEW.get(n.type, ())) or
+               n.type == 'VECT_TRANSFORM' and 'CAMERA' in (n.convert_from, n.convert_to) for n in upstream(socket))
 
 
 def _is_whole(value):
@@ -152,12 +186,12 @@ def _is_whole(value):
 def _place_of(socket):
     """Returns 'all' for a value that is the same everywhere, 'uv' for one that the UVs decide, which repeats, else 'mesh'."""
     place = 'all'
-    for node in _upstream(socket):
+    for node in upstream(socket):
         if node.type in _BY_PLACE:
             return 'mesh'
         if node.type == 'TEX_COORD':
             used = [o.name for o in node.outputs if o.links]
-            if used != ['UV']:
+            if used != ['UV'] or node.from_instancer:
                 return 'mesh'
         if node.type == 'TEX_IMAGE':
             if node.projection != 'FLAT' or node.extension != 'REPEAT' or node.image and node.image.source == 'TILED' or \
@@ -174,10 +208,17 @@ def _place_of(socket):
     return place
 
 
+def _layers(value):
+    """Returns the names of the UV maps that an output depends on; "" is that of the render."""
+    nodes = upstream(value)
+    return {n.uv_map for n in nodes if n.type == 'UVMAP'} | {
+        "" for n in nodes if n.type == 'TEX_COORD' or n.type == 'TEX_IMAGE' and not n.inputs['Vector'].links}
+
+
 class _Surface:
     """A material as parameters: plain values, or outputs of nodes of a copy of its tree."""
 
-    def __init__(self, material, meshes, notes):
+    def __init__(self, material, meshes, notes, side):
         """`meshes` has an object and a slot for each mesh with the material."""
         self.name, self.original, self.meshes, self.notes = material.name, material, meshes, notes
         self.copy = material.copy()
@@ -185,38 +226,63 @@ class _Surface:
         self.tree = self.copy.node_tree
         groups.inline(self.tree)
         images.prepare(self.tree, self.name, notes)
+        if uvs.tell_strands(self.tree):
+            notes.add("without the length, width and direction of hair", self.name, "materials")
         output = self.tree.get_output_node('CYCLES')
+        root = source_of(output.inputs['Surface'])
+        self.has_sides = side is None and root is not None and sides.are_of(root.node, source_of)
+        if self.has_sides:
+            return
+        if side:
+            root = source_of(root.node.inputs[side])
+            if root is None:
+                root = self.tree.nodes.new('ShaderNodeBsdfDiffuse').outputs[0]
+                root.node.inputs['Color'].default_value = (0, 0, 0, 1)
+            self.tree.links.new(root, output.inputs['Surface'])
         self.absorbs = self._absorption(output)
         self.parameters = self._closure(output.inputs['Surface'])
-        self.needs_mesh = False  # then all that is baked is, over the same UVs
+        self._take_numbers()
+        self.needs_mesh, baked = False, []  # of a mesh, all that is baked is over the same UVs
         if self.parameters is None:
             notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
             return
-        self._mark(_source(output.inputs['Surface']).node)
-        if _source(output.inputs['Displacement']) and not displacement.moves(material):
-            self.parameters['Normal'] = _source(output.inputs['Displacement'])  # with which the normals are baked
+        self._mark(source_of(output.inputs['Surface']).node)
+        if source_of(output.inputs['Displacement']) and not displacement.moves(material):
+            self.parameters['Normal'] = source_of(output.inputs['Displacement'])  # with which the normals are baked
         self._note_what_holds_of_the_whole(output)
         for name, value in self.parameters.items():
             if name == 'Normal':
                 self.needs_mesh |= not self._is_known_normal(value)
             elif self._is_output(value) and not self._is_known(name, value):
-                self.needs_mesh |= _place_of(value) == 'mesh'
+                baked.append(value)
+        self.layers = set().union(*map(_layers, baked))
+        self.needs_mesh |= len(self.layers) > 1 or any(_place_of(v) == 'mesh' for v in baked)
+
+    def _take_numbers(self):
+        """Lets nodes make numbers of the colours and vectors of parameters that are numbers, where the exporter does not know them."""
+        for name, value in self.parameters.items():
+            if self._is_output(value) and value.type != 'VALUE' and not isinstance(_DEFAULTS.get(name, ()), tuple) and \
+                    not self._is_known(name, value):
+                number = self.tree.nodes.new('ShaderNodeMath')
+                number.operation, number.inputs[1].default_value = 'ADD', 0
+                self.tree.links.new(value, number.inputs[0])
+                self.parameters[name] = number.outputs[0]
 
     def differs_by_mesh(self):
         """Returns whether meshes have UV maps that it names in other places: materials of glTF have their numbers."""
-        names = {n.uv_map for v in self.parameters.values() if self._is_output(v) for n in _upstream(v)
+        names = {n.uv_map for v in self.parameters.values() if self._is_output(v) for n in upstream(v)
                  if n.type in ('UVMAP', 'NORMAL_MAP') and n.uv_map}
         return len({tuple(mesh.uv_layers.find(n) for n in sorted(names)) for mesh in self.meshes}) > 1
 
     def _note_what_holds_of_the_whole(self, output):
         p, notes = self.parameters, self.notes
-        if _source(output.inputs['Displacement']) and displacement_method(self.original) == 'BOTH':
+        if source_of(output.inputs['Displacement']) and displacement_method(self.original) == 'BOTH':
             notes.add("displaced as finely as meshes are, without bump", self.name, "materials")
         if not getattr(self.original.cycles, "use_transparent_shadow", True) and (p['Alpha'] != 1 or self.copy.get("lull_thin")):
             notes.add("letting light through where transparent", self.name, "materials")
-        nodes = [n for v in p.values() if self._is_output(v) for n in _upstream(v)]
-        if any(n.type == 'ATTRIBUTE' and n.attribute_type == 'OBJECT' for n in nodes):
-            notes.add("without properties of objects", self.name, "materials")
+        nodes = [n for v in p.values() if self._is_output(v) for n in upstream(v)]
+        if any(n.type == 'ATTRIBUTE' and n.attribute_type == 'VIEW_LAYER' for n in nodes):
+            notes.add("without properties of the view layer", self.name, "materials")
         if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for n in nodes):
             notes.add("occluded by the same object alone", self.name, "materials")
 
@@ -239,42 +305,31 @@ class _Surface:
 
     def _closure(self, socket):
         """Returns the parameters of a surface; None where nothing is known of it."""
-        source = _source(socket)
+        source = source_of(socket)
         if source is None:
             return None
         node = source.node
         read = getattr(self, "_" + node.type.lower(), None)
         return read(node) if read else None
 
-    def _value(self, socket):
-        """Returns an input's source, or its plain value: a number, or three."""
-        source = _source(socket)
-        if source is not None:
-            if source.node.type in ('RGB', 'VALUE'):
-                plain = source.default_value
-                return plain if source.node.type == 'VALUE' else tuple(plain)[:3]
-            return source
-        value = socket.default_value
-        return value if isinstance(value, (int, float)) else tuple(value)[:3]
-
     def _made(self, node, **parameters):
         found = dict(_DEFAULTS, **{k.replace('_', ' '): v for k, v in parameters.items()})
         normal = node.inputs.get('Normal')
-        if normal is not None and _source(normal) is not None:
-            found['Normal'] = _source(normal)
+        if normal is not None and source_of(normal) is not None:
+            found['Normal'] = source_of(normal)
         return found
 
     def _bsdf_principled(self, node):
         found = self._made(node)
         for name in _INPUTS:
-            found[name] = self._value(principled_input(node, name))
+            found[name] = value_of(principled_input(node, name))
         if HAS_ADDED_INTERFACE:
             found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
             self.copy["lull_adds"] = True
         if found['Clearcoat'] != 0 and principled_input(node, 'Clearcoat Normal').links:
             self.notes.add("with the normals of the surface on its clear coat", self.name, "materials")
         emission = principled_input(node, 'Emission')
-        found['Radiance'] = self._times(self._value(emission), self._value(node.inputs['Emission Strength']))
+        found['Radiance'] = self._times(value_of(emission), value_of(node.inputs['Emission Strength']))
         for name in _UNSAID:
             unsaid = principled_input(node, name)
             if unsaid is not None and (unsaid.links or not _is_neutral(unsaid)):
@@ -282,10 +337,12 @@ class _Surface:
         return found
 
     def _bsdf_diffuse(self, node):
-        return self._made(node, Base_Color=self._value(node.inputs['Color']))
+        if 'Roughness' in node.inputs and (node.inputs['Roughness'].links or node.inputs['Roughness'].default_value > 0):
+            self.notes.add("without diffuse roughness", self.name, "materials")
+        return self._made(node, Base_Color=value_of(node.inputs['Color']))
 
     def _bsdf_translucent(self, node):
-        return self._made(node, Base_Color=(0, 0, 0), Through=self._value(node.inputs['Color']))
+        return self._made(node, Base_Color=(0, 0, 0), Through=value_of(node.inputs['Color']))
 
     def _as_diffuse(self, node):
         self.notes.add("shown as diffuse ones", self.name, "materials")
@@ -294,7 +351,7 @@ class _Surface:
     _bsdf_velvet = _bsdf_sheen = _bsdf_toon = _subsurface_scattering = _bsdf_hair = _as_diffuse
 
     def _bsdf_glossy(self, node):
-        return self._made(node, Base_Color=self._value(node.inputs['Color']), Metallic=1, Roughness=self._roughness(node))
+        return self._made(node, Base_Color=value_of(node.inputs['Color']), Metallic=1, Roughness=self._roughness(node))
 
     def _bsdf_anisotropic(self, node):
         if node.inputs['Anisotropy'].links or node.inputs['Anisotropy'].default_value != 0:
@@ -302,26 +359,26 @@ class _Surface:
         return self._bsdf_glossy(node)
 
     def _bsdf_glass(self, node):
-        return self._made(node, Base_Color=self._value(node.inputs['Color']), Transmission=1, Specular=0.5,
-                          Roughness=self._roughness(node), IOR=self._value(node.inputs['IOR']))
+        return self._made(node, Base_Color=value_of(node.inputs['Color']), Transmission=1, Specular=0.5,
+                          Roughness=self._roughness(node), IOR=value_of(node.inputs['IOR']))
 
     def _bsdf_refraction(self, node):
         self.notes.add("reflecting as glass does", self.name, "materials")
         return self._bsdf_glass(node)
 
     def _roughness(self, node):
-        return 0 if getattr(node, "distribution", '') == 'SHARP' else self._value(node.inputs['Roughness'])
+        return 0 if getattr(node, "distribution", '') == 'SHARP' else value_of(node.inputs['Roughness'])
 
     def _bsdf_transparent(self, node):
-        return dict(_DEFAULTS, Alpha=0, Tint=self._value(node.inputs['Color']))
+        return dict(_DEFAULTS, Alpha=0, Tint=value_of(node.inputs['Color']))
 
     def _emission(self, node):
-        light = self._times(self._value(node.inputs['Color']), self._value(node.inputs['Strength']))
+        light = self._times(value_of(node.inputs['Color']), value_of(node.inputs['Strength']))
         return self._made(node, Base_Color=(0, 0, 0), Radiance=light)
 
     def _mix_shader(self, node):
         a, b = self._closure(node.inputs[1]), self._closure(node.inputs[2])
-        factor = self._value(node.inputs[0])
+        factor = self._clamped(value_of(node.inputs[0]))
         if a is None and b is None:
             return None
         a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[1]), (b, node.inputs[2])))
@@ -343,6 +400,16 @@ class _Surface:
                 self.notes.add("with the normals of the first of mixed surfaces that has any", self.name, "materials")
             mixed['Normal'] = a.get('Normal', b.get('Normal'))
         return mixed
+
+    def _clamped(self, factor):
+        """Returns a factor as a Mix Shader has it: a number from 0 to 1."""
+        if not self._is_output(factor):
+            return min(max(factor, 0), 1)
+        if factor.node.type in ('TEX_IMAGE', 'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'NEW_GEOMETRY'):
+            return factor
+        clamp = self.tree.nodes.new('ShaderNodeClamp')
+        self.tree.links.new(factor, clamp.inputs[0])
+        return clamp.outputs[0]
 
     def _keep_highlights(self, mixed, a, b, factor):
         """Gives a mixture by a number the roughness of what reflects, and its own base to what scatters."""
@@ -370,7 +437,7 @@ class _Surface:
         """Returns the parameters of a half of a mixture: black where nothing is linked, as in Cycles."""
         if found is not None:
             return found
-        if _source(socket) is None:
+        if source_of(socket) is None:
             return dict(_DEFAULTS, **{'Base Color': (0, 0, 0)})
         self.notes.add("in part in the viewport colour, as one of its surfaces is unknown", self.name, "materials")
         return dict(_DEFAULTS, **{'Base Color': tuple(self.original.diffuse_color)[:3]})
@@ -378,7 +445,7 @@ class _Surface:
     def _mix_by_view(self, a, b, factor):
         """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what lights
         the scene holds, else what the camera sees."""
-        kinds = {n.type for n in _upstream(factor)}
+        kinds = {n.type for n in upstream(factor)}
         is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
         if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:
             return self._coated(a, b, factor)
@@ -446,7 +513,7 @@ class _Surface:
 
     def _absorption(self, output):
         """Returns the absorption coefficient of a homogeneous volume, per metre; None without one."""
-        source = _source(output.inputs['Volume'])
+        source = source_of(output.inputs['Volume'])
         if source is None:
             return None
         node = source.node
@@ -509,23 +576,23 @@ class _Surface:
 
     def _is_known(self, name, value):
         """Returns whether the exporter finds the image of a parameter, and nothing else changes it."""
-        nodes = _upstream(value)
         if name == 'Base Color' and value.node.type == 'MIX' and self._is_product(value.node):
-            nodes = [n for n in nodes if n != value.node]
-        if any(n.type not in _KNOWN for n in nodes):
+            value = next((source for s in value.node.inputs[6:8] if (source := source_of(s))), value)
+            if value.node.type != 'TEX_IMAGE':
+                return False
+        is_number = name in ('Metallic', 'Roughness')
+        if is_number and value.node.type in ('SEPRGB', 'SEPARATE_COLOR') and getattr(value.node, "mode", 'RGB') == 'RGB':
+            value, is_number = source_of(value.node.inputs[0]), False
+            if value is None:
+                return False
+        if value.node.type == 'VERTEX_COLOR':
+            return name == 'Base Color' and value.name == 'Color'
+        if value.node.type != 'TEX_IMAGE' or name in _EVEN or not _is_plain(value.node) or value.node.image.is_float:
             return False
-        shown = [n for n in nodes if n.type == 'TEX_IMAGE']
-        if not shown:
-            return name == 'Base Color' and value.node.type == 'VERTEX_COLOR'
-        if len(shown) > 1 or any(not _is_plain(n) for n in shown):
+        if (name == 'Alpha') != (value.name == 'Alpha') or not _is_known_place(value.node.inputs['Vector']):
             return False
-        if name in _EVEN or shown[0].image.is_float:
-            return False
-        if name != 'Alpha' and not _is_encoded(shown[0].image, name in ('Base Color', 'Radiance')):
-            return False
-        if name == 'Alpha':
-            return value.node.type == 'TEX_IMAGE' and value.name == 'Alpha'
-        return all(_is_known_mapping(n) for n in nodes)
+        image = value.node.image
+        return name == 'Alpha' or _is_encoded(image, name in ('Base Color', 'Radiance')) and not (is_number and not images.is_grey(image))
 
     @staticmethod
     def _is_product(node):
@@ -541,7 +608,7 @@ class _Surface:
         node = value.node
         if node.type != 'NORMAL_MAP' or node.space != 'TANGENT' or node.inputs['Strength'].links:
             return False
-        source = _source(node.inputs['Color'])
+        source = source_of(node.inputs['Color'])
         return source is not None and source.node.type == 'TEX_IMAGE' and self._is_known('Normal', source)
 
     # Writing
@@ -567,7 +634,9 @@ class _Surface:
         return self.copy
 
     def _write_metal(self, new):
-        if self._are_known(('Metallic', 'Roughness')):
+        shown = {n for name in ('Metallic', 'Roughness') if self._is_output(self.parameters[name])
+                 for n in upstream(self.parameters[name]) if n.type == 'TEX_IMAGE'}
+        if len(shown) < 2 and self._are_known(('Metallic', 'Roughness')):
             self._link(new, 'Metallic'), self._link(new, 'Roughness')
             return
         metallic, roughness = self._pixels('Metallic'), self._pixels('Roughness')
@@ -629,7 +698,7 @@ class _Surface:
         if place == 'all':
             return self.baker.plain(self.copy, value)
         if not self.needs_mesh:
-            return self.baker.over_uvs(self.copy, value, self._layers(value), self._size(value))[:, :, :3]
+            return self.baker.over_uvs(self.copy, value, [n for n in self.layers if n], self._size(value))[:, :, :3]
         return self._over_mesh(value)
 
     def _over_mesh(self, value, kind='EMIT'):
@@ -645,12 +714,8 @@ class _Surface:
         return float(values.mean())
 
     @staticmethod
-    def _layers(value):
-        return tuple({n.uv_map for n in _upstream(value) if n.type == 'UVMAP' and n.uv_map})
-
-    @staticmethod
     def _size(value):
-        sizes = [max(n.image.size) for n in _upstream(value) if n.type == 'TEX_IMAGE' and n.image]
+        sizes = [max(n.image.size) for n in upstream(value) if n.type == 'TEX_IMAGE' and n.image]
         return min(4096, max(sizes, default=0))
 
     def _image(self, pixels, what, is_colour):
@@ -667,8 +732,9 @@ class _Surface:
         image.pack()
         node = self.tree.nodes.new('ShaderNodeTexImage')
         node.image = image
-        layers = {layer for v in self.parameters.values() if self._is_output(v) for layer in self._layers(v)}
-        name = "lull" if self.needs_mesh else next(iter(layers)) if len(layers) == 1 else None
+        name = "lull" if self.needs_mesh else next(iter(self.layers), "")
+        if name == uvs.STRANDS:
+            node.extension = 'EXTEND'  # filtered, a root would have the colour of tips
         if name:
             uv = self.tree.nodes.new('ShaderNodeUVMap')
             uv.uv_map = name
@@ -745,7 +811,7 @@ class _Surface:
         self.tree.links.new(node.outputs[0], new.inputs['Normal'])
 
     def _write_known_normal(self, value):
-        strength, shown = value.node.inputs['Strength'], _source(value.node.inputs['Color']).node
+        strength, shown = value.node.inputs['Strength'], source_of(value.node.inputs['Color']).node
         pixels = images.numbers_of(shown.image)
         self._note_leaning(pixels, strength.default_value)
         if 0 < strength.default_value < 1:
@@ -799,15 +865,22 @@ def _is_encoded(image, is_colour):
     return space.name == 'sRGB' if is_colour else space.is_data
 
 
+def _is_known_place(socket):
+    """Returns whether an image has UVs, moved by one Mapping at most."""
+    source = source_of(socket)
+    if source is not None and source.node.type == 'MAPPING' and _is_known_mapping(source.node):
+        source = source_of(source.node.inputs['Vector'])
+        if source is None:  # all of it the same
+            return False
+    return source is None or not getattr(source.node, "from_instancer", False) and (
+        source.node.type == 'UVMAP' or source.node.type == 'TEX_COORD' and source.name == 'UV')
+
+
 def _is_known_mapping(node):
-    if node.type == 'TEX_COORD':
-        return [o.name for o in node.outputs if o.links] == ['UV']
-    if node.type == 'MAPPING':
-        turn, scale = node.inputs['Rotation'].default_value, node.inputs['Scale'].default_value
-        # Of a texture that is moved, glTF has no scale after the rotation.
-        is_known = node.vector_type == 'POINT' or node.vector_type == 'TEXTURE' and (turn[2] == 0 or scale[0] == scale[1])
-        return is_known and abs(turn[0]) + abs(turn[1]) < 1e-6 and not any(s.links for s in node.inputs[1:])
-    return True
+    turn, scale = node.inputs['Rotation'].default_value, node.inputs['Scale'].default_value
+    # Of a texture that is moved, glTF has no scale after the rotation.
+    is_known = node.vector_type == 'POINT' or node.vector_type == 'TEXTURE' and (turn[2] == 0 or scale[0] == scale[1])
+    return is_known and abs(turn[0]) + abs(turn[1]) < 1e-6 and not any(s.links for s in node.inputs[1:])
 
 
 def _as_image(values, shape=None):
@@ -835,9 +908,9 @@ def _keep_used_colours(mesh):
     wanted = set()
     for material in mesh.materials:
         node = principled(material)
-        source = _source(principled_input(node, 'Base Color')) if node else None
+        source = source_of(principled_input(node, 'Base Color')) if node else None
         if source is not None:
-            wanted |= {n.layer_name for n in _upstream(source) if n.type == 'VERTEX_COLOR'}
+            wanted |= {n.layer_name for n in upstream(source) if n.type == 'VERTEX_COLOR'}
     layers = mesh.color_attributes
     if "" in wanted and 0 <= layers.render_color_index < len(layers):
         wanted.add(layers[layers.render_color_index].name)

@@ -7,7 +7,9 @@ import bpy
 import numpy as np
 
 import groups
+import scenes
 import sun
+import surfaces
 from versions import panorama
 
 _RAYS = "diffuse", "glossy", "transmission"
@@ -29,6 +31,8 @@ def write(scene, layer, camera, base, is_sharp, notes):
                                if link.to_node.type == 'OUTPUT_WORLD'):
         notes.say(f"the volume of world '{world.name}' is left out")
     light = world.copy()
+    if light.use_nodes:
+        groups.inline(light.node_tree)
     asks = light.use_nodes and _answer_rays(light, notes)
     unseen = [name for name in _RAYS if not getattr(world.cycles_visibility, name)]
     lights = len(unseen) < len(_RAYS)
@@ -42,15 +46,16 @@ def write(scene, layer, camera, base, is_sharp, notes):
         backdrop = _photograph(scene, world, camera, base + ".backdrop.exr")
     if not lights:
         return None, backdrop, []
+    if _is_of_a_picture(light):
+        notes.say(f"the world '{world.name}' lights by coordinates of another camera")
     light.cycles_visibility.camera = True
-    suns = sun.take(light, lambda seen, size: _pixels(light, seen, size), notes)
-    return _surround(light, base + ".world.exr"), backdrop, suns
+    suns = sun.take(light, lambda seen, size: _pixels(scene, light, seen, size), notes)
+    return _surround(scene, light, base + ".world.exr"), backdrop, suns
 
 
 def _answer_rays(world, notes):
     """Lets nodes that ask for the kind of a ray know that of diffuse light. Returns whether there are any."""
     tree = world.node_tree
-    groups.inline(tree)
     askers = [n for n in tree.nodes if n.type == 'LIGHT_PATH']
     for node in askers:
         for output in node.outputs:
@@ -62,12 +67,25 @@ def _answer_rays(world, notes):
             answer.default_value = 1 if output.name in ('Is Diffuse Ray', 'Is Reflection Ray', 'Ray Depth', 'Diffuse Depth') else 0
             for link in list(output.links):
                 tree.links.new(answer, link.to_socket)
+    for mix in [n for n in tree.nodes if n.type == 'MIX_SHADER']:  # what other rays see is no part of the light
+        answer = mix.inputs[0].links[0].from_node if mix.inputs[0].links else None
+        if answer is not None and answer.type == 'VALUE' and answer.outputs[0].default_value in (0, 1):
+            seen = mix.inputs[1 + int(answer.outputs[0].default_value)]
+            if seen.links:
+                groups.replace(tree, mix.outputs[0], seen)
     return bool(askers)
+
+
+def _is_of_a_picture(world):
+    """Returns whether the light of a world depends on the camera's picture."""
+    output = world.node_tree.get_output_node('CYCLES') if world.use_nodes else None
+    nodes = surfaces.upstream(output.inputs['Surface'].links[0].from_socket) if output and output.inputs['Surface'].links else ()
+    return any(n.type == 'TEX_COORD' and (n.outputs['Window'].links or n.outputs['Camera'].links) for n in nodes)
 
 
 def _photograph(scene, world, camera, path):
     """Renders the world alone, as the background of a camera."""
-    room = bpy.data.scenes.new('lull backdrop')
+    room = scenes.made_at('lull backdrop', scene)
     room.camera = camera.copy()
     room.collection.objects.link(room.camera)
     for name in "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y":
@@ -75,9 +93,9 @@ def _photograph(scene, world, camera, path):
     return _render(room, world, path, _FINE_SPP if room.camera.data.dof.use_dof or sun.discs(world) else _SPP)
 
 
-def _pixels(world, camera, size):
+def _pixels(scene, world, camera, size):
     """Returns the R, G, B of a square photograph."""
-    room = bpy.data.scenes.new('lull sun')
+    room = scenes.made_at('lull sun', scene)
     room.camera = camera
     room.collection.objects.link(camera)
     room.render.resolution_x = room.render.resolution_y = size
@@ -89,8 +107,8 @@ def _pixels(world, camera, size):
     return pixels.reshape(size, size, 4)[:, :, :3].astype(float)
 
 
-def _surround(world, path):
-    room = bpy.data.scenes.new('lull world')
+def _surround(scene, world, path):
+    room = scenes.made_at('lull world', scene)
     data = bpy.data.cameras.new('lull world')
     data.type = 'PANO'
     panorama(data).panorama_type = 'EQUIRECTANGULAR'

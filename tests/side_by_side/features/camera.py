@@ -3,7 +3,7 @@ import bpy
 
 from cases import ball, case, cube, dressed, surface, the, wall, without
 from rooms import interior
-from scenes import matte
+from scenes import camera, matte
 from world import world_image
 
 
@@ -142,3 +142,22 @@ def limits(scene):
     interior(scene)
     c = scene.cycles
     c.diffuse_bounces, c.glossy_bounces, c.sample_clamp_indirect = 4, 4, 10
+
+
+@case("camera under a parent of uneven and negative scale")
+def sheared_camera(scene):
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    scene.camera.parent = parent
+    parent.scale, parent.rotation_euler = (1, 1.5, 0.8), (0.1, 0, 0.3)
+
+
+@case("camera of a marker")
+def marker(scene):
+    first = scene.camera
+    camera((2, -5, 2.5), (1.25, 0, 0.4), lens=35)
+    other = scene.camera
+    scene.camera = first
+    scene.timeline_markers.new("a", frame=1).camera = first
+    scene.timeline_markers.new("b", frame=5).camera = other
+    scene.frame_set(6)

@@ -170,3 +170,95 @@ def ies_turned(scene):
 def lamp_texture(scene):
     tree, emission = noded(the("key").data)
     tree.links.new(node(tree, 'ShaderNodeTexChecker', Scale=1).outputs[0], emission.inputs[0])
+
+
+def through(tree, socket, *nodes):
+    """Links nodes in a row, each to the first input of the next, and the last to a socket."""
+    for one, following in zip(nodes, nodes[1:]):
+        tree.links.new(one.outputs[0], following.inputs[0])
+    tree.links.new(nodes[-1].outputs[0], socket)
+
+
+@case("strength of a lamp by Value, Map Range and Clamp, its colour by a ramp, curves and a Mix")
+def lamp_constants(scene):
+    tree, emission = noded(the("key").data)
+    value = tree.nodes.new('ShaderNodeValue')
+    value.outputs[0].default_value = 0.8
+    mapped = node(tree, 'ShaderNodeMapRange')
+    mapped.inputs['To Max'].default_value = 2
+    through(tree, emission.inputs[1], value, mapped, node(tree, 'ShaderNodeClamp', Max=1.5))
+    ramp, curves = node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeRGBCurve')
+    ramp.color_ramp.elements[1].color = (1, 0.3, 0.1, 1)
+    curves.mapping.curves[3].points.new(0.3, 0.6)
+    mix = node(tree, 'ShaderNodeMixRGB', blend_type='ADD', Fac=0.5, Color2=(0, 0.3, 0.6, 1))
+    through(tree, ramp.inputs[0], value)
+    tree.links.new(ramp.outputs[0], curves.inputs['Color'])
+    tree.links.new(curves.outputs[0], mix.inputs[1])
+    through(tree, emission.inputs[0], mix)
+
+
+@case("strength of a spot lamp and colour of a point lamp by groups of nodes")
+def lamp_groups(scene):
+    without("key")
+    inner = bpy.data.node_groups.new("dimmer", 'ShaderNodeTree')
+    inner.inputs.new('NodeSocketFloat', "level"), inner.outputs.new('NodeSocketFloat', "strength"), inner.outputs.new('NodeSocketColor', "colour")
+    inlet, outlet = inner.nodes.new('NodeGroupInput'), inner.nodes.new('NodeGroupOutput')
+    power = node(inner, 'ShaderNodeMath', operation='POWER')
+    power.inputs[1].default_value = 2
+    inner.links.new(inlet.outputs[0], power.inputs[0]), inner.links.new(power.outputs[0], outlet.inputs[0])
+    inner.links.new(node(inner, 'ShaderNodeWavelength', Wavelength=590).outputs[0], outlet.inputs[1])
+    for at, kind in ((2, -3, 4), 'SPOT'), ((-1, -2, 3), 'POINT'):
+        tree, emission = noded(lamp(kind, 60, at, (0.65, 0, 0.6) if kind == 'SPOT' else (0, 0, 0), shadow_soft_size=0.1).data)
+        outside = node(tree, 'ShaderNodeGroup', node_tree=inner)
+        outside.inputs[0].default_value = 3
+        tree.links.new(outside.outputs[0 if kind == 'SPOT' else 1], emission.inputs[1 if kind == 'SPOT' else 0])
+
+
+@case("IES profile times a number, with a strength of its own")
+def ies_times(scene):
+    tree, emission = noded(only('POINT', 10, (0, -1, 3), shadow_soft_size=0).data)
+    profile = bpy.data.texts.new("lamp.ies")
+    profile.write("IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 30 90\n0\n1000 100 0\n")
+    times = node(tree, 'ShaderNodeMath', operation='MULTIPLY')
+    times.inputs[1].default_value = 4
+    through(tree, emission.inputs[1], node(tree, 'ShaderNodeTexIES', ies=profile, Strength=0.7), times)
+
+
+@case("lamp of a negative strength by a Math node")
+def lamp_negative_math(scene):
+    tree, emission = noded(lamp('POINT', 20, (0, -2, 2)).data)
+    less = node(tree, 'ShaderNodeMath', operation='SUBTRACT')
+    less.inputs[0].default_value, less.inputs[1].default_value = 0, 1
+    through(tree, emission.inputs[1], less)
+
+
+@case("lamp whose colour is that of its place")
+def lamp_by_place(scene):
+    tree, emission = noded(only('POINT', 100, (0, -2, 2)).data)
+    tree.links.new(node(tree, 'ShaderNodeNewGeometry').outputs['Incoming'], emission.inputs[0])
+
+
+@case("lamp with nodes, and nothing linked to its output")
+def lamp_unlinked(scene):
+    tree, emission = noded(lamp('POINT', 100, (0, -2, 2)).data)
+    tree.links.remove(emission.outputs[0].links[0])
+
+
+@case("lamps that the camera sees")
+def lamps_seen(scene):
+    for at, kind, turned in ((-1.5, 0, 1.5), 'POINT', (0, 0, 0)), ((1.5, 0, 1.5), 'SPOT', (1.3, 0, 0)), ((0, 1, 2), 'AREA', (1.2, 0, 0)):
+        o = lamp(kind, 20, at, turned)
+        o.visible_camera = True
+        if kind == 'AREA':
+            o.data.size = 0.5
+        else:
+            o.data.shadow_soft_size = 0.3
+
+
+@case("area lamps of negative scale, one without a width")
+def area_scaled(scene):
+    without("key")
+    for x, scale in (-2, (-1, 1, 1)), (0, (1, 1, -1)), (2, (-1, -1, 1)):
+        o = lamp('AREA', 60, (x, -0.5, 1.5), (0.2, 0.3, 0), size=1)
+        o.scale, o.visible_camera = scale, True
+    lamp('AREA', 60, (0, -1.5, 3), shape='RECTANGLE', size=1, size_y=0)

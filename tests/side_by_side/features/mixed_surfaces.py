@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
-from cases import case, checks, cover, cube, dressed, folder, image, node, principled, surface, textured, the, wall, without
+from cases import ball, case, checks, cover, cube, dressed, folder, image, node, principled, surface, textured, the, wall, without
 from lamps import only
 from objects import lawn, particles
 from scenes import dress, matte
@@ -215,7 +215,7 @@ def custom_normals(scene):
 @case("modifiers: array, mirror, solidify, bevel with weighted normals")
 def more_modifiers(scene):
     without("ball")
-    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 0.6, (0.8, 0, 0.4))
+    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 0.6, (2.1, 0, 0.4))
     o.scale = (-1, 1.3, 0.8)
     for name, kind, values in (("bevel", 'BEVEL', dict(width=0.08, segments=3)), ("copies", 'ARRAY', dict(count=3)),
                                ("other", 'MIRROR', dict(mirror_object=the("floor"))), ("normals", 'WEIGHTED_NORMAL', {})):
@@ -391,3 +391,47 @@ def node_attribute(scene):
     link(group, (inlet.outputs[0], store.inputs[0]), (place.outputs[0], parts.inputs[0]), (parts.outputs[2], value),
          (store.outputs[0], dressing.inputs[0]), (dressing.outputs[0], outlet.inputs[0]))
     the("ball").modifiers.new("paint", 'NODES').node_group = group
+
+
+@case("image on the front and light on the back, by Backfacing")
+def sides_apart(scene):
+    made, shown, bsdf, tree = textured(checks() * (1, 0.5, 0.2))
+    light, mix, where = node(tree, 'ShaderNodeEmission', Strength=3), tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeNewGeometry')
+    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (light.outputs[0], mix.inputs[2]))
+    cover(mix, tree)
+    wall(made, 0.9).location.x = -1
+    o = wall(made, 0.9, z=1.8)
+    o.location.x, o.rotation_euler.z = 1, math.pi - 0.4
+
+
+@case("glass and a mirror with bump")
+def bumped_mirrors(scene):
+    for x, (made, bsdf, tree) in (-0.9, surface('BsdfGlass', Roughness=0.05, IOR=1.45)), (0.9, principled(Metallic=1, Roughness=0.05)):
+        bumped = node(tree, 'ShaderNodeBump', Strength=0.5, Distance=0.1)
+        link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=8).outputs[0], bumped.inputs['Height']), (bumped.outputs[0], bsdf.inputs['Normal']))
+        ball(made).location.x = x
+    without("ball")
+
+
+@case("Principled: an alpha of 0.4, with metal, glass and emission")
+def alphas(scene):
+    dressed(principled(Metallic=1, Roughness=0.2, Alpha=0.4)[0])
+    for x, values in (-1.6, dict(Transmission=1, Roughness=0)), (1.6, dict(Emission=(1, 0.8, 0.3, 1), Emission_Strength=2)):
+        ball(principled(Alpha=0.4, **values)[0]).location.x = x
+
+
+@case("vector displacement of a grid, displacement of a cube")
+def displacements(scene):
+    without("ball")
+    for kind, output, values in (('VectorDisplacement', 1, dict(Scale=0.5, Midlevel=0.5, space='OBJECT')), ('Displacement', 0, dict(Scale=0.3, Midlevel=0))):
+        made, _, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
+        moved = node(tree, 'ShaderNode' + kind, **values)
+        link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[output], moved.inputs[0]),
+             (moved.outputs[0], tree.get_output_node('ALL').inputs['Displacement']))
+        made.cycles.displacement_method = 'DISPLACEMENT'
+        if kind == 'Displacement':
+            fine = cube(made, 1, (1.2, 0, 0.6)).modifiers.new("fine", 'SUBSURF')
+            fine.subdivision_type, fine.render_levels = 'SIMPLE', 5
+        else:
+            bpy.ops.mesh.primitive_grid_add(x_subdivisions=60, y_subdivisions=60, size=2, location=(-1.2, 0, 0.5))
+            dress(made, smooth=True)

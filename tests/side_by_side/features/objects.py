@@ -3,6 +3,7 @@ import os
 
 import bpy
 
+from camera import keyed
 from cases import ball, case, cube, dressed, folder, node, principled, set_apart, surface, textured, the, wall, without
 from scenes import dress, lamp, matte
 
@@ -279,3 +280,43 @@ def volume(scene):
 @case("unit scale of a scene")
 def units(scene):
     scene.unit_settings.scale_length = 0.01
+
+
+@case("hair whose colour goes by Intercept and Random")
+def hair_info(scene):
+    o = lawn()
+    made, bsdf, tree = principled()
+    info, ramp, random = tree.nodes.new('ShaderNodeHairInfo'), node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeMixRGB', blend_type='MULTIPLY', Fac=0.25)
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.8, 0.02, 0.02, 1), (0.02, 0.8, 0.02, 1)
+    for a, b in ((info.outputs['Intercept'], ramp.inputs[0]), (ramp.outputs[0], random.inputs[1]), (info.outputs['Random'], random.inputs[2]),
+                 (random.outputs[0], bsdf.inputs['Base Color'])):
+        tree.links.new(a, b)
+    o.data.materials[0] = made
+    particles(o, count=1000, hair_length=0.6, root_radius=5)
+
+
+@case("objects that keys hide")
+def hidden_by_keys(scene):
+    o = cube(matte("red", (0.6, 0.1, 0.1, 1)), 1, (1.5, 0, 0.5))
+    keyed(o, "hide_render", False, False, True, True)
+    keyed(the("ball"), "hide_render", True, True, False, False)
+    scene.frame_set(3)
+
+
+@case("cube and cylinder that are smooth without an angle")
+def smooth_edges(scene):
+    cube(principled(Roughness=0.2)[0], 1, (-1, 0, 0.5), rotation=(0, 0, 0.6))
+    dress(None, smooth=True)
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.6, depth=1.2, location=(1, 0, 0.6))
+    dress(matte("red", (0.6, 0.1, 0.1, 1)), smooth=True)
+    without("ball")
+
+
+@case("concave polygons")
+def concave(scene):
+    without("ball")
+    mesh = bpy.data.meshes.new("frame")
+    outer, inner = [(-1.5, 0, 0), (1.5, 0, 0), (1.5, 0, 2), (-1.5, 0, 2)], [(-1, 0, 0.4), (-1, 0, 1.6), (1, 0, 1.6), (1, 0, 0.4)]
+    mesh.from_pydata(outer + inner, [], [(0, 1, 2, 3, 5, 6, 7, 4), (0, 4, 5, 3)])
+    mesh.materials.append(matte("red", (0.6, 0.1, 0.1, 1)))
+    scene.collection.objects.link(bpy.data.objects.new("frame", mesh))

@@ -1,7 +1,10 @@
 """Features of worlds."""
+import os
+
+import bpy
 import numpy as np
 
-from cases import case, cover, dressed, image, node, surface, without
+from cases import case, cover, dressed, folder, image, node, surface, without
 from scenes import camera
 
 
@@ -112,3 +115,59 @@ def world_behind(scene):
 def world_volume(scene):
     tree = scene.world.node_tree
     tree.links.new(node(tree, 'ShaderNodeVolumeScatter', Density=0.1).outputs[0], tree.get_output_node('ALL').inputs['Volume'])
+
+
+@case("world: strength by Math, colour by Hue, Gamma and a Mix of numbers")
+def world_constants(scene):
+    tree = scene.world.node_tree
+    background = tree.nodes["Background"]
+    power = node(tree, 'ShaderNodeMath', operation='POWER')
+    power.inputs[0].default_value, power.inputs[1].default_value = 1.3, 3
+    hue, gamma = node(tree, 'ShaderNodeHueSaturation', Hue=0.6, Saturation=1.5, Color=(0.4, 0.3, 0.2, 1)), node(tree, 'ShaderNodeGamma', Gamma=1.2)
+    mix = node(tree, 'ShaderNodeMixRGB', blend_type='SCREEN', Fac=0.5, Color2=(0, 0.3, 0.1, 1))
+    for a, b in ((power, background.inputs[1]), (hue, gamma.inputs[0]), (gamma, mix.inputs[1]), (mix, background.inputs[0])):
+        tree.links.new(a.outputs[0], b)
+
+
+@case("world: image turned by an object")
+def world_object(scene):
+    world_image(scene)
+    tree = scene.world.node_tree
+    turner = bpy.data.objects.new("turner", None)
+    scene.collection.objects.link(turner)
+    turner.rotation_euler = (0.4, 0.2, 1.5)
+    where = next(n for n in tree.nodes if n.type == 'TEX_COORD')
+    where.object = turner
+    tree.links.new(where.outputs['Object'], next(n for n in tree.nodes if n.type == 'MAPPING').inputs[0])
+
+
+def by_window(tree):
+    shown = node(tree, 'ShaderNodeTexGradient')
+    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Window'], shown.inputs[0])
+    return shown.outputs[0]
+
+
+@case("world: gradient over the picture")
+def world_window(scene):
+    tree = scene.world.node_tree
+    tree.links.new(by_window(tree), tree.nodes["Background"].inputs[0])
+
+
+@case("world: gradient over the picture, for the camera alone")
+def world_gradient_behind(scene):
+    world_backdrop(scene)
+    tree = scene.world.node_tree
+    mix = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
+    tree.links.new(by_window(tree), mix.inputs[2].links[0].from_node.inputs[0])
+
+
+@case("world: image with a sun of one pixel")
+def world_pixel(scene):
+    without("key")
+    values = np.full((64, 128, 4), 0.2, np.float32)
+    values[48, 60, :3] = 3000
+    shown = bpy.data.images.new("sun", 128, 64, float_buffer=True)
+    shown.pixels.foreach_set(values.ravel())
+    shown.filepath_raw, shown.file_format = os.path.join(folder(), "sun.exr"), 'OPEN_EXR'
+    shown.save()
+    sky(scene, 'ShaderNodeTexEnvironment', image=shown)

@@ -1,0 +1,154 @@
+"""Features of UV maps and other coordinates."""
+import bpy
+import numpy as np
+
+from cases import ball, case, checks, cube, dressed, image, node, principled, textured, the, wall, without
+from mixed_surfaces import link
+from scenes import dress, matte
+
+
+def uneven():
+    return checks() * np.linspace(0.2, 1, 64)[None, :, None]
+
+
+@case("two Mapping nodes in a row")
+def mappings_in_a_row(scene):
+    made, shown, _, tree = textured(uneven())
+    scaled, turned = node(tree, 'ShaderNodeMapping', Scale=(2, 1, 1)), node(tree, 'ShaderNodeMapping', Location=(0.3, 0, 0), Rotation=(0, 0, 0.5))
+    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], scaled.inputs[0]), (scaled.outputs[0], turned.inputs[0]),
+         (turned.outputs[0], shown.inputs[0]))
+    wall(made)
+
+
+@case("muted nodes: Mapping and Mix")
+def muted(scene):
+    made, shown, bsdf, tree = textured(uneven())
+    scaled = node(tree, 'ShaderNodeMapping', Scale=(3, 1, 1))
+    mix = node(tree, 'ShaderNodeMixRGB', blend_type='MULTIPLY', Fac=1, Color2=(1, 0.1, 0.1, 1))
+    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], scaled.inputs[0]), (scaled.outputs[0], shown.inputs[0]),
+         (shown.outputs[0], mix.inputs[1]), (mix.outputs[0], bsdf.inputs['Base Color']))
+    scaled.mute = mix.mute = True
+    wall(made)
+
+
+def by_place():
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=4).outputs[1], bsdf.inputs['Base Color']))
+    return made
+
+
+@case("Generated coordinates of an array and of a deformed mesh")
+def generated_of_modifiers(scene):
+    without("ball")
+    cube(by_place(), 0.6, (-1.2, 0, 0.5)).modifiers.new("copies", 'ARRAY').count = 4
+    taper = cube(by_place(), 0.6, (0, -1.5, 0.5)).modifiers.new("taper", 'SIMPLE_DEFORM')
+    taper.deform_method, taper.factor, taper.deform_axis = 'TAPER', 2, 'Z'
+
+
+@case("Generated coordinates of shape keys, in an instanced collection with an offset")
+def generated_of_keys(scene):
+    without("ball")
+    o = cube(by_place(), 0.8, (-0.8, 0, 0.4))
+    o.shape_key_add(name="Basis")
+    key = o.shape_key_add(name="up")
+    for i, point in enumerate(key.data):
+        point.co.z *= 3
+        point.co.x *= 1 + i % 2
+    key.value = 0.7
+    parts = bpy.data.collections.new("parts")
+    parts.instance_offset = (-1, 0, -0.5)
+    parts.objects.link(o)
+    copy = bpy.data.objects.new("copy", None)
+    copy.instance_type, copy.instance_collection, copy.location = 'COLLECTION', parts, (0.3, 0, 0)
+    scene.collection.objects.link(copy)
+
+
+@case("image over a UV map that the mesh lacks")
+def uvs_lacking(scene):
+    made, shown, _, tree = textured(uneven())
+    link(tree, (node(tree, 'ShaderNodeUVMap', uv_map="nowhere").outputs[0], shown.inputs[0]))
+    wall(made)
+
+
+@case("noise over UVs that the mesh lacks")
+def noise_without_uvs(scene):
+    made, bsdf, tree = principled()
+    noise = node(tree, 'ShaderNodeTexNoise', Scale=3)
+    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], noise.inputs[0]), (noise.outputs[1], bsdf.inputs['Base Color']))
+    dressed(made)
+    layers = the("ball").data.uv_layers
+    layers.remove(layers[0])
+
+
+@case("UVs that geometry nodes store as vectors")
+def stored_uvs(scene):
+    made, shown, _, tree = textured(uneven())
+    link(tree, (node(tree, 'ShaderNodeUVMap', uv_map="stored").outputs[0], shown.inputs[0]))
+    o = wall(made)
+    o.data.uv_layers.remove(o.data.uv_layers[0])
+    group = bpy.data.node_groups.new("store", 'GeometryNodeTree')
+    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    inlet, outlet, store, where, parts, back = (group.nodes.new(k) for k in (
+        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeInputPosition', 'ShaderNodeSeparateXYZ',
+        'ShaderNodeCombineXYZ'))
+    store.data_type, store.domain = 'FLOAT_VECTOR', 'CORNER'
+    store.inputs['Name'].default_value = "stored"
+    link(group, (inlet.outputs[0], store.inputs[0]), (where.outputs[0], parts.inputs[0]), (parts.outputs[0], back.inputs[0]),
+         (parts.outputs[2], back.inputs[1]), (back.outputs[0], next(s for s in store.inputs if s.type == 'VECTOR')), (store.outputs[0], outlet.inputs[0]))
+    o.modifiers.new("store", 'NODES').node_group = group
+
+
+@case("images over two UV maps, mixed")
+def two_maps(scene):
+    made, shown, bsdf, tree = textured(checks() * (1, 0.5, 0.2))
+    ramp, mix = node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeMixRGB', Fac=0.5)
+    other = node(tree, 'ShaderNodeTexImage', image=image(checks(), "other", 'Non-Color'))
+    link(tree, (node(tree, 'ShaderNodeUVMap', uv_map="small").outputs[0], shown.inputs[0]), (shown.outputs[0], ramp.inputs[0]),
+         (other.outputs[0], mix.inputs[1]), (ramp.outputs[0], mix.inputs[2]), (mix.outputs[0], bsdf.inputs['Base Color']))
+    for loop in wall(made).data.uv_layers.new(name="small").data:
+        loop.uv *= 0.3
+
+
+@case("UVs of the instancer")
+def instancer_uvs(scene):
+    without("ball")
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=3, location=(0, 0, 0.1))
+    carrier = dress(matte("lawn", (0.1, 0.3, 0.1, 1)))
+    made, shown, _, tree = textured(uneven())
+    link(tree, (node(tree, 'ShaderNodeTexCoord', from_instancer=True).outputs['UV'], shown.inputs[0]))
+    cube(made, 0.4).parent = carrier
+    carrier.instance_type = 'FACES'
+
+
+@case("modifiers: UV Warp, and Wireframe of another material")
+def warped_uvs(scene):
+    o = wall(textured(uneven())[0], 0.7)
+    o.location.x = -1
+    warp = o.modifiers.new("warp", 'UVWARP')
+    warp.scale, warp.offset = (2, 1), (0.3, 0.1)
+    o = cube(matte("red", (0.6, 0.1, 0.1, 1)), 0.8, (1, 0, 0.5))
+    o.data.materials.append(matte("green", (0.1, 0.6, 0.1, 1)))
+    wire = o.modifiers.new("wire", 'WIREFRAME')
+    wire.thickness, wire.material_offset = 0.1, 1
+
+
+@case("image projected on a sphere and a tube")
+def projections(scene):
+    for x, kind in (-0.8, 'SPHERE'), (0.8, 'TUBE'):
+        made, shown, _, tree = textured(checks() * (1, 0.7, 0.4), projection=kind)
+        link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], shown.inputs[0]))
+        ball(made).location.x = x
+    without("ball")
+
+
+@case("grain of wood: waves and a ramp over stretched coordinates, with bump")
+def wood(scene):
+    made, bsdf, tree = principled()
+    stretch = node(tree, 'ShaderNodeMapping', Scale=(1, 4, 0.3), Rotation=(0.2, 0.3, 0))
+    wave, ramp, bump = node(tree, 'ShaderNodeTexWave', Scale=1.5, Distortion=3), node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeBump', Strength=0.1)
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.2, 0.08, 0.03, 1), (0.6, 0.35, 0.15, 1)
+    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Object'], stretch.inputs[0]), (stretch.outputs[0], wave.inputs[0]),
+         (wave.outputs[0], ramp.inputs[0]), (ramp.outputs[0], bsdf.inputs['Base Color']), (wave.outputs[1], bump.inputs['Height']),
+         (bump.outputs[0], bsdf.inputs['Normal']), (wave.outputs[1], bsdf.inputs['Roughness']))
+    without("ball")
+    cube(made, 1.2, (0, 0, 0.6), rotation=(0, 0, 0.6))
