@@ -76,7 +76,7 @@ QUANTITIES = [
     ('scenes compared with pbrt-v3', RENDERER, 'with those of pbrt-v3, # scenes', 'and on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),
-    ('last stop of cornell, spp', README, '460 to # spp: 173', '>stopped at # spp'),
+    ('last stop of cornell, spp', README, '460 to # spp: 94 s', '>stopped at # spp'),
     ('version of Blender', BLENDER, 'Tested with Blender 3.4.# ', 'with Blender 3.4.# alone', 'Blender 3.4.#, two threads'),
 ]
 
