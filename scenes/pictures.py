@@ -2,7 +2,7 @@
 """Renders scenes until their blocks have stopped, and makes the pictures of the documents in scenes/pictures.
 
 pictures.py LULL [cornell|room]: of cornell decision.svg, the estimates for the block that stopped last, and report.jpg,
-a screenshot of its report. Of the room, denoised: room-day.jpg, and room-night.jpg with at most 200 spp. All by default. Needs
+a screenshot of its report. Of the room, denoised: room-day.jpg, and room-night.jpg within ten minutes. All by default. Needs
 oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
 """
 import json
@@ -81,7 +81,7 @@ def cornell(lull, out, pictures):
 
 def room(lull, out, pictures):
     for name, scene, settings in (("day", "room", ["--resolution", "600x400"]),
-                                  ("night", "room-night", ["--block", "120", "--cap", "200"])):
+                                  ("night", "room-night", ["--time", "10m"])):
         subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", *settings, "-o", out / f"{name}.exr"],
                        check=True)
         jpeg(out / f"{name}.png", pictures / f"room-{name}.jpg")
