@@ -110,8 +110,8 @@ RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) 
     return NameFiles(output, request.report);
 }
 
-// Returns the bytes a pixel of what is made beside the film and its layers: of previews, which
-// leave them as they are, and of the denoiser's inputs as they are written.
+// Returns the memory of previews and of the denoiser's written inputs, bytes per pixel, which the
+// film and its layers do not include.
 int64_t BytesBeside(const RenderRequest& request) {
     const bool hasPreviews = request.denoise && request.pictures.preview > 0;
     return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);

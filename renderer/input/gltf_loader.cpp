@@ -210,7 +210,7 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
     if (!description.media.empty()) description.integrator.name = "volpath";  // which sees them
     description.sources = {file};
     for (const tinygltf::Buffer& buffer : document.model.buffers)
-        if (!buffer.uri.empty() && !buffer.uri.starts_with("data:"))
+        if (!buffer.uri.empty() && !IsDataUri(buffer.uri))
             description.sources.push_back(ResolvePath(description, DecodeUri(buffer.uri)));
     for (const GltfNode& node : nodes) AddLight(document, node, &description, warnings);
     SetView(document, nodes, framing, options, &description);

@@ -11,49 +11,32 @@ with another seed, whose own error adds to all figures. With --truth 0 there is 
 import argparse
 import json
 import os
-import subprocess
 
 import numpy as np
 
-from seconds import Seconds  # PYTHONPATH=../side_by_side
+from crops import Crop  # PYTHONPATH=../side_by_side
 
-class Scene:
+
+class Scene(Crop):
     def __init__(self, text, o):
-        self.name, rest = text.split('=')
-        self.scene, _, self.crop = rest.partition('@')
+        super().__init__(text, o.folder, o.lull, o.resolution)
         self.o = o
-        self.seconds = Seconds(os.path.join(o.folder, self.name + '.seconds.json'))
-
-    def file(self, name):
-        return os.path.join(self.o.folder, f'{self.name}.{name}')
-
-    def render(self, name, *how):
-        crop = ['--crop', self.crop] if self.crop else []
-        self.seconds.run(name, [self.o.lull, 'render', self.scene, '--resolution', self.o.resolution, *crop, '--quiet',
-                                '-o', self.file(name + '.exr'), '--report', self.file(name + '.json'), *how])
 
     def spp(self, name):
         report = json.load(open(self.file(name + '.json')))
         return report['totals']['samples'] / sum(b['width'] * b['height'] for b in report['blocks'])
 
-    def judge(self, name, truth):
-        out = self.file(name)
-        subprocess.run([self.o.lull, 'compare', '--reference', truth, '--automatic', self.file(name + '.exr'), '-o', out],
-                       check=True, capture_output=True)
-        figures = json.load(open(out + '.compare.json'))
-        return next(i for i in figures['images'] if i['name'] == 'automatic')['figures']
-
     def truth(self):
         self.render('truth', '--spp', str(self.o.truth), '--seed', '7', '--denoise')
-        return self.file('truth.exr')
 
     def calibrate(self):
         """Returns estimate, bound and truth of the visible difference at all counts of samples."""
-        truth, rows = self.truth(), []
+        self.truth()
+        rows = []
         for spp in 20, 80, 320:
             self.render(str(spp), '--spp', str(spp), '--denoise', '--seed', '1')
             estimate, upper = self.said(str(spp))
-            true = self.judge(str(spp), truth)['visibleDifference']
+            true = self.judge(str(spp))['visibleDifference']
             rows.append((estimate, upper, true))
             print(f'| {self.name} | {spp} | {estimate:.1f} | {upper:.1f} | {true:.1f} |', flush=True)
         return rows
@@ -68,14 +51,15 @@ class Scene:
         self.render('start', '--spp', '1')
         for name in names:
             self.render(name, '--seed', '1', *(['--denoise'] if name == 'denoised' else []))
-        truth = self.truth() if self.o.truth else None
+        if self.o.truth:
+            self.truth()
         seconds = {n: self.seconds[n] - self.seconds['start'] for n in names}
         cells = [self.name]
         for name in names:
             cells += [f'{self.spp(name):,.0f}', f'{seconds[name]:.1f}']
             cells += [f'{self.said(name)[1]:.1f}'] if name == 'denoised' else []
-            if truth:
-                f = self.judge(name, truth)
+            if self.o.truth:
+                f = self.judge(name)
                 cells += [f'{f["visibleDifference"]:.1f}', f'{f["rmseLightness"]:.2f}', f'{f["flip"]:.3f}',
                           f'{f["ssim"]:.3f}']
             else:

@@ -10,8 +10,9 @@ import struct
 
 import numpy as np
 
+from pictures import WEIGHTS
+
 BRIGHTEST = 65504.0  # that the encoding maps to 1
-LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
 
 
 def read_weights(path):
@@ -57,7 +58,7 @@ def double(x):
 
 def infer(x, weights):
     """The U-Net, small or large, as its layers are named. Height and width are multiples of 16."""
-    if 'enc_conv1a' + '.weight' in weights:  # large
+    if 'enc_conv1a.weight' in weights:  # large
         down = ['1a 1b', '2a 2b', '3a 3b', '4a 4b']
         last = ['dec_conv1a', 'dec_conv1b', 'dec_conv1c']
     else:
@@ -81,12 +82,18 @@ def infer(x, weights):
     return np.maximum(x, 0)
 
 
+def curve(y):
+    """The PU curve, a fit of Open Image Denoise."""
+    return np.where(y <= 1.57945760e-06, 1.41283765e+03 * y,
+                    np.where(y <= 3.22087631e-02, 1.64593172 * np.power(y, 4.31384981e-01) - 2.94139609e-03,
+                             1.92653254e-01 * np.log(y + 6.26026094e-03) + 9.98620152e-01))
+
+
+SCALE = float(curve(np.array(BRIGHTEST)))
+
+
 def encode(y):
-    """The PU curve, a fit of Open Image Denoise: 1 at BRIGHTEST."""
-    curve = np.where(y <= 1.57945760e-06, 1.41283765e+03 * y,
-                     np.where(y <= 3.22087631e-02, 1.64593172 * np.power(y, 4.31384981e-01) - 2.94139609e-03,
-                              1.92653254e-01 * np.log(y + 6.26026094e-03) + 9.98620152e-01))
-    return curve / SCALE
+    return curve(y) / SCALE
 
 
 def decode(x):
@@ -97,13 +104,9 @@ def decode(x):
                              np.exp((x - 9.98620152e-01) / 1.92653254e-01) - 6.26026094e-03))
 
 
-SCALE = 1.0
-SCALE = float(encode(np.array(BRIGHTEST)))
-
-
 def exposure(rgb):
     """What brings the geometric mean of the luminance, over squares of some 16x16 pixels, to 0.18."""
-    luminance = rgb @ LUMINANCE
+    luminance = rgb @ WEIGHTS
     rows = np.array_split(luminance, -(-luminance.shape[0] // 16))
     means = np.array([part.mean() for row in rows for part in np.array_split(row, -(-luminance.shape[1] // 16), 1)])
     means = means[means > 1e-8]

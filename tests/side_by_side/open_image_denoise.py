@@ -11,16 +11,14 @@ Errors are those of `lull compare`. Images stay in OUT; existing ones are not re
 """
 
 import argparse
-import json
 import os
-import subprocess
 import sys
 
 import numpy as np
 import OpenImageIO as oiio
 
+from crops import Crop
 from oidn_network import denoise
-from seconds import Seconds
 
 SIZES = {'oidn, balanced': '', 'oidn, high': '_large'}  # quality, with prefiltered features
 
@@ -45,36 +43,21 @@ def write(path, rgb, like):
         sys.exit(image.geterror())
 
 
-class Scene:
+class Scene(Crop):
     def __init__(self, text, o):
-        self.name, rest = text.split('=')
-        self.path, _, self.crop = rest.partition('@')
-        self.o, self.seconds = o, Seconds(os.path.join(o.out, self.name + '.seconds.json'))
-
-    def file(self, name):
-        return os.path.join(self.o.out, f'{self.name}.{name}.exr')
-
-    def render(self, name, *how):
-        crop = ['--crop', self.crop] if self.crop else []
-        self.seconds.run(name, [self.o.lull, 'render', self.path, '--resolution', self.o.resolution, *crop, '--quiet',
-                                '-o', self.file(name), *how])
-
-    def error(self, name):
-        subprocess.run([self.o.lull, 'compare', '--reference', self.file('truth'), '--automatic', self.file(name), '-o',
-                        os.path.join(self.o.out, self.name), '--quiet'], check=True, stdout=subprocess.DEVNULL)
-        images = json.load(open(os.path.join(self.o.out, self.name + '.compare.json')))['images']
-        return next(image['figures'] for image in images if image['name'] == 'automatic')
+        super().__init__(text, o.out, o.lull, o.resolution)
+        self.o = o
 
     def compare(self):
         self.render('truth', '--spp', str(self.o.truth), '--seed', '99', '--sampler', 'sobol')
         for spp in self.o.spp.split(','):
             self.render(spp, '--spp', spp, '--seed', '1', '--denoise', '--aov', 'albedo,normal')
-            _, noisy, albedo, normal, spec = read(self.file(spp))
-            write(self.file(spp + '.noisy'), noisy, spec)
+            _, noisy, albedo, normal, spec = read(self.file(spp + '.exr'))
+            write(self.file(spp + '.noisy.exr'), noisy, spec)
             for name, size in SIZES.items():
-                write(self.file(f'{spp}.{name}'), denoise(noisy, albedo, normal, self.o.weights, size), spec)
+                write(self.file(f'{spp}.{name}.exr'), denoise(noisy, albedo, normal, self.o.weights, size), spec)
             for name, file in (('noisy', '.noisy'), ('lull', ''), *((name, '.' + name) for name in SIZES)):
-                f = self.error(spp + file)
+                f = self.judge(spp + file)
                 print(f'{self.name},{spp},"{name}",{f["visibleDifference"]:.2f},{f["rmseLightness"]:.3f},'
                       f'{f["flip"]:.4f},{f["ssim"]:.4f}', flush=True)
 

@@ -101,10 +101,11 @@ std::vector<Mat4d> ReadCopies(const GltfDocument& document, int index) {
         count = array.Count();
         return array;
     };
-    // Those of other names count the copies as well.
-    for (const std::string& name : attributes.Keys()) read(name, 1, 16);
     const GltfArray translations = read("TRANSLATION", 3, 3), rotations = read("ROTATION", 4, 4),
                     scales = read("SCALE", 3, 3);
+    // Those of other names count the copies as well.
+    for (const std::string& name : attributes.Keys())
+        if (name != "TRANSLATION" && name != "ROTATION" && name != "SCALE") read(name, 1, 16);
     std::vector<Mat4d> copies;
     for (size_t i = 0; i < count; ++i) {
         const auto three = [&](const GltfArray& a, double otherwise) -> Eigen::Vector3d {

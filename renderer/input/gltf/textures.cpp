@@ -110,7 +110,7 @@ TextureEntity GltfTextures::MakeEntity(const GltfTextureUse& use, GltfTexels tex
     const ParameterWriter write(&entity.parameters, loc);
     const int source = ImageOf(texture);
     const tinygltf::Image& image = document.model.images[size_t(source)];
-    if (image.uri.empty() || image.uri.starts_with("data:"))
+    if (image.uri.empty() || IsDataUri(image.uri))
         write.Int("embeddedimage", Embed(source, loc));
     else
         write.String("filename", DecodeUri(image.uri));
