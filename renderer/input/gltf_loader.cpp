@@ -17,6 +17,7 @@
 #include "renderer/input/gltf/skins.h"
 #include "renderer/input/gltf/uri.h"
 #include "renderer/input/gltf/variants.h"
+#include "renderer/input/gltf/visibility.h"
 
 namespace lull {
 namespace {
@@ -28,9 +29,11 @@ constexpr int kMaxDepth = 12;
 struct PosedMesh {
     int mesh, skin = -1;          // -1: none
     std::vector<double> weights;  // of its morph targets; empty: none
+    GltfVisibility visibility;
 
     bool operator<(const PosedMesh& o) const {
-        return std::tie(mesh, skin, weights) < std::tie(o.mesh, o.skin, o.weights);
+        return std::tie(mesh, skin, weights, visibility) <
+               std::tie(o.mesh, o.skin, o.weights, o.visibility);
     }
 };
 
@@ -80,15 +83,18 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
         if (shape.areaLight) ParameterWriter(&shape.parameters, loc).Bool("frontbywinding", true);
         shape.insideMedium = material.medium;
         for (const Parameter& parameter : material.coverage.All()) shape.parameters.Add(parameter);
+        HideShape(posed.visibility, &shape);
         result.shapes.push_back(std::move(shape));
     }
     return result;
 }
 
 // Returns the mesh of a node as the node has it.
-PosedMesh MeshOf(const GltfDocument& document, const tinygltf::Node& node) {
+PosedMesh MeshOf(const GltfDocument& document, int index) {
+    const tinygltf::Node& node = document.model.nodes[size_t(index)];
     const std::vector<double>& usual = document.model.meshes[size_t(node.mesh)].weights;
-    PosedMesh mesh{node.mesh, node.skin, node.weights.empty() ? usual : node.weights};
+    PosedMesh mesh{node.mesh, node.skin, node.weights.empty() ? usual : node.weights,
+                   VisibilityOf(document, index)};
     if (std::all_of(mesh.weights.begin(), mesh.weights.end(), [](double w) { return w == 0; }))
         mesh.weights.clear();
     return mesh;
@@ -114,7 +120,7 @@ std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& d
         const tinygltf::Node& n = document.model.nodes[size_t(node.index)];
         if (n.mesh < 0) continue;
         const FileLoc loc = document.At(fmt::format("/nodes/{}", node.index));
-        const PosedMesh mesh = MeshOf(document, n);
+        const PosedMesh mesh = MeshOf(document, node.index);
         if (n.skin >= 0) {
             // Its joints alone say where it stands (3.7.3.3).
             placements[mesh].push_back({node.index, Mat4d::Identity()});

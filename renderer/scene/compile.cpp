@@ -75,6 +75,11 @@ bool HasPanes(const Scene& scene) {
     });
 }
 
+bool HidesShapes(const Scene& scene) {
+    return std::any_of(scene.shapes.shapes.begin(), scene.shapes.shapes.end(),
+                       [](const Shape& s) { return (s.hiddenFrom & kCameraRay) != 0; });
+}
+
 // Refuses cameras whose rays Embree would not take.
 void CheckCamera(const Scene& scene, const FileLoc& loc) {
     if (!(Farthest(scene.camera, scene.film) <= double(scene.shapes.reach)))
@@ -103,6 +108,7 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
         warnings.Try([&] {
             scene->shapes = ShapeTable(description, scene->textures, warnings);
             scene->hasPanes = HasPanes(*scene);
+            scene->hidesShapes = HidesShapes(*scene);
             if (seesAll) CheckCamera(*scene, description.camera.loc);
             scene->lights = LightTable(description, scene->shapes, scene->textures,
                                        options.lightsAsPbrtV3, warnings);

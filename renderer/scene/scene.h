@@ -32,6 +32,7 @@ struct Scene {
     bool isMoving = false;      // shapes, instances or the camera, while the shutter is open
     bool isVolumetric = false;  // has visible media, or interfaces that shadow rays pass
     bool hasPanes = false;      // has surfaces with kLetsThrough
+    bool hidesShapes = false;   // from the camera
 
     TextureTable textures;
     MaterialTable materials;

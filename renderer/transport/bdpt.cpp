@@ -95,7 +95,8 @@ template <typename Recorder>
 
         // Find the next surface, or add the light of the sky where there is none.
         Hit found;
-        if (!scene.accelerator.Intersect(segment.ray, &found, context.time)) {
+        if (!scene.accelerator.Intersect(segment.ray, &found, context.time,
+                                         bounces == 0 ? kCameraRay : kOtherRay)) {
             L += segment.beta * LeavingLight(context, segment, choice, path, recorder);
             recorder.LeaveScene(path);
             break;

@@ -10,7 +10,7 @@
 namespace lull {
 
 // Returns how many light paths there are for each sample of all pixels, at these shares; 0 if the
-// camera sees no points or no light shines.
+// camera sees no points, shapes are hidden from it, or no light shines.
 double LightPathCount(const Scene&, const BdptShares&);
 
 // A contribution of a light path to the image.

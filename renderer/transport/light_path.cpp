@@ -64,7 +64,8 @@ class CameraConnector {
 }  // namespace
 
 double LightPathCount(const Scene& scene, const BdptShares& shares) {
-    if (!SeesPoints(scene.camera) || !scene.emission || !scene.emission->Any()) return 0;
+    if (!SeesPoints(scene.camera) || scene.hidesShapes) return 0;
+    if (!scene.emission || !scene.emission->Any()) return 0;
     const Vec2i& size = scene.film.resolution;
     return std::ceil(double(shares.lightPaths) * double(size.x()) * double(size.y()));
 }

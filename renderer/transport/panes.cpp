@@ -28,7 +28,7 @@ Rgb ShareThroughPanes(const Scene& scene, const Ray& whole, float time) {
     Rgb share = Rgb::Ones();
     Ray ray = whole;
     Hit found;
-    while (scene.accelerator.Intersect(ray, &found, time)) {
+    while (scene.accelerator.Intersect(ray, &found, time, kShadowRay)) {
         const Shape& shape = scene.shapes.shapes[found.shape];
         if (!(scene.materials.Needs(shape.material) & kLetsThrough) && !shape.shadowAlpha)
             return Rgb::Zero();

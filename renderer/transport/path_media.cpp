@@ -6,13 +6,13 @@ namespace {
 // Follows a ray through interfaces and panes, and multiplies the transmittances of their media.
 class Beam {
   public:
-    Beam(const PathContext<Media>& context, const Ray& ray, int medium)
-        : ray(ray), medium(medium), context(context) {}
+    Beam(const PathContext<Media>& context, RayKind kind, const Ray& ray, int medium)
+        : ray(ray), medium(medium), context(context), kind(kind) {}
 
     // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
     bool Advance() {
         const Scene& scene = context.scene;
-        const bool isHit = scene.accelerator.Intersect(ray, &found, context.camera.time);
+        const bool isHit = scene.accelerator.Intersect(ray, &found, context.camera.time, kind);
         if (medium != kVacuum) {
             Ray segment = ray;
             if (isHit) segment.tMax = found.t;
@@ -46,6 +46,7 @@ class Beam {
 
   private:
     const PathContext<Media>& context;
+    const RayKind kind;
     Rgb through = Rgb::Zero();  // the pane
 };
 
@@ -54,7 +55,7 @@ class Beam {
 Media::Visibility Media::Look(const Context& context, const Vec3f& origin, const Vec3f& target,
                               int from, bool isAtInfinity) {
     const auto rayFrom = [&](const Vec3f& o) { return Ray{o, target - o, 1 - 0.0001f}; };
-    Beam beam(context, rayFrom(origin), from);
+    Beam beam(context, kShadowRay, rayFrom(origin), from);
     while (beam.Advance()) {
         if (!beam.GoThrough()) return {};
         beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
@@ -66,7 +67,7 @@ Media::Visibility Media::Look(const Context& context, const Vec3f& origin, const
 
 bool Media::Follow(const Context& context, const Ray& ray, int from, int index,
                    LightHit* lightHit) {
-    Beam beam(context, ray, from);
+    Beam beam(context, kOtherRay, ray, from);
     while (beam.Advance()) {
         const bool isThere = context.scene.shapes.LightAt(beam.found) == index;
         if (isThere && !beam.isInterface) {

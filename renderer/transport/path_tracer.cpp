@@ -128,7 +128,8 @@ template <typename Media, typename Guiding, typename Recorder>
 
         // Find the next surface.
         Hit found;
-        const bool isHit = scene.accelerator.Intersect(path.ray, &found, time);
+        const bool isHit = scene.accelerator.Intersect(path.ray, &found, time,
+                                                       bounces == 0 ? kCameraRay : kOtherRay);
 
         // Scatter in the medium before it, if that does.
         if constexpr (Media::kExist) {

@@ -378,7 +378,6 @@ bpy.data.lights['Light'].use_shadow = False""")
                 "1 material is the same on all copies: 'random'",
                 "1 light group is black in its pass, as one of more than 16: 'group",
                 "1 light is left out, taking light away: 'dark'",
-                "1 light is seen by the camera: 'edge'",
                 "1 object is shown although Cycles culls by the camera or the distance: 'edge'",
                 "glass is opaque before a transparent background",
                 "differs: all bounces are traced, without Cycles' fast approximation",

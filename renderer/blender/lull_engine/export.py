@@ -120,8 +120,8 @@ def note_film(scene, notes):
         for o in scene.objects:
             if o.cycles.use_camera_cull or o.cycles.use_distance_cull:
                 notes.add("shown although Cycles culls by the camera or the distance", o.name)
-    if any(c.indirect_only or c.holdout for c in _collections(bpy.context.view_layer.layer_collection)):
-        notes.say("collections that are indirect only or holdouts are shown as any others")
+    if any(c.holdout for c in _collections(bpy.context.view_layer.layer_collection)):
+        notes.say("collections that are holdouts are shown as any others")
 
 
 def limits(scene, depth):

@@ -40,14 +40,14 @@ def flatten(flat, wanted, override, moving, notes):
         before = len(made)
         if o.original.particle_systems and layer.use_strand:
             _place_hair(flat, instance, graph, override, meshes, made)
-            _mark(made[before:], moving, instance)
+            _mark(made[before:], moving, instance, layer)
         if o.type == 'CURVES' and not layer.use_strand or o.type in _MESHES and not layer.use_solid:
             continue
         if o.type == 'CURVES' and (mesh := strands.of_curves(o)):
             if override:
                 mesh.materials[0] = override
             made.append(_place(flat, o.original, mesh, instance.matrix_world.copy()))
-            _mark(made[-1:], moving, instance)
+            _mark(made[-1:], moving, instance, layer)
             continue
         if o.type not in _MESHES:
             if o.type not in _UNSEEN:
@@ -65,7 +65,7 @@ def flatten(flat, wanted, override, moving, notes):
             if instance.is_instance:
                 copied[key] = copied.get(key, 0) + 1
             made.append(_place(flat, o.original, meshes[key], instance.matrix_world.copy()))
-            _mark(made[-1:], moving, instance)
+            _mark(made[-1:], moving, instance, layer)
             shown.add(o.original)
     if override is None:
         _note_copies({name for key, n in copied.items() if n > 1 for name in key[2] if name}, notes)
@@ -74,9 +74,16 @@ def flatten(flat, wanted, override, moving, notes):
     return made
 
 
-def _mark(placed, moving, instance):
+def _mark(placed, moving, instance, layer):
+    those = [instance.object.original] + ([instance.parent.original] if instance.is_instance else [])
+    is_hidden = not all(o.visible_camera for o in those) or those[0].indirect_only_get(view_layer=layer)
+    is_shadowless = not all(o.visible_shadow for o in those)
     for o in placed:
         moving.mark(o, instance)
+        if is_hidden:
+            o["lull_hidden"] = True
+        if is_shadowless:
+            o["lull_shadowless"] = True
 
 
 def is_seen(o, rays):
@@ -237,11 +244,7 @@ def _note_of(original, notes):
         notes.add("subdivided as its modifier says, not adaptively", original.name)
     if original.is_shadow_catcher or original.is_holdout:
         notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
-    if not original.visible_camera:
-        notes.add("seen by the camera", original.name)
     if not all(is_seen(original, (ray,)) for ray in _BOUNCES):
         notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
     if original.cycles.shadow_terminator_offset > 0 and any(p.use_smooth for p in getattr(original.data, "polygons", ())):
         notes.add("brighter near the edge of its own shadow, without its Shading Offset", original.name)
-    if not original.visible_shadow:
-        notes.add("casting shadows all the same", original.name)

@@ -172,6 +172,10 @@ def _patch_nodes(root, groups, notes):
         extras = node.get("extras", {})
         if mesh := extras.pop("lull_mesh", None):
             node["mesh"] = meshes[mesh]
+        own = {name: True for mark, name in (("lull_hidden", "hiddenFromCamera"), ("lull_shadowless", "castsNoShadow"))
+               if extras.pop(mark, None)}
+        if own:
+            extras["lull"] = own
         node["name"] = extras.pop("lull_source", node.get("name", ""))
         group = extras.pop("lull_group", None)
         if group not in groups or not _shines(root, node):

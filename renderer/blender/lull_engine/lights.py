@@ -37,9 +37,8 @@ def add(lamps, scene, flat, base, baker, notes):
         if light.energy < 0:
             notes.add("left out, taking light away", o.name, "lights")
             continue
-        if not o.visible_camera and any(_is_in_view(scene, p) for p in _points(scene, light, matrix)):
-            if light.type == 'AREA' or "lull" in light and "profile" not in light["lull"]:
-                notes.add("seen by the camera", o.name, "lights")
+        if light.type == 'SUN' and not o.visible_camera and any(_is_in_view(scene, p) for p in _points(scene, light, matrix)):
+            notes.add("seen by the camera", o.name, "lights")
         if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
             notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
         if light.cycles.max_bounces < 12:
@@ -67,6 +66,8 @@ def _place(flat, o, data, matrix):
     made = bpy.data.objects.new(o.name, data)
     made.matrix_world = matrix
     made["lull_source"], made["lull_group"] = o.name, o.lightgroup
+    if not o.visible_camera:
+        made["lull_hidden"] = True
     flat.collection.objects.link(made)
 
 
@@ -195,21 +196,13 @@ def _fold_profile(light, socket, baker, path):
     return found[1]
 
 
-def _points(scene, light, matrix):
-    """Yields points of a light that the camera might see."""
+def _points(scene, sun, matrix):
+    """Yields points of a sun that the camera might see: none of one without an angle."""
+    if sun.angle == 0:
+        return
     steps, eye = [(x / 4, y / 4) for x in range(-4, 5) for y in range(-4, 5)], scene.camera.matrix_world
-    if light.type == 'AREA':
-        away = eye.col[2].xyz if scene.camera.data.type == 'ORTHO' else eye.translation - matrix.translation
-        if away.dot(matrix.col[2].xyz) >= 0:  # where it is not there
-            return
-        width, height = _size(light)
-        yield from (matrix @ Vector((x * width / 2, y * height / 2, 0)) for x, y in steps)
-    elif light.type == 'SUN':
-        axes, wide = matrix.to_3x3().normalized(), math.tan(min(light.angle, 3) / 2)
-        yield from (eye.translation + 1e4 * (axes @ Vector((wide * x, wide * y, 1))) for x, y in steps if x * x + y * y <= 1)
-    else:
-        across, radius = eye.to_3x3().normalized(), light.shadow_soft_size
-        yield from (matrix.translation + radius * (across @ Vector((x, y, 0))) for x, y in steps if x * x + y * y <= 1)
+    axes, wide = matrix.to_3x3().normalized(), math.tan(min(sun.angle, 3) / 2)
+    yield from (eye.translation + 1e4 * (axes @ Vector((wide * x, wide * y, 1))) for x, y in steps if x * x + y * y <= 1)
 
 
 def _size(light):

@@ -149,6 +149,15 @@ const tinygltf::Value* OwnValue(const tinygltf::Value& extras, const std::string
     return &extras.Get("lull").Get(name);
 }
 
+bool OwnFlag(const GltfDocument& document, const tinygltf::Value& extras, const std::string& name,
+             const std::string& path) {
+    const tinygltf::Value* value = OwnValue(extras, name);
+    if (!value) return false;
+    if (!value->IsBool())
+        throw Error(document.At(path + "/extras/lull/" + name), "has to be true or false");
+    return value->Get<bool>();
+}
+
 FileLoc GltfDocument::At(const std::string& path) const {
     return {std::make_shared<const std::string>(file + ": " + path), 0};
 }

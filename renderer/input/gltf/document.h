@@ -18,9 +18,14 @@ struct GltfDocument {
     FileLoc At(const std::string& path) const;
 };
 
-// Returns a property of our own in the `extras` of a camera, a light or a material; null: there is
-// none.
+// Returns a property of our own in the `extras` of a camera, a light, a material or a node; null:
+// there is none.
 const tinygltf::Value* OwnValue(const tinygltf::Value& extras, const std::string& name);
+
+// Returns whether a property of our own is true, in the `extras` of the object at the JSON pointer
+// `path`. Throws Error.
+bool OwnFlag(const GltfDocument&, const tinygltf::Value& extras, const std::string& name,
+             const std::string& path);
 
 // Reads a file and the buffers it names; images stay encoded, those in files of their own unread.
 // Unsupported extensions lead to warnings, or to an error if the file requires them. Throws Error

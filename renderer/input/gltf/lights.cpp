@@ -6,6 +6,7 @@
 
 #include "renderer/base/rounding.h"
 #include "renderer/input/gltf/parameters.h"
+#include "renderer/input/gltf/visibility.h"
 
 namespace lull {
 namespace {
@@ -112,9 +113,9 @@ Mat4d WithoutScale(const Mat4d& m) {
 
 void AddLight(const GltfDocument& document, const GltfNode& node, Description* description,
               Warnings& warnings) {
-    const auto& extensions = document.model.nodes[size_t(node.index)].extensions;
-    const auto extension = extensions.find("KHR_lights_punctual");
-    if (extension == extensions.end()) return;
+    const tinygltf::Node& source = document.model.nodes[size_t(node.index)];
+    const auto extension = source.extensions.find("KHR_lights_punctual");
+    if (extension == source.extensions.end()) return;
     const auto index = size_t(extension->second.Get("light").GetNumberAsInt());
     const tinygltf::Light& light = document.model.lights[index];
     const FileLoc loc =
@@ -129,16 +130,17 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     LightEntity entity;
     entity.loc = loc;
     entity.worldFromLight = rigid;
-    const std::string& nodeName = document.model.nodes[size_t(node.index)].name;
-    entity.label = nodeName.empty() ? light.name : nodeName;
+    entity.label = source.name.empty() ? light.name : source.name;
     const ParameterWriter write(&entity.parameters, loc);
     Rgb color = Rgb::Ones();
     if (light.color.size() == 3)
         color = Eigen::Array3d(light.color[0], light.color[1], light.color[2]).cast<float>();
     const Rgb strength = color.max(0.f) * float(*intensity / kLumensPerWatt);
     const std::string profile = ProfileOf(light, loc);
-    if (const double radius = RadiusOf(light, loc); radius > 0 && light.type != "directional")
-        return AddSphere(light, strength, radius, entity, description);
+    if (const double radius = RadiusOf(light, loc); radius > 0 && light.type != "directional") {
+        AddSphere(light, strength, radius, entity, description);
+        return HideShape(VisibilityOf(document, node.index), &description->shapes.back());
+    }
     if (light.type == "directional") {
         entity.name = "distant";
         write.Spectrum("L", strength);

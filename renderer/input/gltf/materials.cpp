@@ -37,17 +37,6 @@ Rgb Color(const tinygltf::Value& owner, const std::string& name, const Rgb& othe
             float(c.Get(2).GetNumberAsDouble())};
 }
 
-// Returns whether a property of our own is true: "addedInterface", the base is not
-// attenuated by the interface above it; "openBehind", rays from behind pass. Throws Error.
-bool OwnProperty(const tinygltf::Material& material, const std::string& name,
-                 const GltfDocument& document, const std::string& path) {
-    const tinygltf::Value* value = OwnValue(material.extras, name);
-    if (!value) return false;
-    if (!value->IsBool())
-        throw Error(document.At(path + "/extras/lull/" + name), "has to be true or false");
-    return value->Get<bool>();
-}
-
 // Returns our own "spread", the angle across the cone about each normal that emission
 // leaves into, degrees; 180: to all sides. Throws Error.
 double SpreadOf(const tinygltf::Material& material, const GltfDocument& document,
@@ -246,7 +235,7 @@ void GltfMaterials::AddSurface(const MaterialUse& use, const GltfTextureUse& col
                GltfTexels::LinearColor, warnings);
     use.write.Bool("vertexcolors", hasColors);
     use.write.Bool("addedinterface",
-                   OwnProperty(use.material, "addedInterface", document, use.path));
+                   OwnFlag(document, use.material.extras, "addedInterface", use.path));
     AddSpecular(use, warnings);
     AddTransmission(use, warnings);
     AddClearcoat(use, warnings);
@@ -287,7 +276,7 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
     }
 
     const ParameterWriter cover(&result.coverage, loc);
-    if (OwnProperty(material, "openBehind", document, path)) cover.Bool("openbehind", true);
+    if (OwnFlag(document, material.extras, "openBehind", path)) cover.Bool("openbehind", true);
     if (material.alphaMode != "OPAQUE") {
         AddTexture(cover, "coverage", color, GltfTexels::Alpha, warnings);
         cover.Float("coveragefactor", pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[3] : 1);

@@ -2,28 +2,9 @@
 
 namespace lull {
 
-namespace {
-
-RTCRay MakeRay(const Ray& ray, float time) {
-    RTCRay r;
-    r.org_x = ray.o.x(), r.org_y = ray.o.y(), r.org_z = ray.o.z();
-    r.dir_x = ray.d.x(), r.dir_y = ray.d.y(), r.dir_z = ray.d.z();
-    // Embree's range is closed. A ray that starts in an axis-aligned plane through the origin,
-    // where error bounds are 0, hits that plane at exactly 0, which must not count.
-    r.tnear = std::numeric_limits<float>::min();
-    r.tfar = ray.tMax;
-    r.time = time;
-    r.mask = ~0u;
-    r.id = 0;
-    r.flags = 0;
-    return r;
-}
-
-}  // namespace
-
-bool Accelerator::Intersect(const Ray& ray, Hit* hit, float time) const {
+bool Accelerator::Intersect(const Ray& ray, Hit* hit, float time, RayKind kind) const {
     RTCRayHit r;
-    r.ray = MakeRay(ray, time);
+    r.ray = MakeRay(ray, kind, time);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
@@ -46,7 +27,7 @@ bool Accelerator::Intersect(const Ray& ray, Hit* hit, float time) const {
 }
 
 bool Accelerator::Occluded(const Ray& ray, float time) const {
-    RTCRay r = MakeRay(ray, time);
+    RTCRay r = MakeRay(ray, kShadowRay, time);
 #if RTC_VERSION_MAJOR >= 4
     rtcOccluded1(implementation->world.get(), &r);
 #else

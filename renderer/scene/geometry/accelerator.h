@@ -20,9 +20,9 @@ class Accelerator {
     Accelerator(const ShapeTable& shapes, const TextureTable& textures);
 
     // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1.
-    bool Intersect(const Ray& ray, Hit* hit, float time = 0) const;
+    bool Intersect(const Ray& ray, Hit* hit, float time = 0, RayKind = kOtherRay) const;
 
-    // Returns whether anything lies in (0, ray.tMax) at `time`; shadow alpha counts too.
+    // Returns whether anything lies in (0, ray.tMax) of a shadow ray at `time`.
     bool Occluded(const Ray& ray, float time = 0) const;
 
   private:

@@ -42,6 +42,8 @@ bool IsFromBehind(const Shape& shape, const RTCRay& ray, const RTCHit& hit) {
 
 bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     const Shape& shape = user.shapes->shapes[user.shape];
+    if (shape.hiddenFrom & ray.id) return true;
+    if (!shape.coverage) return false;
     if (shape.coverage->openBehind && IsFromBehind(shape, ray, hit)) return true;
     const Vec3f p(ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,
                   ray.org_z + ray.tfar * ray.dir_z);
@@ -108,8 +110,11 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
             [&]<typename S>(const S&) {
                 if constexpr (!std::is_same_v<S, Mesh>) {
                     rtcSetGeometryBoundsFunction(geometry, BoundsCallback<S>, nullptr);
-                    rtcSetGeometryIntersectFunction(geometry, IntersectCallback<S>);
-                    rtcSetGeometryOccludedFunction(geometry, OccludedCallback<S>);
+                    rtcSetGeometryIntersectFunction(geometry, shape.hiddenFrom
+                                                                  ? SeenIntersectCallback<S>
+                                                                  : IntersectCallback<S>);
+                    rtcSetGeometryOccludedFunction(
+                        geometry, shape.hiddenFrom ? SeenOccludedCallback<S> : OccludedCallback<S>);
                 }
             },
             shape.geometry);
@@ -117,7 +122,7 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
     if (mesh && shape.alpha) rtcSetGeometryIntersectFilterFunction(geometry, FilterNearestByAlpha);
     if (mesh && (shape.alpha || shape.shadowAlpha))
         rtcSetGeometryOccludedFilterFunction(geometry, FilterOcclusionByAlpha);
-    if (mesh && shape.coverage) {
+    if (mesh && (shape.coverage || shape.hiddenFrom)) {
         rtcSetGeometryIntersectFilterFunction(geometry, FilterByCoverage);
         rtcSetGeometryOccludedFilterFunction(geometry, FilterByCoverage);
     }

@@ -69,6 +69,21 @@ inline RTCBounds PaddedBounds(const Bounds3f& b) {
     return {lower.x(), lower.y(), lower.z(), 0, upper.x(), upper.y(), upper.z(), 0};
 }
 
+inline RTCRay MakeRay(const Ray& ray, RayKind kind, float time) {
+    RTCRay r;
+    r.org_x = ray.o.x(), r.org_y = ray.o.y(), r.org_z = ray.o.z();
+    r.dir_x = ray.d.x(), r.dir_y = ray.d.y(), r.dir_z = ray.d.z();
+    // Embree's range is closed. A ray that starts in an axis-aligned plane through the origin,
+    // where error bounds are 0, hits that plane at exactly 0, which must not count.
+    r.tnear = std::numeric_limits<float>::min();
+    r.tfar = ray.tMax;
+    r.time = time;
+    r.mask = ~0u;
+    r.id = kind;
+    r.flags = 0;
+    return r;
+}
+
 inline Ray RayOf(const RTCRay& r) {
     return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar};
 }
@@ -77,6 +92,11 @@ template <typename S>
 const S& ShapeOf(void* user) {
     const auto& [shapes, textures, index] = *static_cast<const ShapeUser*>(user);
     return *std::get_if<S>(&shapes->shapes[index].geometry);
+}
+
+inline bool IsHidden(void* user, const RTCRay& ray) {
+    const auto& [shapes, textures, index] = *static_cast<const ShapeUser*>(user);
+    return shapes->shapes[size_t(index)].hiddenFrom & ray.id;
 }
 
 template <typename S>
@@ -119,6 +139,19 @@ void OccludedCallback(const RTCOccludedFunctionNArguments* args) {
     auto* ray = reinterpret_cast<RTCRay*>(args->ray);
     if (IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(*ray)))
         ray->tfar = -kInfinity;
+}
+
+// Those of shapes that are hidden from some rays.
+template <typename S>
+void SeenIntersectCallback(const RTCIntersectFunctionNArguments* args) {
+    if (!IsHidden(args->geometryUserPtr, reinterpret_cast<const RTCRayHit*>(args->rayhit)->ray))
+        IntersectCallback<S>(args);
+}
+
+template <typename S>
+void SeenOccludedCallback(const RTCOccludedFunctionNArguments* args) {
+    if (!IsHidden(args->geometryUserPtr, *reinterpret_cast<const RTCRay*>(args->ray)))
+        OccludedCallback<S>(args);
 }
 
 }  // namespace lull

@@ -17,7 +17,7 @@ bool IntoMoving(const MovingUser& user, const RTCRay& r, RTCRay* inner) {
     const Ray ray =
         IntoInstance(user.shapes->InstanceAt(instance, r.time),
                      {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar});
-    *inner = MakeRay(ray, r.time);
+    *inner = MakeRay(ray, RayKind(r.id), r.time);
     return ray.o.squaredNorm() + ray.d.squaredNorm() < Sqr(kLongestRay);
 }
 

@@ -81,12 +81,16 @@ struct Coverage {
     }
 };
 
+// What a ray asks for; bits, of the kinds that a shape can be hidden from.
+enum RayKind : unsigned { kOtherRay = 0, kCameraRay = 1, kShadowRay = 2 };
+
 struct Shape {
     Geometry geometry{};
     int material = -1;
     int firstLight = -1;  // of its lights, one a primitive; -1: emits nothing
     std::optional<FloatTexture> alpha{}, shadowAlpha{};  // 0 there: not hit (by shadow rays)
     std::optional<Coverage> coverage{};                  // of meshes
+    unsigned hiddenFrom = 0;                             // kinds of rays that pass it
 
     bool IsMesh() const { return std::holds_alternative<Mesh>(geometry); }
     bool IsInvisible() const { return alpha && alpha->IsConstant() && alpha->constant == 0; }

@@ -255,6 +255,13 @@ def lamps_seen(scene):
             o.data.shadow_soft_size = 0.3
 
 
+@case("lamps with a radius that the camera does not see")
+def lamps_unseen(scene):
+    for x, kind in (-1.5, 'POINT'), (1.5, 'SPOT'):
+        o = lamp(kind, 40, (x, -1, 1.5), (1.3, 0, 0))
+        o.visible_camera, o.data.shadow_soft_size = False, 0.4
+
+
 @case("area lamps of negative scale, one without a width")
 def area_scaled(scene):
     without("key")

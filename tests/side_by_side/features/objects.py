@@ -26,6 +26,33 @@ def shadowless(scene):
     the("ball").visible_shadow = False
 
 
+@case("copies that the camera does not see, or without a shadow")
+def unseen_copies(scene):
+    without("ball")
+    parts = bpy.data.collections.new("parts")
+    source = cube(matte("part", (0.6, 0.2, 0.1, 1)))
+    parts.objects.link(source)
+    scene.collection.objects.unlink(source)
+    for x, name in (-2, "visible_camera"), (0, "visible_shadow"), (2, None):
+        copy = bpy.data.objects.new("copy", None)
+        copy.instance_type, copy.instance_collection, copy.location.x = 'COLLECTION', parts, x
+        scene.collection.objects.link(copy)
+        if name:
+            setattr(copy, name, False)
+
+
+@case("wall before the camera that it does not see, half transparent")
+def unseen_wall(scene):
+    o = wall(principled(Alpha=0.5)[0])
+    o.location.y, o.visible_camera = -3, False
+
+
+@case("glass without a shadow")
+def glass_without_shadow(scene):
+    dressed(principled(Transmission=1, Roughness=0, IOR=1.45)[0])
+    the("ball").visible_shadow = False
+
+
 @case("holdout")
 def holdout(scene):
     the("ball").is_holdout = scene.render.film_transparent = True

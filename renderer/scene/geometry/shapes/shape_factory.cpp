@@ -328,6 +328,8 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
     Shape shape;
     if (const auto* kind = FindKind(kShapes, entity.name)) {
         shape = kind->make({description, entity, textures, warnings});
+        if (entity.parameters.GetBool("hiddenfromcamera", false)) shape.hiddenFrom |= kCameraRay;
+        if (entity.parameters.GetBool("castsnoshadow", false)) shape.hiddenFrom |= kShadowRay;
         entity.parameters.ReportUnused("Shape \"" + entity.name + "\"", warnings);
     } else {
         warnings.Substitute(entity.loc,
