@@ -1,5 +1,6 @@
 #include "renderer/results/layer_channels.h"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -83,7 +84,7 @@ std::vector<std::string> LayerNames(const std::vector<std::string>& groups) {
         std::string name = whole;
         bool isLong = whole.size() > kLongest;
         for (int number = 1; isLong || std::ranges::count(names, name) > 0; ++number) {
-            const std::string end = "~" + std::to_string(number);
+            const std::string end = fmt::format("~{}", number);
             name = BeginningOf(whole, kLongest - end.size()) + end;
             isLong = false;
         }
