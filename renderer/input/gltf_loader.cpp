@@ -83,7 +83,7 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
         if (shape.areaLight) ParameterWriter(&shape.parameters, loc).Bool("frontbywinding", true);
         shape.insideMedium = material.medium;
         for (const Parameter& parameter : material.coverage.All()) shape.parameters.Add(parameter);
-        HideShape(posed.visibility, &shape);
+        Hide(posed.visibility, &shape.parameters);
         result.shapes.push_back(std::move(shape));
     }
     return result;

@@ -88,6 +88,13 @@ def _scatter_through(material, share, red, green, blue, is_image):
     material.setdefault("extensions", {})["KHR_materials_diffuse_transmission"] = made
 
 
+def _own_flags(extras):
+    """Takes marks, numbers as Blender has no others, out of `extras`. Returns lull's own properties of materials and nodes."""
+    marks = {"lull_adds": "addedInterface", "lull_open": "openBehind", "lull_sided": "openBehind",
+             "lull_hidden": "hiddenFromCamera", "lull_shadowless": "castsNoShadow"}
+    return {name: True for mark, name in marks.items() if extras.pop(mark, None)}
+
+
 def _patch_material(material):
     extras, extensions = material.get("extras", {}), material.get("extensions", {})
     material["name"] = extras.pop("lull_name", material.get("name", ""))
@@ -104,8 +111,7 @@ def _patch_material(material):
     # Without this, glass would be a thin sheet; Blender's is solid.
     if "KHR_materials_transmission" in extensions and not extras.pop("lull_thin", None):
         extensions.setdefault("KHR_materials_volume", {"thicknessFactor": 1})
-    own = {name: True for mark, name in (("lull_adds", "addedInterface"), ("lull_open", "openBehind"), ("lull_sided", "openBehind"))
-           if extras.pop(mark, None)}  # Blender has numbers only
+    own = _own_flags(extras)
     if spread := extras.pop("lull_spread", None):
         own["spread"] = spread
     if own:
@@ -172,9 +178,7 @@ def _patch_nodes(root, groups, notes):
         extras = node.get("extras", {})
         if mesh := extras.pop("lull_mesh", None):
             node["mesh"] = meshes[mesh]
-        own = {name: True for mark, name in (("lull_hidden", "hiddenFromCamera"), ("lull_shadowless", "castsNoShadow"))
-               if extras.pop(mark, None)}
-        if own:
+        if own := _own_flags(extras):
             extras["lull"] = own
         node["name"] = extras.pop("lull_source", node.get("name", ""))
         group = extras.pop("lull_group", None)

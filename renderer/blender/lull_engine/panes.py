@@ -14,6 +14,8 @@ def prepare(made, notes):
     sheets = {}
     for o in made:
         mesh = o.data
+        if o.get("lull_shadowless"):  # light passes it as it is
+            continue
         if mesh not in sheets:
             sheets[mesh] = _sheet(o) if len(mesh.materials) == 1 and _glass(mesh.materials[0]) else None
         if sheets[mesh] is not None:
@@ -24,7 +26,7 @@ def prepare(made, notes):
 def _glass(material):
     """Returns the surface of smooth clear glass; None for other materials."""
     surface = surfaces.principled(material)
-    if surface is None or material.get("lull_absorbs"):
+    if surface is None or material.get("lull_absorbs") or material.get("lull_shadowless"):
         return None
     inputs = surface.inputs
     transmission = principled_input(surface, 'Transmission')

@@ -16,6 +16,7 @@ import uvs
 from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 
 # What depends on the direction from which a surface is seen, or on who asks.
+_HIDING_RAYS = {'Is Camera Ray': "lull_hidden", 'Is Shadow Ray': "lull_shadowless"}  # marks of what they pass
 _BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA', 'LIGHT_FALLOFF', 'TEX_IES'}
 _OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': ('Backfacing', 'Incoming'), 'TEX_COORD': ('Camera', 'Window', 'Reflection')}
 _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT_INFO', 'TANGENT', 'AMBIENT_OCCLUSION', 'BEVEL',
@@ -230,6 +231,7 @@ class _Surface:
             notes.add("without the length, width and direction of hair", self.name, "materials")
         output = self.tree.get_output_node('CYCLES')
         root = source_of(output.inputs['Surface'])
+        self.root = root and root.node
         self.has_sides = side is None and root is not None and sides.are_of(root.node, source_of)
         if self.has_sides:
             return
@@ -383,6 +385,9 @@ class _Surface:
             return None
         a, b = (self._half(found, socket) for found, socket in ((a, node.inputs[1]), (b, node.inputs[2])))
         if self._is_output(factor) and _is_by_view(factor):
+            if node == self.root and self._hides_from_rays(b, factor):
+                # Light that enters a plane of solid glass, and never leaves it, is weaker than in Cycles.
+                return a if a['Transmission'] != 1 or self._is_solid() else self._lit_through(a)
             return self._mix_by_view(a, b, factor)
         if not self._is_output(factor) and factor in (0, 1):
             return b if factor else a
@@ -442,6 +447,14 @@ class _Surface:
         self.notes.add("in part in the viewport colour, as one of its surfaces is unknown", self.name, "materials")
         return dict(_DEFAULTS, **{'Base Color': tuple(self.original.diffuse_color)[:3]})
 
+    def _hides_from_rays(self, other, factor):
+        """Marks a surface that rays of one kind pass, where a factor gives them the `other`, clear surface. Returns whether it is."""
+        mark = _HIDING_RAYS.get(factor.name) if factor.node.type == 'LIGHT_PATH' else None
+        if mark is None or other['Alpha'] != 0 or other['Tint'] != (1, 1, 1) or other['Radiance'] != (0, 0, 0):
+            return False
+        self.copy[mark] = True
+        return True
+
     def _mix_by_view(self, a, b, factor):
         """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what lights
         the scene holds, else what the camera sees."""
@@ -483,11 +496,14 @@ class _Surface:
         return dict(_DEFAULTS, **{'Base Color': clear['Tint'], 'Transmission': 1, 'Specular': 0.5, 'Roughness': 0,
                                   'IOR': ior or 1.45})
 
+    def _is_solid(self):
+        return any(solids.has_solid(o, slot) for o, slot in self.meshes.values())
+
     def _lit_through(self, glass):
         """Returns glass which light passes that other glass refracts."""
         if self.copy.get("lull_thin"):
             return glass
-        if any(solids.has_solid(o, slot) for o, slot in self.meshes.values()):
+        if self._is_solid():
             self.notes.add("solid glass, which lamps do not shine through", self.name, "materials")
             return glass
         self.notes.add("made a sheet of glass, the same from both sides", self.name, "materials")

@@ -139,7 +139,7 @@ void AddLight(const GltfDocument& document, const GltfNode& node, Description* d
     const std::string profile = ProfileOf(light, loc);
     if (const double radius = RadiusOf(light, loc); radius > 0 && light.type != "directional") {
         AddSphere(light, strength, radius, entity, description);
-        return HideShape(VisibilityOf(document, node.index), &description->shapes.back());
+        return Hide(VisibilityOf(document, node.index), &description->shapes.back().parameters);
     }
     if (light.type == "directional") {
         entity.name = "distant";

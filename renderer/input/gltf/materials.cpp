@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "renderer/base/rounding.h"
+#include "renderer/input/gltf/visibility.h"
 
 namespace lull {
 namespace {
@@ -277,6 +278,7 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
 
     const ParameterWriter cover(&result.coverage, loc);
     if (OwnFlag(document, material.extras, "openBehind", path)) cover.Bool("openbehind", true);
+    Hide(VisibilityOf(document, material.extras, path), &result.coverage);
     if (material.alphaMode != "OPAQUE") {
         AddTexture(cover, "coverage", color, GltfTexels::Alpha, warnings);
         cover.Float("coveragefactor", pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[3] : 1);

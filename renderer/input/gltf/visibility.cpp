@@ -6,16 +6,19 @@
 
 namespace lull {
 
-GltfVisibility VisibilityOf(const GltfDocument& document, int node) {
-    const tinygltf::Value& extras = document.model.nodes[size_t(node)].extras;
-    const auto isTrue = [&](const char* name) {
-        return OwnFlag(document, extras, name, fmt::format("/nodes/{}", node));
-    };
-    return {isTrue("hiddenFromCamera"), isTrue("castsNoShadow")};
+GltfVisibility VisibilityOf(const GltfDocument& document, const tinygltf::Value& extras,
+                            const std::string& path) {
+    return {OwnFlag(document, extras, "hiddenFromCamera", path),
+            OwnFlag(document, extras, "castsNoShadow", path)};
 }
 
-void HideShape(const GltfVisibility& visibility, ShapeEntity* shape) {
-    const ParameterWriter write(&shape->parameters, shape->loc);
+GltfVisibility VisibilityOf(const GltfDocument& document, int node) {
+    return VisibilityOf(document, document.model.nodes[size_t(node)].extras,
+                        fmt::format("/nodes/{}", node));
+}
+
+void Hide(const GltfVisibility& visibility, Parameters* parameters) {
+    const ParameterWriter write(parameters, {});
     if (visibility.hiddenFromCamera) write.Bool("hiddenfromcamera", true);
     if (visibility.castsNoShadow) write.Bool("castsnoshadow", true);
 }

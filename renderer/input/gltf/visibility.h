@@ -1,4 +1,4 @@
-// Reads our own properties of nodes that say which rays do not see them.
+// Reads our own properties of nodes and materials that say which rays do not see them.
 #pragma once
 
 #include "renderer/input/description.h"
@@ -6,16 +6,19 @@
 
 namespace lull {
 
-// Rays that pass the mesh of a node, or the sphere of its light.
+// Rays that pass the mesh of a node, the sphere of its light, or a surface.
 struct GltfVisibility {
     bool hiddenFromCamera = false, castsNoShadow = false;
 
     auto operator<=>(const GltfVisibility&) const = default;
 };
 
-// Throws Error.
+// Reads the `extras` of the node or material at the JSON pointer `path`. Throws Error.
+GltfVisibility VisibilityOf(const GltfDocument&, const tinygltf::Value& extras,
+                            const std::string& path);
 GltfVisibility VisibilityOf(const GltfDocument&, int node);
 
-void HideShape(const GltfVisibility&, ShapeEntity*);
+// Adds parameters of a shape.
+void Hide(const GltfVisibility&, Parameters*);
 
 }  // namespace lull

@@ -445,16 +445,17 @@ TEST(GltfMaterial, MayBeOpenBehind) {
 }
 
 // A green sheet under the sun, above a white floor. Seen, the sheet is in the picture; hidden from
-// the camera, the floor is, in its shadow unless it casts none. It stands there once, as an
-// instance, or moves, or shadow rays look for media, as glass that absorbs is behind it.
+// the camera, the floor is, in its shadow unless it casts none. It is the node's property or the
+// material's; the sheet is an instance, or moves, or shadow rays look for media, as there is glass.
 TEST(GltfNode, MayBeHiddenFromTheCameraAndShadowRays) {
     for (const bool isHidden : {false, true})
         for (const bool isShadowless : {false, true})
-            for (const std::string how : {"once", "twice", "moving", "media"}) {
+            for (const std::string how : {"node", "material", "twice", "moving", "media"}) {
                 GltfFile file;
                 const int mesh = Square(&file, Matte(0, 1, 0));
                 json sheet = {{"mesh", mesh}, {"translation", {0, 0, 1}}, {"scale", {3, 3, 1}}};
-                sheet["extras"]["lull"] = {{"hiddenFromCamera", isHidden},
+                json& owner = how == "material" ? file.root["materials"][0] : sheet;
+                owner["extras"]["lull"] = {{"hiddenFromCamera", isHidden},
                                            {"castsNoShadow", isShadowless}};
                 file.Node(sheet);
                 if (how == "twice") {

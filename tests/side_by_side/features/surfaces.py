@@ -177,6 +177,16 @@ def glass_by_rays(scene):
     dressed(made)
 
 
+@case("surface by kinds of rays: the camera does not see it")
+def unseen_by_rays(scene):
+    made, bsdf, tree = principled()
+    rays, clear, mix = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader'))
+    for a, b in ((rays.outputs['Is Camera Ray'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2])):
+        tree.links.new(a, b)
+    cover(mix, tree)
+    dressed(made)
+
+
 def sheet(made):
     """Puts a plane before the wall, in the way of the sun."""
     wall(matte("red", (0.6, 0.2, 0.1, 1))).location.y = 1
