@@ -115,7 +115,7 @@ TEST(ModelInputs, AreThoseOfRecordings) {
         settings.features = ParseFeatures(m == 100 ? "H,H1,H2,detail_masked_noise,attributes26"
                                                    : "H,attributes26,detail_masked_noise");
         BlockRecording recording;
-        Recorder recorder(20, 100, 100, &recording);
+        BlockRecorder recorder(20, 100, 100, &recording);
         for (int spp = 20; spp <= 100; spp += 20) {
             const BlockImage block = NoisyBlock(64, 60, 0.5, spp, unsigned(spp));
             recorder.Observe(block.At(spp));
