@@ -99,6 +99,27 @@ void WriteShown(const std::string& png, const PixelRect& shown, const PixelRect&
     WritePng(png, MeansOf(picture), picture.width, picture.height);
 }
 
+// Returns the image and the one of --half, which then has the same window, to denoise.
+NoisyPicture ReadHalves(const Options& options, ExrImage* exr) {
+    if (options.half.empty()) {
+        CheckColours(options.input, *exr);
+        return ReadPicture(*exr, options.input);
+    }
+    ExrImage half = ReadExr(options.half);
+    UseOneWindow(options, exr, &half);
+    UseOwnNames(options.input, exr);
+    UseOwnNames(options.half, &half);
+    return ReadPicture(*exr, options.input, half, options.half);
+}
+
+// Leaves out what the denoised image replaces, as the next steps need the memory, and NaN.
+void KeepOtherChannels(ExrImage* exr) {
+    std::erase_if(exr->channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
+    for (ExrChannel& channel : exr->channels)  // depths may be infinite
+        std::ranges::replace_if(
+            channel.values, [](float v) { return std::isnan(v); }, 0.f);
+}
+
 ExitCode RunDenoise(Options options) {
     using std::filesystem::path;
     if (options.output.empty())
@@ -112,18 +133,7 @@ ExitCode RunDenoise(Options options) {
         throw Error("--half " + options.half + ": the same file as " + options.input +
                     "; render once more, with another --seed");
     ExrImage exr = ReadExr(options.input);
-    NoisyPicture picture;
-    if (options.half.empty()) {
-        CheckColours(options.input, exr);
-        picture = ReadPicture(exr, options.input);
-    } else {
-        ExrImage half = ReadExr(options.half);
-        UseOneWindow(options, &exr, &half);
-        UseOwnNames(options.input, &exr);
-        UseOwnNames(options.half, &half);
-        picture = ReadPicture(exr, options.input, half, options.half);
-    }
-
+    NoisyPicture picture = ReadHalves(options, &exr);
     CheckHalves(options, exr, picture);
     const PixelRect shown = ShownWindow(exr, options.input);
 
@@ -132,11 +142,7 @@ ExitCode RunDenoise(Options options) {
     schedule.blockSize = options.blockSize;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
     const std::vector<float> noisy = MeanOf(exr, picture, options.half.empty());
-    // The next steps need the memory.
-    std::erase_if(exr.channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
-    for (ExrChannel& channel : exr.channels)  // depths may be infinite
-        std::ranges::replace_if(
-            channel.values, [](float v) { return std::isnan(v); }, 0.f);
+    KeepOtherChannels(&exr);
     const auto start = std::chrono::steady_clock::now();
     const DenoisedImage denoised = DenoiseWithReports(std::move(picture), region, blocks,
                                                       StyleOfReports(false, options.quiet));

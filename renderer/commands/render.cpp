@@ -112,11 +112,11 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     Film& film = session->GetFilm();
     DenoiserResults made;
     NoisyPicture picture;
-    GroupedPicture lights;
+    GroupedPicture groups;
     const bool hasGroups = p.request.denoise && film.layers.Find<LightGroupLayer>();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
     if (hasGroups)
-        lights = TakeGroups(&film);
+        groups = TakeGroups(&film);
     else if (p.request.denoise)
         picture = TakePicture(&film);
     film.layers.ForgetFeatures();  // what follows needs the memory
@@ -126,7 +126,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const auto start = std::chrono::steady_clock::now();
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
     const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
-    made.image = hasGroups ? DenoiseWithReports(std::move(lights), region, p.blocks, style, how)
+    made.image = hasGroups ? DenoiseWithReports(std::move(groups), region, p.blocks, style, how)
                            : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int unknown = RemoveUnknownErrors(result, region, &*made.image); unknown > 0)

@@ -31,25 +31,25 @@ void Append(const std::string& text, const char* separator, std::string* list) {
 
 void ResultFiles::Write(const std::string& path, const Writer& write) { WriteAll({{path, write}}); }
 
-void ResultFiles::WriteAll(const std::vector<Job>& jobs) {
-    std::vector<std::optional<std::string>> failed(jobs.size());
-    ForEachIndex(int(jobs.size()), [&](int i) {
+void ResultFiles::WriteAll(const std::vector<File>& files) {
+    std::vector<std::optional<std::string>> failed(files.size());
+    ForEachIndex(int(files.size()), [&](int i) {
         try {
-            jobs[size_t(i)].write(jobs[size_t(i)].path);
+            files[size_t(i)].write(files[size_t(i)].path);
         } catch (const Error& e) {
             failed[size_t(i)] = e.what();
         }
     });
-    for (size_t i = 0; i < jobs.size(); ++i) Note(jobs[i], failed[i]);
+    for (size_t i = 0; i < files.size(); ++i) Note(files[i], failed[i]);
 }
 
 // Keeps the name of a file that was written, or writes it elsewhere.
-void ResultFiles::Note(const Job& job, const std::optional<std::string>& failure) {
-    if (!failure) return names.push_back(job.path);
+void ResultFiles::Note(const File& file, const std::optional<std::string>& failure) {
+    if (!failure) return names.push_back(file.path);
     Append(*failure, "; ", &failures);
     if (rescue == Rescue::None) return;
-    const bool isRescued = WriteElsewhere(job.path, job.write);
-    Append(fmt::format("\"{}\"", job.path), ", ", isRescued ? &rescued : &lost);
+    const bool isRescued = WriteElsewhere(file.path, file.write);
+    Append(fmt::format("\"{}\"", file.path), ", ", isRescued ? &rescued : &lost);
 }
 
 void ResultFiles::WriteText(const std::string& path, const std::string& text) {

@@ -22,11 +22,11 @@ class ResultFiles {
     // folder where temporary files go ($TMPDIR, else /tmp). Check() tells of it.
     void Write(const std::string& path, const Writer& write);
     // Does so for several files at the same time, on all threads.
-    struct Job {
+    struct File {
         std::string path;
         Writer write;
     };
-    void WriteAll(const std::vector<Job>&);
+    void WriteAll(const std::vector<File>&);
     void WriteText(const std::string& path, const std::string& text);
 
     // Removes the file that earlier work has left there, so that it is not taken for one of these.
@@ -39,7 +39,7 @@ class ResultFiles {
     void Check() const;
 
   private:
-    void Note(const Job&, const std::optional<std::string>& failure);
+    void Note(const File&, const std::optional<std::string>& failure);
     bool WriteElsewhere(const std::string& path, const Writer& write);
 
     Rescue rescue;

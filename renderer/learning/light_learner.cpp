@@ -48,8 +48,8 @@ bool LightLearner::BeginToRecord(const Film& film) {
     if (!(mean > 0 && mean < double(kInfinity))) return false;
     usual = mean;
     if (LearnsLights(*scene)) {
-        lights = LightChoiceGuide(scene->shapes.bounds, scene->lights.Count());
-        lightRecord = LightChoiceRecord(lights);
+        choices = LightChoiceGuide(scene->shapes.bounds, scene->lights.Count());
+        choiceRecord = LightChoiceRecord(choices);
     }
     if (LearnsEnvironment(*scene)) {
         environment.guide =
@@ -61,7 +61,7 @@ bool LightLearner::BeginToRecord(const Film& film) {
 }
 
 void LightLearner::Learn() {
-    if (LearnsLights(*scene)) lights = lull::Learn(lights, lightRecord, scene->lights);
+    if (LearnsLights(*scene)) choices = lull::Learn(choices, choiceRecord, scene->lights);
     if (LearnsEnvironment(*scene)) environment = Refine(environment, PowerOf(*scene), {});
 }
 
@@ -69,10 +69,10 @@ void LightLearner::Learn() {
 void LightLearner::Finish() {
     rounds.end = kNoRoundEnd;
     trial.End();
-    lightRecord = {};
+    choiceRecord = {};
     environment.record = {};
     if (isUsed) return;
-    lights = {};
+    choices = {};
     environment = {};
 }
 
@@ -99,9 +99,9 @@ SampleSpread* LightLearner::SpreadOf(Film* film, const PixelRect& tile) {
 
 void LightLearner::Apply(PathOptions* paths, PathRecords* records) {
     LearnedLight& learned = paths->learned;
-    if (!lights.IsEmpty()) {
-        learned.lights = &lights;
-        if (!rounds.IsDone()) records->lights = &lightRecord;
+    if (!choices.IsEmpty()) {
+        learned.choices = &choices;
+        if (!rounds.IsDone()) records->choices = &choiceRecord;
         records->usualForLights = float(usual);
     }
     if (!environment.guide.IsEmpty()) {
@@ -123,8 +123,8 @@ void LightLearner::Put(StateWriter* writer) const {
     writer->Put(uint8_t(isUsed));
     writer->Put(usual);
     trial.Put(writer);
-    writer->PutVector(lights.sums);
-    writer->PutVector(lightRecord.sums);
+    writer->PutVector(choices.sums);
+    writer->PutVector(choiceRecord.sums);
     for (const SpaceTree& tree : environment.guide.trees) PutSpaceTree(tree, writer);
     writer->PutVector(environment.guide.leaves);
     writer->PutVector(environment.record.sums);
@@ -144,8 +144,8 @@ void LightLearner::Get(StateReader* reader, const Film& film) {
     taken.trial.Get(reader, taken.rounds.Record(), taken.isUsed, film.TileCount(), kLightDamaged,
                     kLightForeign);
     auto sums = reader->GetVector<float>(kLightDamaged);
-    taken.lightRecord.sums = reader->GetVector<SquareSum>(kLightDamaged);
-    Require(taken.lightRecord.sums.size() == (isDone ? 0 : sums.size()), kLightDamaged);
+    taken.choiceRecord.sums = reader->GetVector<SquareSum>(kLightDamaged);
+    Require(taken.choiceRecord.sums.size() == (isDone ? 0 : sums.size()), kLightDamaged);
     EnvironmentGuide& guide = taken.environment.guide;
     for (SpaceTree& tree : guide.trees) tree = GetSpaceTree(reader, kLightDamaged);
     guide.leaves = reader->GetVector<TileShares>(kLightDamaged);
@@ -157,9 +157,9 @@ void LightLearner::Get(StateReader* reader, const Film& film) {
                 sums.empty() != (taken.HasGuides() && LearnsLights(*scene)),
             kLightForeign);
     if (!sums.empty()) {
-        taken.lights = LightChoiceGuide(scene->shapes.bounds, scene->lights.Count());
-        taken.lights.sums = std::move(sums);
-        Require(IsValid(taken.lights), kLightForeign);
+        taken.choices = LightChoiceGuide(scene->shapes.bounds, scene->lights.Count());
+        taken.choices.sums = std::move(sums);
+        Require(IsValid(taken.choices), kLightForeign);
     }
     *this = std::move(taken);
 }

@@ -46,10 +46,10 @@ class LightLearner {
 
     const Scene* scene;
     Rounds rounds;
-    LightChoiceGuide lights;
-    LightChoiceRecord lightRecord;  // of all that has been found so far
-    double usual = 1;               // mean luminance of the image after round 0
-    EnvironmentState environment;   // its record: likewise
+    LightChoiceGuide choices;
+    LightChoiceRecord choiceRecord;  // of all that has been found so far
+    double usual = 1;                // mean luminance of the image after round 0
+    EnvironmentState environment;    // its record: likewise
     Trial trial;
     bool isUsed = false;
 };

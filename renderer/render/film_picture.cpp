@@ -37,13 +37,13 @@ struct WholeLight {
 // The same of a group of lights.
 struct GroupLight {
     const Film& film;
-    const LightGroupLayer& lights;
+    const LightGroupLayer& layer;
     int group;
 
-    FilmPixel At(const Vec2i& p) const { return lights.At(group, p, film.At(p).count); }
-    double SquaresAt(const Vec2i& p) const { return lights.SquaresAt(group, p); }
+    FilmPixel At(const Vec2i& p) const { return layer.At(group, p, film.At(p).count); }
+    double SquaresAt(const Vec2i& p) const { return layer.SquaresAt(group, p); }
     Rgb Look(const Vec2i& p) const {
-        return lights.HasFirstLook(group) ? film.MeanAt(p) : Rgb(Rgb::Zero());
+        return layer.HasFirstLook(group) ? film.MeanAt(p) : Rgb(Rgb::Zero());
     }
 };
 
@@ -164,12 +164,12 @@ NoisyPicture TakeFeatures(Film* film) {
 }
 
 GroupedPicture GroupsOf(const Film& film, const PixelRect& rect, NoisyPicture all) {
-    const LightGroupLayer& lights = *film.layers.Find<LightGroupLayer>();
-    const auto light = [&film, &lights, rect](int group) -> NoisyPicture {
-        const GroupLight own{film, lights, group};
+    const LightGroupLayer& layer = *film.layers.Find<LightGroupLayer>();
+    const auto light = [&film, &layer, rect](int group) -> NoisyPicture {
+        const GroupLight own{film, layer, group};
         return {ColoursOfLight(own, rect), {}, VarianceOfLight(own, rect)};
     };
-    return {lights.Count(), std::move(all.features), std::move(all.variance), light};
+    return {layer.Count(), std::move(all.features), std::move(all.variance), light};
 }
 
 }  // namespace
@@ -251,14 +251,14 @@ Halves FeatureHalvesOf(const Film& film, const PixelRect& rect) {
 }
 
 Halves EmissionOf(const Film& film, const PixelRect& rect) {
-    const auto* lights = film.layers.Find<EmissionLayer>();
-    if (!lights) return {};
+    const auto* layer = film.layers.Find<EmissionLayer>();
+    if (!layer) return {};
     Halves emission = MakeHalves(rect.Width(), rect.Height(), kColours);
     ForEachPixel(WholeLight{film}, rect, [&](const Split& split, const FilmPixel&, const Vec2i& p) {
         if (!split.isSplit) return;
-        const auto& [a, b] = lights->At(p).halves;
+        const auto& [a, b] = layer->At(p).halves;
         // Zeros that are not written take no memory.
-        for (int c = 0; c < kColours && lights->At(p) != EmissionSums(); ++c)
+        for (int c = 0; c < kColours && layer->At(p) != EmissionSums(); ++c)
             split.Put(a[size_t(c)], b[size_t(c)], c, p - rect.min, &emission);
     });
     return emission;

@@ -35,7 +35,7 @@ DenoisedImage DenoiseImage(GroupedPicture picture, const PixelRect& region,
                            const std::vector<Block>& blocks, const DenoiserOptions& options) {
     GroupedResult result = RunDenoiser(std::move(picture), PlacesOf(blocks, region), options);
     DenoisedImage image = ImageOf(std::move(result.sum), region);
-    image.lights = std::move(result.groups);
+    image.groups = std::move(result.groups);
     return image;
 }
 

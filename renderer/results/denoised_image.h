@@ -15,7 +15,7 @@ struct DenoisedImage {
     std::vector<float> error;  // estimated standard error of each pixel in lightness
     // Of each block; not known of those below kSmallestMeasuredSide.
     std::vector<std::optional<VisibleError>> blocks;
-    std::vector<std::vector<float>> lights = {};  // R, G, B of light groups, whose sum the image is
+    std::vector<std::vector<float>> groups = {};  // R, G, B of light groups, whose sum the image is
 };
 
 // Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they

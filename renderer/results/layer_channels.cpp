@@ -54,23 +54,23 @@ double Noise(double squares, double mean, double count) {
 }
 
 // Returns the means of a group's samples, or its first look where there are none.
-std::vector<float> MeansOf(const LightGroupLayer& lights, int group, const Film& film) {
+std::vector<float> MeansOf(const LightGroupLayer& layer, int group, const Film& film) {
     std::vector<float> rgb(size_t(film.Region().Area()) * 3);
     ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {
-        const FilmPixel pixel = lights.At(group, p, film.At(p).count);
-        const bool showsLook = pixel.count == 0 && lights.HasFirstLook(group);
+        const FilmPixel pixel = layer.At(group, p, film.At(p).count);
+        const bool showsLook = pixel.count == 0 && layer.HasFirstLook(group);
         const Rgb mean = showsLook ? film.MeanAt(p) : pixel.Mean();
         std::copy_n(mean.data(), 3, &rgb[3 * i]);
     });
     return rgb;
 }
 
-void LeaveOutBackground(const LightGroupLayer& lights, int group, const FinishedFilm& finished,
+void LeaveOutBackground(const LightGroupLayer& layer, int group, const FinishedFilm& finished,
                         std::vector<float>* rgb) {
     const Film& film = finished.film;
     const MatteLayer& mattes = *film.layers.Find<MatteLayer>();
     ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {
-        RemoveBackground(lights.At(group, p, film.At(p).count), lights.BackgroundAt(group, p),
+        RemoveBackground(layer.At(group, p, film.At(p).count), layer.BackgroundAt(group, p),
                          mattes.AlphaAt(p).covered, finished.denoised != nullptr, &(*rgb)[3 * i]);
     });
 }
@@ -180,7 +180,7 @@ LayerChannels ChannelsOf(const MatteLayer& mattes, const FinishedFilm& finished)
     return made;
 }
 
-LayerChannels ChannelsOf(const LightGroupLayer& lights, const FinishedFilm& finished) {
+LayerChannels ChannelsOf(const LightGroupLayer& layer, const FinishedFilm& finished) {
     const Film& film = finished.film;
     const LightGroups& groups = film.layers.Options().groups;
     const DenoisedImage* denoised = finished.denoised;
@@ -188,10 +188,10 @@ LayerChannels ChannelsOf(const LightGroupLayer& lights, const FinishedFilm& fini
     const std::vector<std::string> names = LayerNames(groups.names);
     made.attributes["lightGroups"] = fmt::format("{}", fmt::join(names, ","));
     if (finished.isTransparent && denoised) made.colours.resize(size_t(film.Region().Area()) * 3);
-    for (int group = 0; group < lights.Count(); ++group) {
+    for (int group = 0; group < layer.Count(); ++group) {
         std::vector<float> rgb =
-            denoised ? denoised->lights[size_t(group)] : MeansOf(lights, group, film);
-        if (finished.isTransparent) LeaveOutBackground(lights, group, finished, &rgb);
+            denoised ? denoised->groups[size_t(group)] : MeansOf(layer, group, film);
+        if (finished.isTransparent) LeaveOutBackground(layer, group, finished, &rgb);
         std::ranges::transform(made.colours, rgb, made.colours.begin(), std::plus());
         std::ranges::move(ColourChannels("light." + names[size_t(group)] + ".", rgb),
                           std::back_inserter(made.channels));

@@ -20,8 +20,8 @@ template <typename Media, typename Vertex>
 [[gnu::always_inline]] inline LightChoice ChoiceAt(const PathContext<Media>& context,
                                                    const Vertex& v, size_t lightPlace,
                                                    LearnedPlace learned) {
-    if (context.learned && context.learned->lights) [[unlikely]] {
-        const std::span<const float> sums = context.learned->lights->At(learned.lightCell);
+    if (context.learned && context.learned->choices) [[unlikely]] {
+        const std::span<const float> sums = context.learned->choices->At(learned.lightCell);
         if (sums.back() > 0) return LightChoice(sums);
     }
     return v.Choice(context.scene.lights, lightPlace);
@@ -38,8 +38,8 @@ template <typename Media, typename Vertex>
         records.environment->Add(records.environmentGuide->NumberOf(place.tiles), tile,
                                  atVertex * kPi / (powerRatio * environment.TotalLuminance()));
     }
-    if (records.lights)
-        records.lights->Add(place.lightCell + size_t(index), inImage / records.usualForLights);
+    if (records.choices)
+        records.choices->Add(place.lightCell + size_t(index), inImage / records.usualForLights);
 }
 
 // Samples light `index`; the environment map by its tiles there, if the path knows them.

@@ -35,11 +35,11 @@ struct BdptShares {
 // the same.
 struct LearnedLight {
     // Lets lights be chosen by what they bring to a place; null: as the scene has it.
-    const LightChoiceGuide* lights = nullptr;
+    const LightChoiceGuide* choices = nullptr;
     // Likewise the tiles of the environment map (LightTable::Environment()); null: by their power.
     const EnvironmentGuide* environment = nullptr;
 
-    bool IsEmpty() const { return !lights && !environment; }
+    bool IsEmpty() const { return !choices && !environment; }
 };
 
 // How paths are traced. Its pointees must outlive it.
@@ -65,8 +65,8 @@ struct PathSample {
 
 // What learns from paths. Its pointees must outlive it; null: not wanted.
 struct PathRecords {
-    GuideRecord* directions = nullptr;    // of PathOptions::guide
-    LightChoiceRecord* lights = nullptr;  // of LearnedLight::lights
+    GuideRecord* directions = nullptr;     // of PathOptions::guide
+    LightChoiceRecord* choices = nullptr;  // of LearnedLight::choices
     EnvironmentRecord* environment = nullptr;
     const EnvironmentGuide* environmentGuide = nullptr;  // which it is of: LearnedLight's
     // The luminances that a path usually brings, > 0, of which the first two record multiples.

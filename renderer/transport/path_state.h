@@ -33,9 +33,9 @@ struct LearnedPlace {
 
 inline LearnedPlace FindLearned(const LearnedLight& learned, const Vec3f& p, int side) {
     LearnedPlace place;
-    if (learned.lights) {
-        place.lightCell = learned.lights->CellOf(p, side);
-        learned.lights->Prefetch(place.lightCell);
+    if (learned.choices) {
+        place.lightCell = learned.choices->CellOf(p, side);
+        learned.choices->Prefetch(place.lightCell);
     }
     if (learned.environment) {
         place.tiles = &learned.environment->Find(p, side);

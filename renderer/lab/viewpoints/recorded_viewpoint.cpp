@@ -122,8 +122,8 @@ RenderResult RecordBlocks(RenderContext context, RenderOptions options,
     std::vector<BlockRecording> recordings(blocks.size());
     options.makeCriterion = [&](const BlockInfo& info) {
         const size_t i = size_t(info.index);
-        return std::make_unique<Recorder>(schedule.passLength, schedule.cap, limits[i],
-                                          &recordings[i]);
+        return std::make_unique<BlockRecorder>(schedule.passLength, schedule.cap, limits[i],
+                                               &recordings[i]);
     };
     const int64_t wanted = SamplesUpTo(limits, blocks, schedule);
     if (auto& onProgress = options.events.onProgress)

@@ -24,8 +24,8 @@ RenderResult RenderStudy(const RenderContext& context, RenderOptions options, St
         const size_t i = size_t(info.index);
         std::unique_ptr<Criterion> recorder;
         if (viewpoint)
-            recorder = std::make_unique<Recorder>(schedule.passLength, schedule.cap, schedule.cap,
-                                                  &recordings[i]);
+            recorder = std::make_unique<BlockRecorder>(schedule.passLength, schedule.cap,
+                                                       schedule.cap, &recordings[i]);
         return std::make_unique<PictureLadder>(study->levels, std::move(recorder),
                                                &study->blocks[i].pictures);
     };

@@ -156,6 +156,26 @@ std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
     return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
 }
 
+// Returns how lights are chosen, as the integrator has it.
+std::string StrategyOf(const Entity& integrator, Warnings& warnings) {
+    const std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
+    for (const char* known : {"uniform", "power", "spatial", "bvh"})
+        if (strategy == known) return strategy;
+    warnings.Add(integrator.loc, "unknown lightsamplestrategy, \"spatial\" is used",
+                 Printable(strategy));
+    return "spatial";
+}
+
+// Returns the same weight for each light, or its power.
+std::vector<float> WeightsOf(const std::vector<Light>& lights, bool byPower) {
+    std::vector<float> weights(lights.size(), 1.f);
+    if (byPower)
+        std::ranges::transform(lights, weights.begin(), [](const Light& light) {
+            return Luminance(std::visit([](const auto& l) { return l.Power(); }, light));
+        });
+    return weights;
+}
+
 // Reads the textures of a mesh's emission: "emission", multiplying L, looked up with the second
 // texture coordinates where "emissionuv" is 1, and the alpha textures of the mesh. Returns null
 // where neither is. What an alpha cuts out shines in pbrt-v3; with an alpha of 0 all over it is a
@@ -187,8 +207,27 @@ void LightTable::ChooseByPlace(const Bounds3f& bounds) {
 
 LightTable::LightTable(const Description& description, ShapeTable& shapes,
                        const TextureTable& textures, bool asPbrtV3, Warnings& warnings) {
-    const WorldSphere world = BoundingSphere(shapes.bounds);
     lights.reserve(CountLights(description, shapes));
+    AddLights(description, shapes, asPbrtV3, warnings);
+    for (int i = 0; i < shapes.worldShapeCount; ++i)
+        if (const auto& entity = description.shapes[i].areaLight;
+            entity && IsKnownAreaLight(*entity, warnings))
+            AddAreaLights(description.shapes[i], textures, asPbrtV3, &shapes.shapes[i], warnings);
+    if (lights.empty()) return;
+    anyVisible = std::any_of(lights.begin(), lights.end(), IsVisible);
+    const std::string strategy = StrategyOf(description.integrator, warnings);
+    const bool isMany = !asPbrtV3 && lights.size() > kMostTableLights;
+    if (strategy == "bvh" || (strategy == "spatial" && isMany))
+        hierarchy = MakeHierarchy(lights);
+    else if (strategy != "spatial" || lights.size() == 1 || shapes.bounds.IsEmpty())
+        distribution = std::make_unique<LightDistribution>(WeightsOf(lights, strategy == "power"));
+    else
+        ChooseByPlace(shapes.bounds);
+}
+
+void LightTable::AddLights(const Description& description, const ShapeTable& shapes, bool asPbrtV3,
+                           Warnings& warnings) {
+    const WorldSphere world = BoundingSphere(shapes.bounds);
     for (const LightEntity& entity : description.lights) {
         std::optional<Light> light;
         warnings.Try([&] {
@@ -202,61 +241,32 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
         const auto* sky = std::get_if<InfiniteLight>(&lights.back());
         if (environment < 0 && sky && sky->Tiles()) environment = Count() - 1;
     }
-    for (int i = 0; i < shapes.worldShapeCount; ++i) {
-        const auto& entity = description.shapes[i].areaLight;
-        if (!entity || !IsKnownAreaLight(*entity, warnings)) continue;
-        Shape& shape = shapes.shapes[i];
-        std::unique_ptr<const EmissionMap> map =
-            MakeEmissionMap(*entity, shape, textures, asPbrtV3);
-        std::unique_ptr<const EmissionProfile> profile =
-            MakeProfile(*entity, description.shapes[i].worldFromObject);
-        AreaLight light = MakeAreaLight(*entity, shape, warnings);
-        light.profile = profile.get();
-        if (profile) profiles.push_back(std::move(profile));
-        light.map = map.get();
-        if (map) emissionMaps.push_back(std::move(map));
-        if (shape.PrimitiveCount() == 0) {
-            const bool isMade = shape.material >= 0;  // else an error says what is wrong with it
-            if (isMade)
-                warnings.Add(description.shapes[i].loc, "area light without area",
-                             "it gives no light");
-            continue;
-        }
-        shape.firstLight = Count();
-        for (uint32_t k = 0; k < shape.PrimitiveCount(); ++k) {
-            light.surface = EmitterOf(shape.geometry, k);
-            if (light.map) {
-                light.triangle = k;
-                light.meanFactor = light.map->Mean(k);
-            }
-            lights.push_back(light);
-        }
-    }
-    if (lights.empty()) return;
-    anyVisible = std::any_of(lights.begin(), lights.end(), IsVisible);
+}
 
-    const Entity& integrator = description.integrator;
-    std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
-    if (strategy != "uniform" && strategy != "power" && strategy != "spatial" &&
-        strategy != "bvh") {
-        warnings.Add(integrator.loc, "unknown lightsamplestrategy, \"spatial\" is used",
-                     Printable(strategy));
-        strategy = "spatial";
-    }
-    const bool isMany = !asPbrtV3 && lights.size() > kMostTableLights;
-    if (strategy == "bvh" || (strategy == "spatial" && isMany)) {
-        hierarchy = MakeHierarchy(lights);
+void LightTable::AddAreaLights(const ShapeEntity& from, const TextureTable& textures, bool asPbrtV3,
+                               Shape* shape, Warnings& warnings) {
+    const Entity& entity = *from.areaLight;
+    std::unique_ptr<const EmissionMap> map = MakeEmissionMap(entity, *shape, textures, asPbrtV3);
+    std::unique_ptr<const EmissionProfile> profile = MakeProfile(entity, from.worldFromObject);
+    AreaLight light = MakeAreaLight(entity, *shape, warnings);
+    light.profile = profile.get();
+    if (profile) profiles.push_back(std::move(profile));
+    light.map = map.get();
+    if (map) emissionMaps.push_back(std::move(map));
+    if (shape->PrimitiveCount() == 0) {
+        const bool isMade = shape->material >= 0;  // else an error says what is wrong with it
+        if (isMade) warnings.Add(from.loc, "area light without area", "it gives no light");
         return;
     }
-    std::vector<float> weights(lights.size(), 1.f);
-    if (strategy == "power")
-        for (int i = 0; i < Count(); ++i)
-            weights[i] =
-                Luminance(std::visit([](const auto& light) { return light.Power(); }, lights[i]));
-    if (strategy != "spatial" || lights.size() == 1 || shapes.bounds.IsEmpty())
-        distribution = std::make_unique<LightDistribution>(weights);
-    else
-        ChooseByPlace(shapes.bounds);
+    shape->firstLight = Count();
+    for (uint32_t k = 0; k < shape->PrimitiveCount(); ++k) {
+        light.surface = EmitterOf(shape->geometry, k);
+        if (light.map) {
+            light.triangle = k;
+            light.meanFactor = light.map->Mean(k);
+        }
+        lights.push_back(light);
+    }
 }
 
 std::optional<LightSample> LightTable::Sample(int i, const Vec3f& from, const Vec2f& u) const {

@@ -76,6 +76,9 @@ class LightTable {
     }
 
   private:
+    void AddLights(const Description&, const ShapeTable&, bool asPbrtV3, Warnings&);
+    // Adds a light for each primitive of an emitting shape.
+    void AddAreaLights(const ShapeEntity&, const TextureTable&, bool asPbrtV3, Shape*, Warnings&);
     void ChooseByPlace(const Bounds3f& bounds);
     LightChoice ChoiceIn(size_t place) const {
         return distribution->Lookup(

@@ -195,14 +195,15 @@ RuleOutcome SimulateStop(const LabelledBlock& block, int spp) {
 
 Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     // Each viewpoint has a row of its own.
-    if (text.starts_with("thresholds:") && !ArgumentOf(text).empty())
+    const RuleEntry* entry = FindRule(text);
+    if (entry && entry->name == "thresholds" && !ArgumentOf(text).empty())
         return ThresholdsSimulator(ArgumentOf(text));
-    if (const RuleEntry* entry = FindRule(text); entry && entry->replay == Replay::Unknown)
+    if (entry && entry->replay == Replay::Unknown)
         throw std::invalid_argument("stopping rule '" + Printable(text) +
                                     "': recordings do not contain denoised images; "
                                     "evaluate the thresholds file of a render instead");
     const auto rule = std::make_shared<const Rule>(ParseRule(text, context));
-    const Replay replay = FindRule(text)->replay;
+    const Replay replay = entry->replay;
     if (replay == Replay::Counts)
         return [rule](const LabelledBlock& block) {
             return SimulateStop(block, PassReaching(rule->stopAt({.index = block.block}), block));

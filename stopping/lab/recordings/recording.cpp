@@ -104,19 +104,19 @@ bool IsRecorded(int spp, int passSpp, int cap) {
     return spp <= kAllPassesUntil || (spp - passSpp) % (2 * passSpp) == 0 || spp >= cap;
 }
 
-Recorder::Recorder(int passSpp, int cap, int limit, BlockRecording* recording)
+BlockRecorder::BlockRecorder(int passSpp, int cap, int limit, BlockRecording* recording)
     : passSpp(passSpp), cap(cap), limit(limit), recording(recording) {
     StartCycles();
 }
-Recorder::~Recorder() = default;
+BlockRecorder::~BlockRecorder() = default;
 
-void Recorder::StartCycles() {
+void BlockRecorder::StartCycles() {
     cycles.clear();
     for (const double threshold : kCyclesThresholds)
         cycles.push_back(MakeCriterion(CyclesRule(threshold)));
 }
 
-Decision Recorder::Observe(const BlockView& view) {
+Decision BlockRecorder::Observe(const BlockView& view) {
     CheckView(view, ViewNeed::MeanAndHalf);
     for (size_t i = 0; i < cycles.size(); ++i)
         if (cycles[i] && cycles[i]->Observe(view).stop) {
@@ -131,7 +131,7 @@ Decision Recorder::Observe(const BlockView& view) {
     return {.stop = stop, .value = double(view.spp), .threshold = double(limit)};
 }
 
-std::vector<std::byte> Recorder::Save() const {
+std::vector<std::byte> BlockRecorder::Save() const {
     StateWriter writer;
     writer.Put(kRecorderTag);
     writer.Put(int32_t(kRecordLength));
@@ -144,7 +144,7 @@ std::vector<std::byte> Recorder::Save() const {
     return std::move(writer.bytes);
 }
 
-void Recorder::Restore(std::span<const std::byte> state) {
+void BlockRecorder::Restore(std::span<const std::byte> state) {
     StateReader reader(state);
     reader.Expect(kRecorderTag);
     if (reader.Get<int32_t>() != kRecordLength)

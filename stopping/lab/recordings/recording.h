@@ -84,10 +84,10 @@ bool IsRecorded(int spp, int passSpp, int cap);
 
 // Records and never votes: "stops" the block at the first pass at or beyond `limit` spp. Blocks
 // must have at least 20 x 20 pixels. Records go to `recording`, which must outlive it.
-class Recorder final : public Criterion {
+class BlockRecorder final : public Criterion {
   public:
-    Recorder(int passSpp, int cap, int limit, BlockRecording* recording);
-    ~Recorder() override;
+    BlockRecorder(int passSpp, int cap, int limit, BlockRecording* recording);
+    ~BlockRecorder() override;
 
     ViewNeed Need(int) const override { return ViewNeed::MeanAndHalf; }
     Decision Observe(const BlockView& view) override;

@@ -122,7 +122,7 @@ void CompareWithout(const Scene& scene, double most, const std::string& name) {
     EXPECT_LT(with.variance, most * without.variance) << name;
 }
 
-TEST(DirectLightLearning, KeepsTheMeanAndLowersTheVariance) {
+TEST(LightLearner, KeepsTheMeanAndLowersTheVariance) {
     for (const auto& [integrator, things] :
          {std::pair("path", std::string()), std::pair("volpath", std::string(kFog))}) {
         const auto scene = MakeRoom(12, integrator, things);
@@ -135,7 +135,7 @@ TEST(DirectLightLearning, KeepsTheMeanAndLowersTheVariance) {
 
 // A sun that shines through a small hole in a roof, and one behind the roof: what comes through the
 // hole is known, and a sample is never much brighter than without anything learned.
-TEST(DirectLightLearning, ASunThatIsFoundLateIsNoFirefly) {
+TEST(LightLearner, ASunThatIsFoundLateIsNoFirefly) {
     const TemporaryDirectory directory;
     ExrImage sky;
     sky.width = 64;
@@ -206,7 +206,7 @@ Shape "trianglemesh" "integer indices" [0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 
     EXPECT_LT(brightest.load(), 10 * brightestWithout);
 }
 
-TEST(DirectLightLearning, NeedsAMapOrLightsByPlaceThatAreNotSampledAsByPbrt) {
+TEST(LightLearner, NeedsAMapOrLightsByPlaceThatAreNotSampledAsByPbrt) {
     const auto room = MakeRoom(8);
     EXPECT_TRUE(LearnsDirectLight(*room, Estimator::Combined));
     EXPECT_FALSE(LearnsDirectLight(*room, Estimator::PbrtV3));

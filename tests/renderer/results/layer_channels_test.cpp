@@ -185,7 +185,7 @@ TEST(LightGroupChannels, LeavesOutTheBackground) {
 
 TEST(LightGroupChannels, SplitsDenoisedLightAsThatOfTheSamples) {
     DenoisedImage denoised{{2, 1, {}}, {}, {}};
-    denoised.lights = {{3, 7, 9, 0, 0, 0}, {4, 4, 4, 3, 3, 3}};
+    denoised.groups = {{3, 7, 9, 0, 0, 0}, {4, 4, 4, 3, 3, 3}};
     EXPECT_EQ(Lights().Make(&denoised, false).channels[1].values, (std::vector<float>{7, 0}));
     const LayerChannels extra = Lights().Make(&denoised, true);
     EXPECT_EQ(extra.channels[1].values[0], 7);

@@ -2,11 +2,10 @@
 // and their standard errors, from independent pictures of different seeds.
 #pragma once
 
-#include <atomic>
-#include <thread>
 #include <vector>
 
 #include "renderer/transport/bdpt.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -70,25 +69,18 @@ inline BlockMeans MeasureBlocks(const Scene& scene, const BdptShares& shares, in
     const auto n = size_t(pictures);
     std::vector<std::vector<Eigen::Array3d>> blocks(n, std::vector<Eigen::Array3d>(count));
     std::vector<Eigen::Array3d> totals(n, Eigen::Array3d::Zero());
-    std::atomic<int> next = 0;
-    const auto work = [&] {
-        for (int i; (i = next++) < pictures;) {
-            const auto image = Picture(scene, shares, spp, seed * 1000 + uint64_t(i));
-            for (size_t b = 0; b < count; ++b) {
-                Eigen::Array3d sum = Eigen::Array3d::Zero();
-                const int left = int(b) % means.columns * side, top = int(b) / means.columns * side;
-                for (int y = top; y < top + side; ++y)
-                    for (int x = left; x < left + side; ++x)
-                        sum += image[size_t(y) * size_t(size.x()) + size_t(x)];
-                blocks[size_t(i)][b] = sum / Sqr(double(side));
-                totals[size_t(i)] += blocks[size_t(i)][b] / double(count);
-            }
+    ForEachIndex(pictures, [&](int i) {
+        const auto image = Picture(scene, shares, spp, seed * 1000 + uint64_t(i));
+        for (size_t b = 0; b < count; ++b) {
+            Eigen::Array3d sum = Eigen::Array3d::Zero();
+            const int left = int(b) % means.columns * side, top = int(b) / means.columns * side;
+            for (int y = top; y < top + side; ++y)
+                for (int x = left; x < left + side; ++x)
+                    sum += image[size_t(y) * size_t(size.x()) + size_t(x)];
+            blocks[size_t(i)][b] = sum / Sqr(double(side));
+            totals[size_t(i)] += blocks[size_t(i)][b] / double(count);
         }
-    };
-    std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
-        threads.emplace_back(work);
-    threads.clear();
+    });
     const auto measure = [&](const auto& of, Eigen::Array3d* mean, Eigen::Array3d* error) {
         *mean = *error = Eigen::Array3d::Zero();
         for (int i = 0; i < pictures; ++i) *mean += of(size_t(i)) / pictures;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <atomic>
-#include <thread>
 #include <vector>
 
 #include "renderer/transport/integrator.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
 
@@ -22,31 +22,25 @@ inline PixelStatistics MeasurePixels(const Scene& scene, Estimator estimator, Sa
     PixelStatistics result{size.x(), size.y(), samples, {}, {}, 0};
     result.mean.resize(size_t(size.x()) * size.y());
     result.variance.resize(result.mean.size());
-    std::atomic<int> nextRow = 0;
     std::atomic<int64_t> rejected = 0;
-    const auto work = [&] {
+    ForEachIndex(size.y(), [&](int y) {
         Sampler sampler(kind, seed);
-        for (int y; (y = nextRow++) < size.y();)
-            for (int x = 0; x < size.x(); ++x) {
-                // Update mean and sum of squares one by one (Welford 1962): stable for tails.
-                Eigen::Array3d mean = Eigen::Array3d::Zero(), sum2 = Eigen::Array3d::Zero();
-                for (int k = 0; k < samples; ++k) {
-                    const PathSample sample = RenderSample(scene, estimator, sampler,
-                                                           scene.film.cropMin + Vec2i(x, y), k);
-                    rejected += sample.rejected;
-                    const Eigen::Array3d v = sample.radiance.cast<double>() / scene.film.scale;
-                    const Eigen::Array3d delta = v - mean;
-                    mean += delta / (k + 1);
-                    sum2 += delta * (v - mean);
-                }
-                result.mean[size_t(y) * size.x() + x] = mean;
-                result.variance[size_t(y) * size.x() + x] = sum2 / std::max(1, samples - 1);
+        for (int x = 0; x < size.x(); ++x) {
+            // Update mean and sum of squares one by one (Welford 1962): stable for tails.
+            Eigen::Array3d mean = Eigen::Array3d::Zero(), sum2 = Eigen::Array3d::Zero();
+            for (int k = 0; k < samples; ++k) {
+                const PathSample sample =
+                    RenderSample(scene, estimator, sampler, scene.film.cropMin + Vec2i(x, y), k);
+                rejected += sample.rejected;
+                const Eigen::Array3d v = sample.radiance.cast<double>() / scene.film.scale;
+                const Eigen::Array3d delta = v - mean;
+                mean += delta / (k + 1);
+                sum2 += delta * (v - mean);
             }
-    };
-    std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
-        threads.emplace_back(work);
-    threads.clear();
+            result.mean[size_t(y) * size.x() + x] = mean;
+            result.variance[size_t(y) * size.x() + x] = sum2 / std::max(1, samples - 1);
+        }
+    });
     result.rejected = rejected;
     return result;
 }

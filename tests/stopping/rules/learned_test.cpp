@@ -244,17 +244,20 @@ TEST(Learned, RefusesOtherState) {
 }
 
 TEST(Learned, SurvivesAnyBlock) {
-    const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1e4f), {.k = 3, .m = 25});
+    const ModelSettings settings = {
+        .k = 2, .m = 25, .features = ParseFeatures("H,detail_masked_noise,attributes26")};
     const float infinity = std::numeric_limits<float>::infinity();
-    for (float value :
-         {0.f, 1.f, 1e30f, -1.f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
-        const auto criterion = MakeCriterion(LearnedRule(model, 20));
-        const BlockImage block(41, 57, value);
-        for (int spp = 20; spp <= 200; spp += 20) {
-            const Decision decision = criterion->Observe(block.At(spp));
-            EXPECT_TRUE(decision.value >= 0 && decision.value <= 1) << value;
+    for (const auto& model : {MakeModel(RandomNetwork(25, {8, 4}, 1e4f), {.k = 3, .m = 25}),
+                              MakeModel(RandomNetwork(InputCount(settings), {4}, 10), settings)})
+        for (const float value : {0.f, 1.f, 1e30f, -1.f, infinity, -infinity,
+                                  std::numeric_limits<float>::quiet_NaN()}) {
+            const auto criterion = MakeCriterion(LearnedRule(model, 20));
+            const BlockImage block(41, 57, value);
+            for (int spp = 20; spp <= 200; spp += 20) {
+                const Decision decision = criterion->Observe(block.At(spp));
+                EXPECT_TRUE(decision.value >= 0 && decision.value <= 1) << value;
+            }
         }
-    }
 }
 
 TEST(Learned, TakesNonsenseForNoise) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/scene/materials/material.h"
+#include "tests/renderer/files/test_files.h"
 
 namespace lull::test {
 
@@ -101,12 +102,7 @@ inline void ExpectGrey(const StoredRgb& c, float value) {
 
 // Returns the message of the error that making the materials throws, "" for none.
 inline std::string ErrorOf(MaterialScene* b) {
-    try {
-        b->Make();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "";
+    return lull::ErrorOf([&] { b->Make(); });
 }
 
 }  // namespace lull::test

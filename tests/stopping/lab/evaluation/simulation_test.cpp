@@ -39,7 +39,7 @@ TEST(Simulation, StopsWhereTheCriterionDoes) {
     const ScratchFile model(".h5"), thresholds(".csv", "kitchen;100;150;\n");
     WriteTestModel(model.path);
     BlockRecording recording;
-    Recorder recorder(20, 400, 400, &recording);
+    BlockRecorder recorder(20, 400, 400, &recording);
     std::vector<BlockImage> images;
     for (int spp = 20; spp <= 400; spp += 20) {
         images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));
@@ -78,7 +78,7 @@ TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
                 .spacing = Spacing::Geometric,
                 .ratio = 1.5});
     BlockRecording recording;
-    Recorder recorder(20, 2400, 2400, &recording);
+    BlockRecorder recorder(20, 2400, 2400, &recording);
     std::vector<BlockImage> images;
     for (int spp = 20; spp <= 2400; spp += 20) {
         images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));

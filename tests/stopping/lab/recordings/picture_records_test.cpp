@@ -32,7 +32,7 @@ LabelledBlock Labelled(const BlockRecording& recording, const char* viewpoint = 
 TEST(PictureRecords, AreThoseOfTheMean) {
     const BlockImage image = NoisyBlock(40, 40, 0.5, 20, 1);
     BlockRecording whole, picture;
-    Recorder(20, 20, 20, &whole).Observe(image.At(20));
+    BlockRecorder(20, 20, 20, &whole).Observe(image.At(20));
     BlockView view = image.At(20);
     view.halfMean = {};
     AddPicture(view, &picture);

@@ -15,7 +15,7 @@
 namespace lull::recording_test {
 namespace {
 
-TEST(Recorder, RecordsAllPassesFirstAndThenEverySecond) {
+TEST(BlockRecorder, RecordsAllPassesFirstAndThenEverySecond) {
     for (int spp = 20; spp <= 400; spp += 20) EXPECT_TRUE(IsRecorded(spp, 20, 10000));
     EXPECT_TRUE(IsRecorded(420, 20, 10000));
     EXPECT_FALSE(IsRecorded(440, 20, 10000));
@@ -26,7 +26,7 @@ TEST(Recorder, RecordsAllPassesFirstAndThenEverySecond) {
 
 BlockRecording RecordNoise(int passes, int limit, double noise = 0.5) {
     BlockRecording recording;
-    Recorder recorder(20, 100000, limit, &recording);
+    BlockRecorder recorder(20, 100000, limit, &recording);
     for (int pass = 1; pass <= passes; ++pass)
         if (recorder.Observe(NoisyBlock(80, 60, noise, 20 * pass, unsigned(pass)).At(20 * pass))
                 .stop)
@@ -34,7 +34,7 @@ BlockRecording RecordNoise(int passes, int limit, double noise = 0.5) {
     return recording;
 }
 
-TEST(Recorder, RecordsWhatTheRulesCompute) {
+TEST(BlockRecorder, RecordsWhatTheRulesCompute) {
     const BlockRecording recording = RecordNoise(4, 1000);
     ASSERT_EQ(recording.spp, (std::vector<int>{20, 40, 60, 80}));
     ASSERT_EQ(recording.values.size(), size_t(4 * kRecordLength));
@@ -77,13 +77,13 @@ TEST(Recorder, RecordsWhatTheRulesCompute) {
     EXPECT_THROW(ChannelOffset("no such"), std::invalid_argument);
 }
 
-TEST(Recorder, EndsAtItsLimit) {
+TEST(BlockRecorder, EndsAtItsLimit) {
     EXPECT_EQ(RecordNoise(100, 50).spp.back(), 60);
     // Between the passes that are recorded, too: the last is always there.
     EXPECT_EQ(RecordNoise(100, 440).spp.back(), 440);
 }
 
-TEST(Recorder, NotesWhereCyclesStops) {
+TEST(BlockRecorder, NotesWhereCyclesStops) {
     const BlockRecording recording = RecordNoise(60, 1200, 0.2);
     for (size_t i = 0; i < kCyclesThresholds.size(); ++i) {
         const auto criterion = MakeCriterion(CyclesRule(kCyclesThresholds[i]));
@@ -98,9 +98,9 @@ TEST(Recorder, NotesWhereCyclesStops) {
     EXPECT_EQ(recording.cyclesStops.back(), 0);
 }
 
-TEST(Recorder, GoesOnAfterARestart) {
+TEST(BlockRecorder, GoesOnAfterARestart) {
     BlockRecording whole, before, after;
-    Recorder a(20, 1000, 1000, &whole), b(20, 1000, 1000, &before), c(20, 1000, 1000, &after);
+    BlockRecorder a(20, 1000, 1000, &whole), b(20, 1000, 1000, &before), c(20, 1000, 1000, &after);
     for (int pass = 1; pass <= 30; ++pass) {
         const BlockImage image = NoisyBlock(60, 60, 0.1, 20 * pass, unsigned(pass));
         a.Observe(image.At(20 * pass));
