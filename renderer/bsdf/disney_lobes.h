@@ -6,10 +6,10 @@
 
 namespace lull {
 
-// One of the parts that are cosine-sampled.
+// One of the parts that are cosine-sampled, or the base and its retro-reflection as a whole.
 struct DisneyDiffuse {
     static constexpr bool kIsSpecular = false, kTransmits = false;
-    enum class Part { Base, FakeSubsurface, RetroReflection, Sheen };
+    enum class Part { Base, FakeSubsurface, RetroReflection, Sheen, Whole };
 
     StoredRgb r;
     float roughness;
@@ -29,16 +29,18 @@ struct DisneyDiffuse {
         const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
         const float fo = SchlickWeight(cosO), fi = SchlickWeight(cosI);
         // From 1 head-on to a half at grazing angles (Burley 2015, eq. 4).
-        if (part == Part::Base) return kInvPi * (1 - fo / 2) * (1 - fi / 2);
+        const float base = kInvPi * (1 - fo / 2) * (1 - fi / 2);
+        if (part == Part::Base) return base;
         const Vec3f h = wo + wi;
         const float h2 = h.squaredNorm();
         if (!(h2 > kMinHalf2)) return 0;
         // wi . h / |h| is half of |h|.
         const float cosD = 0.5f * std::sqrt(h2);
         if (part == Part::Sheen) return SchlickWeight(cosD);
-        if (part == Part::RetroReflection) {
+        if (part == Part::RetroReflection || part == Part::Whole) {
             const float rr = 2 * roughness * Sqr(cosD);
-            return kInvPi * rr * (fo + fi + fo * fi * (rr - 1));
+            const float retro = kInvPi * rr * (fo + fi + fo * fi * (rr - 1));
+            return part == Part::Whole ? base + retro : retro;
         }
         // Hanrahan and Krueger's approximation of scattering beneath the surface.
         const float fss90 = Sqr(cosD) * roughness;

@@ -72,12 +72,11 @@ def _add_shine(extensions, share, *colour):
     extensions["KHR_materials_specular"] = {"specularFactor": share, "specularColorFactor": [c / 0.04 for c in colour]}
 
 
-def _brighten(pbr, factor, more):
-    red, green, blue, alpha = pbr.get("baseColorFactor", [1, 1, 1, 1])
-    is_plain = "baseColorTexture" not in pbr
-    # Factors of images may exceed 1 for lull.
-    brighter = (min(c * factor + more, 1) if is_plain else c * factor for c in (red, green, blue))
-    pbr["baseColorFactor"] = [*(max(0, c) for c in brighter), alpha]
+def _brighten(pbr, more):
+    if "baseColorTexture" in pbr:
+        return
+    *colour, alpha = pbr.get("baseColorFactor", [1, 1, 1, 1])
+    pbr["baseColorFactor"] = [*(min(max(0, c + more), 1) for c in colour), alpha]
 
 
 def _scatter_through(material, share, red, green, blue, is_image):
@@ -103,7 +102,7 @@ def _patch_material(material):
     if extras.pop("lull_air", None):
         _make_air(material)
     if brightens := extras.pop("lull_brightens", None):
-        _brighten(material["pbrMetallicRoughness"], *brightens)
+        _brighten(material["pbrMetallicRoughness"], brightens)
     if through := extras.pop("lull_through", None):
         _scatter_through(material, *through)
     if shine := extras.pop("lull_shine", None):

@@ -295,13 +295,10 @@ class _Surface:
         if p['Alpha'] == 0 and (p['Tint'] != (1, 1, 1) or p['Radiance'] != (0, 0, 0)):
             p.update({'Alpha': 1, 'Base Color': p['Tint'], 'Transmission': 1, 'Roughness': 0})
             self.copy["lull_air"] = True
-        elif HAS_ADDED_INTERFACE and node.type == 'BSDF_PRINCIPLED' and {'Roughness', 'Specular'} <= set(plain) and \
+        elif HAS_ADDED_INTERFACE and node.type == 'BSDF_PRINCIPLED' and 'Specular' in plain and \
                 plain.get('Metallic') == 0 and plain.get('Transmission') == 0:
-            # Under even light: the albedo of Disney's diffuse lobe (Burley 2015), that of a white Lambertian one being 1, and
-            # the reflectance of a smooth interface by Fresnel's formula less that by Schlick's.
-            roughness = plain['Roughness']
-            self.copy["lull_brightens"] = [0.9529 + roughness * (0.1098 + 0.0025 * roughness),
-                                           float(np.interp(plain['Specular'], *_MORE_THAN_SCHLICK))]
+            # Under even light, the reflectance of a smooth interface by Fresnel's formula less that by Schlick's.
+            self.copy["lull_brightens"] = float(np.interp(plain['Specular'], *_MORE_THAN_SCHLICK))
 
     # Surfaces
 

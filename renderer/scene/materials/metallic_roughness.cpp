@@ -90,8 +90,8 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
 
 MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     const bool isAnisotropic = anisotropyFactor > 0, hasSheen = !IsBlack(sheenColorFactor);
-    MaterialTraits traits =
-        in.TraitsOf(4 + isAnisotropic + hasSheen + (diffuseTransmissionFactor > 0));
+    MaterialTraits traits = in.TraitsOf(4 + addedInterface + isAnisotropic + hasSheen +
+                                        (diffuseTransmissionFactor > 0));
     VisitSlots([&](const auto& slot) {
         if (slot.texture.IsConstant()) return;
         traits.Need(in.textures.Needs(slot.texture));
@@ -206,7 +206,8 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     if (vertexColors) color = (color * in.hit->color).max(0.f).min(1.f);
     const Rgb packed = Look(metallicRoughness, in);
     const float metallic = std::clamp(metallicFactor * packed.z(), 0.f, 1.f);
-    const Vec2f alphas = Alphas(in, AlphaOf(roughnessFactor * packed.y()), bsdf);
+    const float roughness = roughnessFactor * packed.y();
+    const Vec2f alphas = Alphas(in, AlphaOf(roughness), bsdf);
     const bool isAnisotropic = alphas.x() != alphas.y();
     // Where one number has to do, it is that of as large a highlight.
     const float alpha = isAnisotropic ? std::sqrt(alphas.x() * alphas.y()) : alphas.x();
@@ -223,7 +224,8 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const float coat = Weight(clearcoat, clearcoatFactor, in);
     const bool isSmooth = alpha < kSmoothAlpha && !isAnisotropic;
     const float toOtherSide = Weight(diffuseTransmission, diffuseTransmissionFactor, in);
-    const Rgb base = (dielectric - transmitting) * (1 - toOtherSide) * color;
+    const Rgb diffuse = (dielectric - transmitting) * (1 - toOtherSide) * color;
+    const Rgb base = addedInterface ? Rgb(Rgb::Zero()) : diffuse;  // below the interface
 
     // A thin rough sheet and a base below reflect by the same interface, in one lobe.
     const bool together = !solid && !isSmooth;
@@ -241,6 +243,9 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
         bsdf->Add(LayeredReflection(base, glossy, glossy90, alpha, aboveBase, coat));
     else if (!IsBlack(base))
         bsdf->Add(LambertianReflection{base});
+    if (addedInterface && !IsBlack(diffuse))
+        bsdf->Add(
+            DisneyDiffuse{diffuse, std::clamp(roughness, 0.f, 1.f), DisneyDiffuse::Part::Whole});
 
     const Rgb through = transmitting * color;
     if (transmitting > 0 && solid) {

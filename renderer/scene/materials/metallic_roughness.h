@@ -23,8 +23,9 @@ struct UvSlot {
 // diffuse base that scatters to the other side) and "diffusetransmissioncolor". Also "ior";
 // "solid": transmitted light is refracted, otherwise the surface is a thin sheet; "vertexcolors":
 // the mesh's colours multiply the base colour; "anisotropyrotation": radians, from the first
-// tangent to the second; "addedinterface": the interface's reflection is added to the base, which
-// it does not attenuate, as in the Principled BSDF of Blender 3 (not energy-conserving).
+// tangent to the second; "addedinterface": interface and coat are added to the base, which they do
+// not attenuate and which is Disney's, as in the Principled BSDF of Blender 3 (not
+// energy-conserving).
 struct MetallicRoughness {
     UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy,
         diffuseTransmissionColor;

@@ -30,6 +30,7 @@ inline std::vector<NamedLobe> SpreadLobes() {
         {"Disney base", DisneyDiffuse{color, 0.3f, DisneyDiffuse::Part::Base}},
         {"Disney subsurface", DisneyDiffuse{color, 0.3f, DisneyDiffuse::Part::FakeSubsurface}},
         {"Disney retro", DisneyDiffuse{color, 0.8f, DisneyDiffuse::Part::RetroReflection}},
+        {"Disney whole", DisneyDiffuse{color, 0.3f, DisneyDiffuse::Part::Whole}},
         {"Disney sheen", DisneyDiffuse{color, 0, DisneyDiffuse::Part::Sheen}},
         {"Disney clearcoat", DisneyClearcoat{color, 0.1f}},
         {"Disney reflection",

@@ -69,7 +69,7 @@ Lobe HardLobe(Random* random) {
         case 10:
             return FresnelSpecular{c, c, eta};
         case 11:
-            return DisneyDiffuse{c, random->Float(), DisneyDiffuse::Part(random->Below(4))};
+            return DisneyDiffuse{c, random->Float(), DisneyDiffuse::Part(random->Below(5))};
         case 12:
             return DisneyReflection{c, d, {e, random->Float(), eta}};
         case 13:

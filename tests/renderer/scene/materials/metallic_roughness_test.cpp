@@ -111,25 +111,18 @@ TEST(MetallicRoughness, TakesItsInterfaceFromTheIndex) {
     EXPECT_THROW(bad.Make(), Error);
 }
 
+// The base of Blender 3's Principled BSDF is Disney's, with the surface's roughness.
 TEST(MetallicRoughness, AddsTheInterfaceWhereAskedTo) {
-    for (const bool adds : {false, true}) {
-        SceneWith b({{"metallicfactor", 0}, {"roughnessfactor", 0.5f}});
-        b.description.materials[0].parameters.Add(Bool("addedinterface", adds));
-        const Bsdf bsdf = b.MakeBsdf(0);
-        const auto& lobe = LobeAt<LayeredReflection>(bsdf, 0);
-        EXPECT_NEAR(lobe.f0.r, 0.04f, 1e-6);
-        const Vec3f normal(0, 0, 1), wi = Vec3f(0.8f, 0, 0.6f);
-        const float metal =
-            LayeredReflection(Rgb(Rgb::Zero()), lobe.f0, lobe.f90, lobe.alpha, {}, 0)
-                .Evaluate(normal, wi)
-                .f.x();
-        const float base = lobe.Evaluate(normal, wi).f.x() - metal;
-        if (adds) {
-            EXPECT_NEAR(base, 0.5f * kInvPi, 1e-5f);
-        } else {
-            EXPECT_LT(base, 0.49f * kInvPi);
-        }
-    }
+    SceneWith b({{"metallicfactor", 0}, {"roughnessfactor", 0.7f}, {"clearcoatfactor", 1}});
+    b.description.materials[0].parameters.Add(Bool("addedinterface", true));
+    const Bsdf bsdf = b.MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
+    EXPECT_NEAR(LobeAt<LayeredReflection>(bsdf, 0).f0.r, 0.04f, 1e-6);
+    EXPECT_EQ(LobeAt<LayeredReflection>(bsdf, 0).diffuse.r, 0);
+    const auto& base = LobeAt<DisneyDiffuse>(bsdf, 1);
+    EXPECT_EQ(base.part, DisneyDiffuse::Part::Whole);
+    EXPECT_FLOAT_EQ(base.roughness, 0.7f);
+    EXPECT_FLOAT_EQ(base.r.r, 0.5f);
 }
 
 TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
