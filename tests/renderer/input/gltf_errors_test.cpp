@@ -73,6 +73,8 @@ TEST(GltfErrors, NameTheirPlace) {
         {"/accessors/1/count", 2, "/meshes/0/primitives/0: has 2 TEXCOORD_0 for 3 vertices"},
         {"/bufferViews/0/byteLength", 4000, "/bufferViews/0: ends at byte 4000 of a buffer of 66"},
         {"/bufferViews/0/byteStride", 6, "/bufferViews/0/byteStride: has to be a multiple of 4"},
+        {"/bufferViews/0/byteStride", 8,
+         "/accessors/0: its elements of 12 bytes overlap: the byteStride of /bufferViews/0 is 8"},
         {"/bufferViews/0/buffer", 1, "/bufferViews/0/buffer: is 1, but there are only 1 buffers"},
         {"/materials/0/alphaMode", "MAYBE",
          "/materials/0/alphaMode: is \"MAYBE\", which is not "
