@@ -92,16 +92,22 @@ std::string ProblemOf(const std::string& extension) {
 }
 
 // Warns of extensions that objects have and `listed` lacks: some exporters do not list all that
-// they write. The depth of the value has been bounded.
+// they write. Throws Error where one that counts is no object, which the library drops. The depth
+// of the value has been bounded.
 void CheckUnlisted(const std::string& file, const std::string& path, const nlohmann::json& value,
                    const std::vector<std::string>& listed, Warnings& warnings) {
-    if (value.is_object() && value.contains("extensions"))
-        for (const auto& [name, extension] : value.at("extensions").items())
+    const auto place = [&](const std::string& of) {
+        return FileLoc{
+            std::make_shared<const std::string>(fmt::format("{}: {}", file, of.empty() ? "/" : of)),
+            0};
+    };
+    if (value.is_object() && value.contains("extensions") && value.at("extensions").is_object())
+        for (const auto& [name, extension] : value.at("extensions").items()) {
+            if (IsModelled(name) && !extension.is_object())
+                throw Error(place(path + "/extensions/" + name), "has to be an object");
             if (!IsModelled(name) && std::find(listed.begin(), listed.end(), name) == listed.end())
-                warnings.Add({std::make_shared<const std::string>(
-                                  fmt::format("{}: {}", file, path.empty() ? "/" : path)),
-                              0},
-                             ProblemOf(name));
+                warnings.Add(place(path), ProblemOf(name));
+        }
     for (const auto& [key, member] : value.items())
         if (member.is_structured() && key != "extras")
             CheckUnlisted(file, path + "/" + Printable(key), member, listed, warnings);

@@ -183,6 +183,8 @@ void CheckNode(const JsonAt& o) {
     o.Extension("EXT_mesh_gpu_instancing", [](const JsonAt& e) {
         e.Required("attributes");
         e.ForEachValue("attributes", [](const JsonAt& a) { a.IndexItself("accessors"); });
+        if (e.Member("attributes").value.empty())
+            e.Member("attributes").Fail("needs at least one attribute, which counts the copies");
     });
     o.Extension("KHR_lights_punctual", [&](const JsonAt& e) {
         const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");

@@ -23,8 +23,8 @@ bool IsTabulated(float eta, float g) {
 }  // namespace
 
 TranslucentSolid::TranslucentSolid(const MaterialReader& in, float g)
-    : kr(in.Spectrum("Kr", 1)),
-      kt(in.Spectrum("Kt", 1)),
+    : kr(in.ShareOfColors("Kr", 1)),
+      kt(in.ShareOfColors("Kt", 1)),
       roughness(in, in.Float("uroughness", 0), in.Float("vroughness", 0)),
       eta(WithinRounding(in.entity.parameters.GetFloat("eta", 1.33f), 1, kMostEta)),
       g(WithinRounding(g, -kMostG, kMostG)),
@@ -64,7 +64,7 @@ std::optional<SubsurfaceProfile> Subsurface::Profile(const MaterialInputs& in) c
 
 KdSubsurface::KdSubsurface(const MaterialReader& in)
     : TranslucentSolid(in, in.entity.parameters.GetFloat("g", 0)),
-      kd(in.Spectrum("Kd", 0.5f)),
+      kd(in.ShareOfColors("Kd", 0.5f)),
       meanFreePath(in.Spectrum("mfp", 1)) {}
 
 std::optional<SubsurfaceProfile> KdSubsurface::Profile(const MaterialInputs& in) const {

@@ -186,6 +186,14 @@ TEST(GltfMeshes, UnrollStripsAndFans) {
     ExpectNear(indices(6), {1, 2, 0, 2, 3, 0, 3, 4, 0}, 0);
 }
 
+TEST(GltfMeshes, LeaveOutCornersOfNoTriangle) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle({{"indices", file.Indices({0, 1, 2, 1, 2})}})}});
+    Warnings warnings;
+    ExpectNear(Indices(GltfFolder().Parse(file, {}, &warnings)), {0, 1, 2}, 0);
+    EXPECT_EQ(warnings.Counts().at("the last corners, which make up no triangle, are left out"), 1);
+}
+
 TEST(GltfMeshes, LeaveOutPointsAndLines) {
     GltfFile file;
     file.Node({{"mesh", file.Triangle({{"mode", 1}})}});
