@@ -4,7 +4,7 @@
 
 #include "renderer/bsdf/diffusion_profile.h"
 #include "renderer/scene/materials/basic.h"
-#include "renderer/scene/media/preset.h"
+#include "renderer/scene/materials/medium_preset.h"
 
 namespace lull {
 

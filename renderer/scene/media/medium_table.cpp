@@ -6,7 +6,7 @@
 #include "renderer/input/nonnegative.h"
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
-#include "renderer/scene/media/preset.h"
+#include "renderer/scene/materials/medium_preset.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "renderer/scene/media/preset.h"
+#include "renderer/scene/materials/medium_preset.h"
 
 #include "renderer/bsdf/medium_presets.h"
 #include "stopping/base/input_file.h"
