@@ -20,6 +20,11 @@ bool IsTabulated(float eta, float g) {
     return eta >= 1 && eta <= kMostEta && std::abs(g) <= kMostG;
 }
 
+float MeanCosine(const MaterialReader& in, const MediumPreset& preset) {
+    const float g = in.entity.parameters.GetFloat("g", 0);
+    return preset.isMeasured ? 0 : g;
+}
+
 }  // namespace
 
 TranslucentSolid::TranslucentSolid(const MaterialReader& in, float g)
@@ -53,7 +58,7 @@ Subsurface::Subsurface(const MaterialReader& in)
                                       in.warnings)) {}
 
 Subsurface::Subsurface(const MaterialReader& in, const MediumPreset& preset)
-    : TranslucentSolid(in, preset.isMeasured ? 0 : in.entity.parameters.GetFloat("g", 0)),
+    : TranslucentSolid(in, MeanCosine(in, preset)),
       sigmaA(in.textures.GetSpectrum(in.entity, "sigma_a", preset.sigmaA)),
       sigmaS(in.textures.GetSpectrum(in.entity, "sigma_s", preset.sigmaS)) {}
 
