@@ -74,6 +74,7 @@ std::vector<uint8_t> ReadColors(std::vector<char> bytes, int width, int height) 
 // Fields of a Radiance picture's header that OpenImageIO ignores or misreads.
 struct RadianceHeader {
     float scale[3] = {1, 1, 1};  // of the colours, which have been exposed and corrected
+    float gamma = 1;             // then they were raised to 1 / gamma
     // Rows of the file are columns; its rows come from the bottom or the right, its columns too.
     bool turns = false, flipsRows = false, flipsColumns = false;
     std::array<float, 8> chromaticities{};
@@ -90,7 +91,7 @@ struct RadianceHeader {
     }
     bool IsPlain() const {
         return !turns && !flipsRows && !flipsColumns && scale[0] == 1 && scale[1] == 1 &&
-               scale[2] == 1;
+               scale[2] == 1 && gamma == 1;
     }
 
   private:
@@ -102,6 +103,8 @@ struct RadianceHeader {
             Divide(by[0], by[0], by[0]);
         else if (std::sscanf(line.c_str(), "COLORCORR=%f %f %f", by, by + 1, by + 2) == 3)
             Divide(by[0], by[1], by[2]);
+        else if (std::sscanf(line.c_str(), "GAMMA=%f", by) == 1)
+            gamma = by[0] > 0 ? by[0] : 1;
         else
             ReadChromaticities(line);
     }
@@ -241,7 +244,8 @@ class OpenImageIoFile final : public lull::ImageFile {
         const std::vector<float> upright =
             Upright({texels, texels + values}, spec.width, spec.height, shape.channels, radiance);
         for (size_t i = 0; i < values; ++i)
-            texels[i] = upright[i] * radiance.scale[i % size_t(shape.channels)];
+            texels[i] = (radiance.gamma == 1 ? upright[i] : std::pow(upright[i], radiance.gamma)) *
+                        radiance.scale[i % size_t(shape.channels)];
     }
 
     RadianceHeader radiance{""};

@@ -81,16 +81,20 @@ std::unique_ptr<ImageFile> Open(const std::string& type, std::span<const std::by
     return OpenOtherFormat("memory." + type, bytes);
 }
 
-// Converts the float texels of a file of other primaries.
+// Converts the colours of a file of other primaries.
 void ToRec709(const ImageFile& file, Image* image) {
     const float* const xy = file.Chromaticities();
-    auto* const texels = std::get_if<std::vector<float>>(&image->texels);
-    if (!xy || !texels || image->channels < 3) return;
+    if (!xy || image->channels < 3) return;
     const Eigen::Matrix3f matrix =
         Rec709From({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}});
     if (!matrix.allFinite()) throw std::runtime_error("its chromaticities are no primaries");
-    Convert(matrix, size_t(image->channels), size_t(image->width) * size_t(image->height),
-            texels->data());
+    std::visit(
+        [&](auto& texels) {
+            if constexpr (sizeof(texels[0]) > 1)  // bytes are not linear
+                Convert(matrix, size_t(image->channels),
+                        size_t(image->width) * size_t(image->height), texels.data());
+        },
+        image->texels);
 }
 
 // Reads an image by `open`. Errors get the name here, which readers do not know.

@@ -35,6 +35,11 @@ const Parameter* Search(const std::vector<Parameter>& parameters, ParameterType 
 
 std::string TypesOf(const Parameter& parameter) {
     if (parameter.lookedUp || !parameter.wanted) return "";
+    if (*parameter.wanted == parameter.type) {
+        const size_t count = std::visit([](const auto& v) { return v.size(); }, parameter.values);
+        return "; it has " + std::to_string(count) + " values and has to have " +
+               std::to_string(Components(parameter.type));
+    }
     return "; it is given as \"" + NameOf(parameter.type) + "\" and has to be \"" +
            NameOf(*parameter.wanted) + "\"";
 }
@@ -46,7 +51,10 @@ const T* FindOne(const std::vector<Parameter>& parameters, ParameterType type,
     const Parameter* parameter = Search(parameters, type, name);
     if (!parameter) return nullptr;
     const auto& values = std::get<std::vector<T>>(parameter->values);
-    if (int(values.size()) != Components(type)) return nullptr;
+    if (int(values.size()) != Components(type)) {
+        parameter->wanted = type;
+        return nullptr;
+    }
     parameter->lookedUp = true;
     return values.data();
 }

@@ -118,7 +118,7 @@ std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& d
     std::map<PosedMesh, std::vector<Placement>> placements;
     for (const GltfNode& node : nodes) {
         const tinygltf::Node& n = document.model.nodes[size_t(node.index)];
-        if (n.mesh < 0) continue;
+        if (n.mesh < 0 || !node.isVisible) continue;
         const FileLoc loc = document.At(fmt::format("/nodes/{}", node.index));
         const PosedMesh mesh = MeshOf(document, node.index);
         if (n.skin >= 0) {
@@ -218,7 +218,8 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
     for (const tinygltf::Buffer& buffer : document.model.buffers)
         if (!buffer.uri.empty() && !IsDataUri(buffer.uri))
             description.sources.push_back(ResolvePath(description, DecodeUri(buffer.uri)));
-    for (const GltfNode& node : nodes) AddLight(document, node, &description, warnings);
+    for (const GltfNode& node : nodes)
+        if (node.isVisible) AddLight(document, node, &description, warnings);
     SetView(document, nodes, framing, options, &description);
 
     const FileLoc loc = document.At("/");

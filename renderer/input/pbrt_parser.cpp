@@ -102,12 +102,13 @@ bool SkipToDirective(PbrtLexer* lexer) {
     }
 }
 
-// Throws Error at a sign of pbrt-v4.
+// Throws Error at a sign of pbrt-v2 or pbrt-v4.
 void CheckVersion(const Token& token, PbrtLexer* lexer) {
     const bool isNamed = token.text == "Film" || token.text == "Material";
     const std::string kind = isNamed ? lexer->Peek().text : "";
-    if (token.kind != TokenKind::Word || !IsPbrtV4(token.text, kind)) return;
-    throw Error(token.loc, "this scene is written for pbrt-v4, as its " +
+    const std::string version = token.kind == TokenKind::Word ? OtherVersion(token.text, kind) : "";
+    if (version.empty()) return;
+    throw Error(token.loc, "this scene is written for " + version + ", as its " +
                                (kind.empty() ? "directive " + token.text
                                              : token.text + " \"" + Printable(kind) + "\"") +
                                " shows; lull reads scenes for pbrt-v3");

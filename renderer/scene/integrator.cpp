@@ -9,6 +9,9 @@ namespace lull {
 
 namespace {
 
+// Between mirrors that reflect all light, and in closed white rooms, Russian roulette ends no path.
+constexpr int kMostBounces = 100'000;
+
 std::string TextOfDepth(int maxDepth, float rrThreshold) {
     return fmt::format("up to {} bounce{}; Russian roulette below a throughput of {:g}", maxDepth,
                        maxDepth == 1 ? "" : "s", rrThreshold);
@@ -64,16 +67,18 @@ Integrator MakeIntegrator(const Entity& entity, int maxDepth, bool isVolumetric,
         warnings.Add(entity.loc, fmt::format("Integrator \"{}\" is rendered as \"{}\"{}",
                                              Printable(entity.name), name, why));
     };
+    const auto limit = [&](const char* name, int most, int* depth) {
+        if (*depth > most)
+            warnings.Add(entity.loc,
+                         fmt::format("paths of \"{}\" have {} bounces at most", name, most));
+        *depth = std::min(*depth, most);
+    };
     const auto reportUnused = [&] {
         entity.parameters.ReportUnused("Integrator \"" + entity.name + "\"", warnings);
     };
     if (AsksForBdpt(entity.name) && !beyondBdpt) {
         auto bdpt = ReadDepth<BdptIntegrator>(entity, maxDepth);
-        if (bdpt.maxDepth > BdptIntegrator::kMostBounces) {
-            warnings.Add(entity.loc, fmt::format("paths of \"bdpt\" have {} bounces at most",
-                                                 BdptIntegrator::kMostBounces));
-            bdpt.maxDepth = BdptIntegrator::kMostBounces;
-        }
+        limit("bdpt", BdptIntegrator::kMostBounces, &bdpt.maxDepth);
         if (entity.name != BdptIntegrator::Name(isVolumetric)) {
             warn(BdptIntegrator::Name(isVolumetric), "");
             return bdpt;
@@ -85,7 +90,8 @@ Integrator MakeIntegrator(const Entity& entity, int maxDepth, bool isVolumetric,
         reportUnused();
         return bdpt;
     }
-    const auto path = ReadDepth<PathIntegrator>(entity, maxDepth);
+    auto path = ReadDepth<PathIntegrator>(entity, maxDepth);
+    limit(path.Name(isVolumetric), kMostBounces, &path.maxDepth);
     // volpath is path where there is nothing else for it to see.
     if (entity.name == "path" || entity.name == "volpath")
         reportUnused();

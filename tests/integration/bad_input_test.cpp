@@ -80,7 +80,9 @@ TEST(BadInput, OfOtherProgramsIsNamed) {
         {"some\0thing"s, "it is a binary file"},
         {"Film \"rgb\"\n", "scene.pbrt:1: this scene is written for pbrt-v4, as its Film \"rgb\""},
         {"WorldBegin\nMaterial \"diffuse\"\n", "scene.pbrt:2: this scene is written for pbrt-v4"},
-        {"ColorSpace \"srgb\"\n", "written for pbrt-v4, as its directive ColorSpace shows"}};
+        {"ColorSpace \"srgb\"\n", "written for pbrt-v4, as its directive ColorSpace shows"},
+        {"SurfaceIntegrator \"path\"\n",
+         "written for pbrt-v2, as its directive SurfaceIntegrator shows"}};
     for (const auto& [text, message] : kFiles) {
         ExpectBadScene(text, {message});
         const TemporaryDirectory directory;

@@ -25,7 +25,6 @@
 
 #include "renderer/image/files/exr_channels.h"
 #include "renderer/image/files/exr_header.h"
-#include "renderer/image/files/primaries.h"
 
 namespace lull {
 
@@ -74,11 +73,6 @@ std::string OtherPrimaries(const Imf::Chromaticities& given) {
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", xy.x, xy.y);
     }
     return isOther ? text : "";
-}
-
-Primaries PrimariesOf(const Imf::Chromaticities& c) {
-    return {
-        {c.red.x, c.red.y}, {c.green.x, c.green.y}, {c.blue.x, c.blue.y}, {c.white.x, c.white.y}};
 }
 
 std::map<std::string, ExrAttribute> AttributesOf(const Imf::Header& header) {
@@ -176,13 +170,13 @@ bool ExrFile::IsHalf(const std::string& channel) const {
     return HasChannel(parts->Header(), channel, Imf::HALF);
 }
 
-std::optional<Eigen::Matrix3f> ExrFile::ToRec709() const {
+std::optional<std::array<float, 8>> ExrFile::Chromaticities() const {
     const Imf::Header& header = parts->Header();
-    if (!Imf::hasChromaticities(header) || OtherPrimaries(Imf::chromaticities(header)).empty())
-        return {};
-    const Eigen::Matrix3f matrix = Rec709From(PrimariesOf(Imf::chromaticities(header)));
-    if (!matrix.allFinite()) throw std::runtime_error("its chromaticities are no primaries");
-    return matrix;
+    if (!Imf::hasChromaticities(header)) return {};
+    const Imf::Chromaticities& c = Imf::chromaticities(header);
+    if (OtherPrimaries(c).empty()) return {};
+    return std::array{c.red.x,  c.red.y,  c.green.x, c.green.y,
+                      c.blue.x, c.blue.y, c.white.x, c.white.y};
 }
 
 // Reads rows `first` to `last` of the data window, by their numbers in the file.
@@ -265,25 +259,21 @@ class ExrPicture final : public ImageFile {
         const ExrImage header = file.Header();
         shape = {header.displaySize.x(), header.displaySize.y(), int(names.size()),
                  isHalf ? TexelType::Half : TexelType::Float};
-        if (shape.channels >= 3) toRec709 = file.ToRec709();
+        chromaticities = file.Chromaticities();
         file.Choose(names);
     }
     ImageShape Shape() const override { return shape; }
     void Read(void* texels) override {
-        const size_t channels = size_t(shape.channels);
-        file.ReadDisplayed(shape.type, channels, texels);
-        if (!toRec709) return;
-        const size_t pixels = size_t(shape.width) * size_t(shape.height);
-        if (shape.type == TexelType::Half)
-            Convert(*toRec709, channels, pixels, static_cast<Half*>(texels));
-        else
-            Convert(*toRec709, channels, pixels, static_cast<float*>(texels));
+        file.ReadDisplayed(shape.type, size_t(shape.channels), texels);
+    }
+    const float* Chromaticities() const override {
+        return chromaticities ? chromaticities->data() : nullptr;
     }
 
   private:
     ExrFile file;
     ImageShape shape;
-    std::optional<Eigen::Matrix3f> toRec709;
+    std::optional<std::array<float, 8>> chromaticities;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 // R, G and B, or the first.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,9 +32,8 @@ class ExrFile {
     // Takes these channels alone, in this order. Those that the file lacks are read as 0.
     void Choose(std::vector<std::string> names) { channels = std::move(names); }
     bool IsHalf(const std::string& channel) const;
-    // Returns what makes R, G and B those of Rec. 709; nothing where they are. Throws
-    // std::runtime_error where the file's primaries are none.
-    std::optional<Eigen::Matrix3f> ToRec709() const;
+    // Returns what ImageFile::Chromaticities() does; nothing where they are those of Rec. 709.
+    std::optional<std::array<float, 8>> Chromaticities() const;
     // Read the first `count` channels side by side, as halves, if all are, or as floats; integers
     // become 0 to 1. Read() takes the data window, ReadDisplayed() the display window, 0 where the
     // file has no data. Throw as the constructor does.
@@ -49,8 +49,7 @@ class ExrFile {
 };
 
 // Opens an EXR as a picture, its display window, with the channels that PictureChannels() chooses,
-// halves where all are. Colours of other primaries become those of Rec. 709. As OpenPng()
-// otherwise.
+// halves where all are. As OpenPng() otherwise.
 std::unique_ptr<ImageFile> OpenExr(std::span<const std::byte> bytes);
 
 // OpenEXR compresses strips of a file on threads of its own, which the whole program shares:

@@ -25,6 +25,10 @@ Elements Find(const GltfDocument& document, const FileLoc& loc, int view, size_t
     const tinygltf::BufferView& v = document.model.bufferViews[size_t(view)];
     const std::vector<unsigned char>& data = document.model.buffers[size_t(v.buffer)].data;
     const size_t stride = mayBeStrided && v.byteStride > 0 ? v.byteStride : size;
+    if (stride < size)
+        throw Error(loc, fmt::format("its elements of {} bytes overlap: the byteStride of "
+                                     "/bufferViews/{} is {}",
+                                     size, view, stride));
     // All of these have been bounded far below overflow, but for the count.
     const size_t room = v.byteLength >= offset + size ? v.byteLength - offset - size : 0;
     if (v.byteLength < offset + size || (count - 1) > room / stride)
@@ -77,29 +81,27 @@ uint32_t Index(const unsigned char* bytes, int type) {
 
 size_t SizeOf(int type) { return size_t(tinygltf::GetComponentSizeInBytes(uint32_t(type))); }
 
-// Puts the sparse values of an accessor into their places.
-void ReadSparse(const GltfDocument& document, const FileLoc& loc,
-                const tinygltf::Accessor& accessor, bool isNormalized, GltfArray* array) {
+// Calls put(element, bytes) for the sparse values of an accessor, of `size` bytes each.
+template <typename Put>
+void ForEachSparse(const GltfDocument& document, const FileLoc& loc,
+                   const tinygltf::Accessor& accessor, size_t size, const Put& put) {
+    if (!accessor.sparse.isSparse) return;
     const auto& sparse = accessor.sparse;
     const auto count = size_t(sparse.count);
-    if (count > array->Count())
+    if (count > accessor.count)
         throw Error(loc,
-                    fmt::format("has {} sparse values for {} elements", count, array->Count()));
-    const size_t size = SizeOf(accessor.componentType);
-    const auto components = size_t(array->components);
+                    fmt::format("has {} sparse values for {} elements", count, accessor.count));
     const Elements indices =
         Find(document, loc, sparse.indices.bufferView, size_t(sparse.indices.byteOffset),
              SizeOf(sparse.indices.componentType), count, false);
     const Elements values = Find(document, loc, sparse.values.bufferView,
-                                 size_t(sparse.values.byteOffset), size * components, count, false);
+                                 size_t(sparse.values.byteOffset), size, count, false);
     for (size_t i = 0; i < count; ++i) {
         const size_t at = Index(indices.bytes + i * indices.stride, sparse.indices.componentType);
-        if (at >= array->Count())
+        if (at >= accessor.count)
             throw Error(loc, fmt::format("sparse index {} is out of range: there are {} elements",
-                                         at, array->Count()));
-        for (size_t c = 0; c < components; ++c)
-            array->values[at * components + c] = Component(
-                values.bytes + i * values.stride + c * size, accessor.componentType, isNormalized);
+                                         at, accessor.count));
+        put(at, values.bytes + i * values.stride);
     }
 }
 
@@ -126,12 +128,14 @@ GltfArray ReadFloats(const GltfDocument& document, int index, int least, int mos
     CheckMemory(int64_t(bytes), loc.Prefix() + fmt::format("{} elements", accessor.count),
                 "use a smaller mesh");
     array.values.resize(accessor.count * components);
-    for (size_t i = 0; elements.bytes && i < accessor.count; ++i)
+    const auto put = [&](size_t at, const unsigned char* bytes) {
         for (size_t c = 0; c < components; ++c)
-            array.values[i * components + c] =
-                Component(elements.bytes + i * elements.stride + c * size, accessor.componentType,
-                          isNormalized);
-    if (accessor.sparse.isSparse) ReadSparse(document, loc, accessor, isNormalized, &array);
+            array.values[at * components + c] =
+                Component(bytes + c * size, accessor.componentType, isNormalized);
+    };
+    for (size_t i = 0; elements.bytes && i < accessor.count; ++i)
+        put(i, elements.bytes + i * elements.stride);
+    ForEachSparse(document, loc, accessor, size * components, put);
     for (size_t i = 0; i < array.values.size(); ++i)
         if (!std::isfinite(array.values[i]))
             throw Error(loc, fmt::format("element {} is not finite", i / components));
@@ -145,17 +149,20 @@ std::vector<uint32_t> ReadIndices(const GltfDocument& document, int index, size_
     if (accessor.type != TINYGLTF_TYPE_SCALAR ||
         (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt))
         throw Error(loc, "has to hold unsigned integers, as indices do");
-    if (accessor.bufferView < 0 || accessor.sparse.isSparse)
-        throw Error(loc, "holds indices without a bufferView, or sparse ones: not supported");
+    if (accessor.bufferView < 0)
+        throw Error(loc, "holds indices without a bufferView: not supported");
     const Elements elements = Find(document, loc, accessor.bufferView, accessor.byteOffset,
                                    SizeOf(type), accessor.count, false);
     std::vector<uint32_t> indices(accessor.count);
-    for (size_t i = 0; i < indices.size(); ++i) {
-        indices[i] = Index(elements.bytes + i * elements.stride, type);
-        if (indices[i] >= bound)
-            throw Error(loc, fmt::format("index {} is out of range: there are {} vertices",
-                                         indices[i], bound));
-    }
+    const auto put = [&](size_t at, const unsigned char* bytes) {
+        indices[at] = Index(bytes, type);
+    };
+    for (size_t i = 0; i < accessor.count; ++i) put(i, elements.bytes + i * elements.stride);
+    ForEachSparse(document, loc, accessor, SizeOf(type), put);
+    for (const uint32_t i : indices)
+        if (i >= bound)
+            throw Error(loc,
+                        fmt::format("index {} is out of range: there are {} vertices", i, bound));
     return indices;
 }
 

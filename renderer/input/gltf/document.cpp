@@ -33,6 +33,7 @@ constexpr const char* kModelled[] = {"EXT_mesh_gpu_instancing",
                                      "KHR_materials_variants",
                                      "KHR_materials_volume",
                                      "KHR_mesh_quantization",
+                                     "KHR_node_visibility",
                                      "KHR_texture_transform"};
 
 bool IsModelled(const std::string& extension) {
@@ -86,6 +87,32 @@ std::string WithJson(std::string_view bytes, std::string json) {
            "JSON" + json + std::string(rest);
 }
 
+std::string ProblemOf(const std::string& extension) {
+    return "extension \"" + Printable(extension) + "\" is not supported and left out";
+}
+
+// Warns of extensions that objects have and `listed` lacks: some exporters do not list all that
+// they write. Throws Error where one that counts is no object, which the library drops. The depth
+// of the value has been bounded.
+void CheckUnlisted(const std::string& file, const std::string& path, const nlohmann::json& value,
+                   const std::vector<std::string>& listed, Warnings& warnings) {
+    const auto place = [&](const std::string& of) {
+        return FileLoc{
+            std::make_shared<const std::string>(fmt::format("{}: {}", file, of.empty() ? "/" : of)),
+            0};
+    };
+    if (value.is_object() && value.contains("extensions") && value.at("extensions").is_object())
+        for (const auto& [name, extension] : value.at("extensions").items()) {
+            if (IsModelled(name) && !extension.is_object())
+                throw Error(place(path + "/extensions/" + name), "has to be an object");
+            if (!IsModelled(name) && std::find(listed.begin(), listed.end(), name) == listed.end())
+                warnings.Add(place(path), ProblemOf(name));
+        }
+    for (const auto& [key, member] : value.items())
+        if (member.is_structured() && key != "extras")
+            CheckUnlisted(file, path + "/" + Printable(key), member, listed, warnings);
+}
+
 void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnings& warnings) {
     const auto place = [&](const char* list, size_t i) {
         return FileLoc{
@@ -101,21 +128,34 @@ void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnin
     std::vector<std::string> used;
     if (root.contains("extensionsUsed"))
         used = root.at("extensionsUsed").get<std::vector<std::string>>();
-    const auto kindOf = [](const std::string& name) {
-        return "extension \"" + Printable(name) + "\" is not supported and left out";
-    };
     for (size_t i = 0; i < used.size(); ++i)
-        if (!IsModelled(used[i])) warnings.Add(place("extensionsUsed", i), kindOf(used[i]));
-    // Some exporters do not list all that they write.
-    for (const auto& [list, objects] : root.items()) {
-        if (!objects.is_array()) continue;
-        for (size_t i = 0; i < objects.size(); ++i) {
-            if (!objects[i].is_object() || !objects[i].contains("extensions")) continue;
-            for (const auto& [name, value] : objects[i].at("extensions").items())
-                if (!IsModelled(name) && std::find(used.begin(), used.end(), name) == used.end())
-                    warnings.Add(place(list.c_str(), i), kindOf(name));
+        if (!IsModelled(used[i])) warnings.Add(place("extensionsUsed", i), ProblemOf(used[i]));
+    CheckUnlisted(file, "", root, used, warnings);
+}
+
+// Gives buffers the length of their data where that is greater, as it may be (3.6.1.1): the library
+// refuses it. Returns whether any has changed.
+bool LengthenBuffers(const std::string& folder, nlohmann::json* root) {
+    if (!root->contains("buffers")) return false;
+    bool hasChanged = false;
+    for (nlohmann::json& buffer : root->at("buffers")) {
+        if (!buffer.contains("uri")) continue;
+        const auto& uri = buffer.at("uri").get_ref<const std::string&>();
+        uintmax_t size = 0;
+        if (const auto data = IsDataUri(uri) ? Base64Of(uri) : std::nullopt) {
+            size = data->find_last_not_of('=') + 1;
+            size = size * 3 / 4;
+        } else {
+            std::error_code error;
+            size =
+                std::filesystem::file_size(std::filesystem::path(folder) / DecodeUri(uri), error);
+            if (error) continue;
         }
+        if (size <= buffer.at("byteLength").get<uintmax_t>()) continue;
+        buffer.at("byteLength") = size;
+        hasChanged = true;
     }
+    return hasChanged;
 }
 
 // Reads the files that buffers lie in.
@@ -166,6 +206,7 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
     const FileContents contents = ReadFile(file);
     std::string_view bytes = contents.View();
     std::string rewritten;
+    const std::string folder = std::filesystem::path(file).parent_path().string();
     if (bytes.size() > std::numeric_limits<uint32_t>::max())
         throw Error(file + ": is larger than 4 GB, which glTF files cannot be");
     {
@@ -174,9 +215,12 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
         const std::string_view text =
             CleanText(raw, {std::make_shared<const std::string>(file), 0});
         nlohmann::json root = ParseGltfJson(file, text);
-        CheckGltfJson(file, root);
+        bool hasChanged = CheckGltfJson(file, &root, warnings);
         CheckExtensions(file, root, warnings);
-        if (const bool isUnified = UnifyDataUris(&root); HideCompressed(&root) || isUnified)
+        hasChanged |= UnifyDataUris(&root);
+        hasChanged |= LengthenBuffers(folder, &root);
+        hasChanged |= HideCompressed(&root);
+        if (hasChanged)
             rewritten = WithJson(bytes, root.dump());
         else if (text.size() != raw.size())
             rewritten = WithJson(bytes, std::string(text));
@@ -188,7 +232,6 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
     reader.SetFsCallbacks({FileExists, [](const std::string& path, void*) { return path; },
                            ReadWhole, nullptr, nullptr});
     reader.SetImageLoader(KeepImage, nullptr);
-    const std::string folder = std::filesystem::path(file).parent_path().string();
     std::string error, warning;
     bool isRead = false;
     try {

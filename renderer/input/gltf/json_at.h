@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "renderer/base/error.h"
@@ -15,18 +17,29 @@ namespace lull {
 // Beyond this no file of ours or anybody's goes, and all sums of two are still exact.
 inline constexpr uint64_t kLargestJsonSize = uint64_t(1) << 48;
 
+// A file's JSON while it is checked.
+struct JsonChecked {
+    nlohmann::json& root;
+    const std::string& file;
+    Warnings& warnings;
+    bool hasChanged = false;
+};
+
 // A value and where it stands.
 struct JsonAt {
-    const nlohmann::json& root;
-    const std::string& file;
-    const nlohmann::json& value;
+    JsonChecked& json;
+    nlohmann::json& value;
     std::string path;
 
     [[noreturn]] void Fail(const std::string& problem) const {
-        throw Error(fmt::format("{}: {}: {}", file, path.empty() ? "/" : path, problem));
+        throw Error(fmt::format("{}: {}: {}", json.file, path.empty() ? "/" : path, problem));
+    }
+    FileLoc Loc() const {
+        return {std::make_shared<const std::string>(json.file + ": " + (path.empty() ? "/" : path)),
+                0};
     }
     JsonAt Member(const std::string& name) const {
-        return {root, file, value.at(name), path + "/" + name};
+        return {json, value.at(name), path + "/" + name};
     }
     bool Has(const std::string& name) const { return value.contains(name); }
 
@@ -39,17 +52,29 @@ struct JsonAt {
     void Bool(const std::string& name) const {
         if (Has(name) && !value.at(name).is_boolean()) Member(name).Fail("has to be true or false");
     }
+    // Returns a whole number that is not negative, which may be written as 4.0 or 4e0: it becomes
+    // 4, as the library takes no other.
+    std::optional<uint64_t> WholeItself() const {
+        constexpr double kExact = 9007199254740992;
+        if (value.is_number_float()) {
+            const auto n = value.get<double>();
+            if (!(n >= 0 && n <= kExact && n == std::floor(n))) return {};
+            value = uint64_t(n);
+            json.hasChanged = true;
+        }
+        if (!value.is_number_unsigned()) return {};
+        return value.get<uint64_t>();
+    }
     // Returns a whole number from `least` to `most`, `otherwise` where it is absent.
     uint64_t Whole(const std::string& name, uint64_t least, uint64_t most,
                    uint64_t otherwise) const {
         if (!Has(name)) return otherwise;
         const JsonAt member = Member(name);
-        if (!member.value.is_number_unsigned())
-            member.Fail("has to be a whole number, not negative");
-        const auto n = member.value.get<uint64_t>();
-        if (n < least || n > most)
-            member.Fail(fmt::format("is {}, but has to lie between {} and {}", n, least, most));
-        return n;
+        const std::optional<uint64_t> n = member.WholeItself();
+        if (!n) member.Fail("has to be a whole number, not negative");
+        if (*n < least || *n > most)
+            member.Fail(fmt::format("is {}, but has to lie between {} and {}", *n, least, most));
+        return *n;
     }
     void Required(const std::string& name) const {
         if (!Has(name)) Fail("lacks \"" + name + "\"");
@@ -70,6 +95,16 @@ struct JsonAt {
         const auto n = value.get<double>();
         if (!InRange(n, least, most))
             Fail(fmt::format("is {:g}, but has to lie between {:g} and {:g}", n, least, most));
+    }
+    // Warn of numbers outside a range, which are clamped where they are used: 0 to 1, with the
+    // product of a factor and its texture, and from 0 on.
+    void Clamped(const std::string& name) const {
+        WarnUnless(name, "number beyond 0 to 1, to which it is clamped",
+                   [](double n) { return InRange(n, 0, 1).has_value(); });
+    }
+    void NotBelowZero(const std::string& name) const {
+        WarnUnless(name, "negative number, which counts as 0",
+                   [](double n) { return NotNegative(n).has_value(); });
     }
     void Numbers(const std::string& name, size_t count) const {
         if (!Has(name)) return;
@@ -97,11 +132,11 @@ struct JsonAt {
 
     // Checks an index into one of the top-level arrays.
     void IndexItself(const std::string& array) const {
-        const size_t size = root.contains(array) ? root.at(array).size() : 0;
-        if (!value.is_number_unsigned()) Fail("has to be an index, a whole number");
-        if (value.get<uint64_t>() >= size)
-            Fail(
-                fmt::format("is {}, but there are only {} {}", value.get<uint64_t>(), size, array));
+        const size_t size = json.root.contains(array) ? json.root.at(array).size() : 0;
+        const std::optional<uint64_t> index = WholeItself();
+        if (!index) Fail("has to be an index, a whole number");
+        if (*index >= size)
+            Fail(fmt::format("is {}, but there are only {} {}", *index, size, array));
     }
     void Index(const std::string& name, const std::string& array) const {
         if (Has(name)) Member(name).IndexItself(array);
@@ -116,7 +151,7 @@ struct JsonAt {
         const JsonAt member = Member(name);
         if (!member.value.is_array()) member.Fail("has to be an array");
         for (size_t i = 0; i < member.value.size(); ++i)
-            f(JsonAt{root, file, member.value[i], fmt::format("{}/{}", member.path, i)});
+            f(JsonAt{json, member.value[i], fmt::format("{}/{}", member.path, i)});
     }
     template <typename F>
     void ForEach(const std::string& name, const F& f) const {
@@ -132,7 +167,7 @@ struct JsonAt {
         const JsonAt member = Member(name);
         member.Object();
         for (const auto& [key, v] : member.value.items())
-            f(JsonAt{root, file, v, member.path + "/" + Printable(key)});
+            f(JsonAt{json, v, member.path + "/" + Printable(key)});
     }
     // Calls f with an extension that the object has.
     template <typename F>
@@ -152,6 +187,19 @@ struct JsonAt {
         const JsonAt extras = Member("extras").Member("lull");
         extras.Object();
         f(extras);
+    }
+
+  private:
+    template <typename IsFine>
+    void WarnUnless(const std::string& name, const char* kind, const IsFine& isFine) const {
+        if (!Has(name)) return;
+        const JsonAt member = Member(name);
+        const auto check = [&](const nlohmann::json& n) {
+            if (!isFine(n.get<double>()))
+                json.warnings.Add(member.Loc(), kind, fmt::format("{:g}", n.get<double>()));
+        };
+        if (!member.value.is_array()) return check(member.value);
+        for (const nlohmann::json& n : member.value) check(n);
     }
 };
 

@@ -33,6 +33,12 @@ Mat4d LocalMatrix(const GltfDocument& document, int index) {
     return m;
 }
 
+bool SaysVisible(const tinygltf::Node& node) {
+    const auto found = node.extensions.find("KHR_node_visibility");
+    if (found == node.extensions.end() || !found->second.Has("visible")) return true;
+    return found->second.Get("visible").Get<bool>();
+}
+
 // Returns the nodes that no other has as a child.
 std::vector<int> Roots(const tinygltf::Model& model) {
     if (!model.scenes.empty()) {
@@ -67,20 +73,21 @@ Mat4d MatrixOf(const Eigen::Vector3d& translation, const Eigen::Vector4d& rotati
 std::vector<GltfNode> ListNodes(const GltfDocument& document) {
     std::vector<GltfNode> nodes;
     std::vector<bool> isListed(document.model.nodes.size());
-    const auto add = [&](int index, const Mat4d& parent) {
+    const auto add = [&](int index, const GltfNode& parent) {
         if (isListed[size_t(index)])
             throw Error(document.At(PathOf(index)), "has two parents, or is its own ancestor");
         isListed[size_t(index)] = true;
-        nodes.push_back({index, parent * LocalMatrix(document, index)});
+        const bool isVisible = parent.isVisible && SaysVisible(document.model.nodes[size_t(index)]);
+        nodes.push_back(
+            {index, parent.worldFromNode * LocalMatrix(document, index), {}, isVisible});
         if (!(nodes.back().worldFromNode.cwiseAbs().maxCoeff() < 1e30))
             throw Error(document.At(PathOf(index)), "its transform is too large");
     };
-    for (const int root : Roots(document.model)) add(root, Mat4d::Identity());
+    for (const int root : Roots(document.model)) add(root, GltfNode());
     // The list grows as it is walked; its present nodes do not move, as copies are taken.
     for (size_t i = 0; i < nodes.size(); ++i) {
         const GltfNode node = nodes[i];
-        for (const int child : document.model.nodes[size_t(node.index)].children)
-            add(child, node.worldFromNode);
+        for (const int child : document.model.nodes[size_t(node.index)].children) add(child, node);
     }
     return nodes;
 }

@@ -13,6 +13,7 @@ struct GltfNode {
     int index = -1;  // into the file's nodes
     Mat4d worldFromNode = Mat4d::Identity();
     std::optional<Mat4d> atClose = {};  // of one that moves: the same when the shutter closes
+    bool isVisible = true;              // its mesh and light are (KHR_node_visibility)
 };
 
 // Lists the nodes of the file's scene (of its first one if it names none; all roots if it has

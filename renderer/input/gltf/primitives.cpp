@@ -148,7 +148,10 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
         for (size_t i = 1; i < uvs.size(); i += 2) uvs[i] = 1 - uvs[i];
     t.colors = WithAlpha(read("COLOR_0", 3, 4));
 
-    t.indices = Triangles(IndicesOf(document, primitive, count), mode);
+    std::vector<uint32_t> corners = IndicesOf(document, primitive, count);
+    if (mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0)
+        warnings.Add(loc, "the last corners, which make up no triangle, are left out");
+    t.indices = Triangles(std::move(corners), mode);
     if (t.indices.empty()) warnings.Add(loc, "primitive without triangles is left out");
     if (t.indices.size() > size_t(std::numeric_limits<int>::max()))
         throw Error(loc, "has more triangles than can be modelled");

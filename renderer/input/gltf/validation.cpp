@@ -42,7 +42,7 @@ void CheckBufferView(const JsonAt& o) {
     o.Index("buffer", "buffers");
     const uint64_t offset = o.Whole("byteOffset", 0, kLargestSize, 0);
     const uint64_t length = o.Whole("byteLength", 1, kLargestSize, 1);
-    const json& buffer = o.root.at("buffers").at(o.value.at("buffer").get<size_t>());
+    const json& buffer = o.json.root.at("buffers").at(o.value.at("buffer").get<size_t>());
     const auto size = buffer.at("byteLength").get<uint64_t>();
     if (offset + length > size)
         o.Fail(fmt::format("ends at byte {} of a buffer of {}", offset + length, size));
@@ -96,9 +96,10 @@ size_t CountVariants(const json& root) {
 void CheckMapping(const JsonAt& mapping) {
     for (const char* name : {"material", "variants"}) mapping.Required(name);
     mapping.Index("material", "materials");
-    const size_t count = CountVariants(mapping.root);
+    const size_t count = CountVariants(mapping.json.root);
     mapping.ForEachAny("variants", [&](const JsonAt& v) {
-        if (!v.value.is_number_unsigned() || v.value.get<uint64_t>() >= count)
+        const std::optional<uint64_t> variant = v.WholeItself();
+        if (!variant || *variant >= count)
             v.Fail(fmt::format("has to be the number of one of {} variants", count));
     });
 }
@@ -109,8 +110,8 @@ void CheckPrimitive(const JsonAt& o) {
     o.Index("indices", "accessors");
     o.ForEach("targets", [](const JsonAt& target) {
         for (const auto& [name, accessor] : target.value.items())
-            JsonAt{target.root, target.file, accessor, target.path + "/" + Printable(name)}
-                .IndexItself("accessors");
+            JsonAt{target.json, accessor, target.path + "/" + Printable(name)}.IndexItself(
+                "accessors");
     });
     o.Index("material", "materials");
     o.Whole("mode", 0, 6, 4);
@@ -123,7 +124,8 @@ void CheckPrimitive(const JsonAt& o) {
         draco.Required("attributes");
         draco.Index("bufferView", "bufferViews");
         draco.ForEachValue("attributes", [](const JsonAt& id) {
-            if (!id.value.is_number_unsigned() || id.value.get<uint64_t>() > 1u << 30)
+            const std::optional<uint64_t> attribute = id.WholeItself();
+            if (!attribute || *attribute > 1u << 30)
                 id.Fail("has to be the identifier of an attribute");
         });
     });
@@ -181,23 +183,26 @@ void CheckNode(const JsonAt& o) {
     o.Extension("EXT_mesh_gpu_instancing", [](const JsonAt& e) {
         e.Required("attributes");
         e.ForEachValue("attributes", [](const JsonAt& a) { a.IndexItself("accessors"); });
+        if (e.Member("attributes").value.empty())
+            e.Member("attributes").Fail("needs at least one attribute, which counts the copies");
     });
     o.Extension("KHR_lights_punctual", [&](const JsonAt& e) {
         const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
-        const size_t count = o.root.contains(lights) ? o.root.at(lights).size() : 0;
+        const size_t count = o.json.root.contains(lights) ? o.json.root.at(lights).size() : 0;
         e.Required("light");
-        e.Whole("light", 0, kLargestSize, 0);
-        if (e.value.at("light").get<uint64_t>() >= count)
-            e.Member("light").Fail(fmt::format("is {}, but there are only {} lights",
-                                               e.value.at("light").get<uint64_t>(), count));
+        const uint64_t light = e.Whole("light", 0, kLargestSize, 0);
+        if (light >= count)
+            e.Member("light").Fail(
+                fmt::format("is {}, but there are only {} lights", light, count));
     });
+    o.Extension("KHR_node_visibility", [](const JsonAt& e) { e.Bool("visible"); });
 }
 
 // Textures are named all over a material and its extensions, always by members called ...Texture.
 void CheckTextureInfos(const JsonAt& o) {
     if (!o.value.is_object()) return;
     for (const auto& [name, value] : o.value.items()) {
-        const JsonAt member{o.root, o.file, value, o.path + "/" + Printable(name)};
+        const JsonAt member{o.json, value, o.path + "/" + Printable(name)};
         if (name == "extras") continue;
         if (name.ends_with("Texture")) {
             member.Object();
@@ -220,6 +225,7 @@ void CheckTextureInfos(const JsonAt& o) {
 void CheckMaterial(const JsonAt& o) {
     o.String("name");
     o.Numbers("emissiveFactor", 3);
+    o.NotBelowZero("emissiveFactor");
     o.OneOf("alphaMode", {"OPAQUE", "MASK", "BLEND"});
     o.Number("alphaCutoff");
     o.Bool("doubleSided");
@@ -229,9 +235,32 @@ void CheckMaterial(const JsonAt& o) {
         pbr.Numbers("baseColorFactor", 4);
         pbr.Number("metallicFactor");
         pbr.Number("roughnessFactor");
+        const bool isUnlit =
+            o.Has("extensions") && o.Member("extensions").Has("KHR_materials_unlit");
+        if (!isUnlit)  // which shines as brightly as it says
+            for (const char* name : {"baseColorFactor", "metallicFactor", "roughnessFactor"})
+                pbr.Clamped(name);
     }
-    o.Extension("KHR_materials_specular",
-                [](const JsonAt& e) { e.Numbers("specularColorFactor", 3); });
+    const auto clamped = [&](const char* extension, std::initializer_list<const char*> names) {
+        o.Extension(extension, [&](const JsonAt& e) {
+            for (const char* name : names) {
+                e.Number(name);
+                e.Clamped(name);
+            }
+        });
+    };
+    clamped("KHR_materials_clearcoat", {"clearcoatFactor", "clearcoatRoughnessFactor"});
+    clamped("KHR_materials_transmission", {"transmissionFactor"});
+    clamped("KHR_materials_specular", {"specularFactor"});
+    o.Extension("KHR_materials_emissive_strength", [](const JsonAt& e) {
+        e.Number("emissiveStrength");
+        e.NotBelowZero("emissiveStrength");
+    });
+    o.Extension("KHR_materials_specular", [](const JsonAt& e) {
+        e.Numbers("specularColorFactor", 3);
+        e.NotBelowZero("specularColorFactor");
+    });
+    o.Extension("KHR_materials_ior", [](const JsonAt& e) { e.Number("ior"); });
     o.Extension("KHR_materials_volume", [](const JsonAt& e) {
         e.NumbersWithin("attenuationColor", 3, 0, 1);
         e.Number("thicknessFactor");
@@ -294,7 +323,7 @@ void CheckNumbers(const JsonAt& o) {
     if (!o.value.is_structured()) return;
     for (const auto& [key, v] : o.value.items())
         if ((v.is_structured() || v.is_number()) && key != "extras")
-            CheckNumbers({o.root, o.file, v, o.path + "/" + Printable(key)});
+            CheckNumbers({o.json, v, o.path + "/" + Printable(key)});
 }
 
 void CheckVersion(const JsonAt& root) {
@@ -321,6 +350,7 @@ void CheckLights(const JsonAt& root) {
             light.Required("type");
             light.OneOf("type", {"directional", "point", "spot"});
             light.Numbers("color", 3);
+            light.NotBelowZero("color");
             light.Number("intensity");
             light.Number("range");
             light.Extras([](const JsonAt& e) {
@@ -364,8 +394,9 @@ json ParseGltfJson(const std::string& file, std::string_view text) {
     }
 }
 
-void CheckGltfJson(const std::string& file, const json& json) {
-    const JsonAt root{json, file, json, ""};
+bool CheckGltfJson(const std::string& file, json* json, Warnings& warnings) {
+    JsonChecked checked{*json, file, warnings};
+    const JsonAt root{checked, *json, ""};
     CheckVersion(root);
     CheckNumbers(root);
     // Names of arrays are looked up everywhere below, so that they come first.
@@ -403,7 +434,9 @@ void CheckGltfJson(const std::string& file, const json& json) {
     root.ForEach("samplers", [](const JsonAt& o) {
         o.OneOfNumbers("wrapS", {33071, 33648, 10497});
         o.OneOfNumbers("wrapT", {33071, 33648, 10497});
+        for (const char* name : {"magFilter", "minFilter"}) o.Whole(name, 0, kLargestSize, 0);
     });
+    return checked.hasChanged;
 }
 
 }  // namespace lull

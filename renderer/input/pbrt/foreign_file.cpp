@@ -31,7 +31,9 @@ constexpr std::pair<std::string_view, const char*> kFormats[] = {
     {"<scene"sv, "an XML file, as Mitsuba's scenes are; export the scene for pbrt-v3 or as glTF"},
 };
 
-constexpr std::string_view kV4Directives[] = {"Attribute", "ColorSpace", "Option"};
+constexpr std::string_view kV2Directives[] = {"Renderer", "SurfaceIntegrator", "Volume",
+                                              "VolumeIntegrator"};
+constexpr std::string_view kV4Directives[] = {"Attribute", "ColorSpace", "Import", "Option"};
 constexpr std::pair<std::string_view, std::string_view> kV4Kinds[] = {
     {"Film", "gbuffer"},
     {"Film", "rgb"},
@@ -60,9 +62,11 @@ std::string ForeignFormat(std::string_view bytes) {
     return "a binary file; name a scene of pbrt-v3 or glTF";
 }
 
-bool IsPbrtV4(std::string_view directive, std::string_view kind) {
-    return std::ranges::count(kV4Directives, directive) > 0 ||
-           std::ranges::count(kV4Kinds, std::pair(directive, kind)) > 0;
+std::string OtherVersion(std::string_view directive, std::string_view kind) {
+    if (std::ranges::count(kV2Directives, directive) > 0) return "pbrt-v2";
+    const bool isV4 = std::ranges::count(kV4Directives, directive) > 0 ||
+                      std::ranges::count(kV4Kinds, std::pair(directive, kind)) > 0;
+    return isV4 ? "pbrt-v4" : "";
 }
 
 }  // namespace lull

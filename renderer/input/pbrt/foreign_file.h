@@ -10,8 +10,9 @@ namespace lull {
 // text at all; "" if it may be a pbrt scene.
 std::string ForeignFormat(std::string_view bytes);
 
-// Returns whether a directive shows that a scene is written for pbrt-v4: one that pbrt-v3 does not
-// have, or one of both with a `kind`, such as a material's, that only pbrt-v4 has.
-bool IsPbrtV4(std::string_view directive, std::string_view kind);
+// Returns the version of pbrt for which a scene is written, if a directive shows that it is another
+// than pbrt-v3: one that pbrt-v3 does not have, or one with a `kind`, such as a material's, that
+// only pbrt-v4 has; "" otherwise.
+std::string OtherVersion(std::string_view directive, std::string_view kind);
 
 }  // namespace lull

@@ -7,6 +7,7 @@
 #include "renderer/files/file_contents.h"
 #include "renderer/input/nonnegative.h"
 #include "renderer/scene/cameras/lens_file.h"
+#include "renderer/scene/geometry/reach.h"
 
 namespace lull {
 
@@ -121,6 +122,11 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
         const float x = shift[0] * (screen[1] - screen[0]), y = shift[1] * (screen[3] - screen[2]);
         screen = {screen[0] + x, screen[1] + x, screen[2] + y, screen[3] + y};
     }
+    for (const float end : screen)
+        if (!(std::abs(end) <= kFarthest))
+            throw Error(entity.loc, fmt::format("the image reaches to {:g} on the plane that the "
+                                                "camera sees it on; {:g} is the farthest",
+                                                end, kFarthest));
     return screen;
 }
 

@@ -59,8 +59,12 @@ Filter::Filter(const Description& description, Warnings& warnings) {
     const bool isBox = entity.name == "box", isSinc = entity.name == "sinc";
     const float width = isBox ? 0.5f : isSinc ? 4.f : 2.f;
     radius = {params.GetFloat("xwidth", width), params.GetFloat("ywidth", width)};
-    if (!(radius.minCoeff() > 0) || !radius.allFinite())
-        throw Error(entity.loc, "the filter's \"xwidth\" and \"ywidth\" have to be positive");
+    constexpr float kWidest = 1e6f;  // rays so far beside the image are finite
+    if (!(radius.minCoeff() > 0 && radius.maxCoeff() <= kWidest))
+        throw Error(entity.loc,
+                    fmt::format("the filter's \"xwidth\" and \"ywidth\" have to be positive and at "
+                                "most {:g} pixels",
+                                kWidest));
 
     const AxisFunction evaluate = isBox ? AxisFunction() : MakeAxisFunction(entity);
     params.ReportUnused("PixelFilter \"" + entity.name + "\"", warnings);

@@ -20,8 +20,8 @@ void Mirror::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 }
 
 Glass::Glass(const MaterialReader& in)
-    : kr(in.Spectrum("Kr", 1)),
-      kt(in.Spectrum("Kt", 1)),
+    : kr(in.ShareOfColors("Kr", 1)),
+      kt(in.ShareOfColors("Kt", 1)),
       eta(in.IndexOfRefraction()),
       roughness(in, in.Float("uroughness", 0), in.Float("vroughness", 0)) {}
 
@@ -67,8 +67,8 @@ void Metal::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 }
 
 Plastic::Plastic(const MaterialReader& in)
-    : kd(in.Spectrum("Kd", 0.25f)),
-      ks(in.Spectrum("Ks", 0.25f)),
+    : kd(in.ShareOfColors("Kd", 0.25f)),
+      ks(in.ShareOfColors("Ks", 0.25f)),
       roughness(in, in.Float("roughness", 0.1f), in.Float("roughness", 0.1f)) {}
 
 void Plastic::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
@@ -82,8 +82,8 @@ void Plastic::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 }
 
 Substrate::Substrate(const MaterialReader& in)
-    : kd(in.Spectrum("Kd", 0.5f)),
-      ks(in.Spectrum("Ks", 0.5f)),
+    : kd(in.ShareOfColors("Kd", 0.5f)),
+      ks(in.ShareOfColors("Ks", 0.5f)),
       roughness(in, in.Float("uroughness", 0.1f), in.Float("vroughness", 0.1f)) {}
 
 void Substrate::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
@@ -93,10 +93,10 @@ void Substrate::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 }
 
 Translucent::Translucent(const MaterialReader& in)
-    : kd(in.Spectrum("Kd", 0.25f)),
-      ks(in.Spectrum("Ks", 0.25f)),
-      reflect(in.Spectrum("reflect", 0.5f)),
-      transmit(in.Spectrum("transmit", 0.5f)),
+    : kd(in.ShareOfColors("Kd", 0.25f)),
+      ks(in.ShareOfColors("Ks", 0.25f)),
+      reflect(in.ShareOfColors("reflect", 0.5f)),
+      transmit(in.ShareOfColors("transmit", 0.5f)),
       roughness(in, in.Float("roughness", 0.1f), in.Float("roughness", 0.1f)) {}
 
 void Translucent::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
@@ -131,11 +131,11 @@ Roughness UberRoughness(const MaterialReader& in) {
 }  // namespace
 
 Uber::Uber(const MaterialReader& in)
-    : kd(in.Spectrum("Kd", 0.25f)),
-      ks(in.Spectrum("Ks", 0.25f)),
-      kr(in.Spectrum("Kr", 0)),
-      kt(in.Spectrum("Kt", 0)),
-      opacity(in.Spectrum("opacity", 1)),
+    : kd(in.ShareOfColors("Kd", 0.25f)),
+      ks(in.ShareOfColors("Ks", 0.25f)),
+      kr(in.ShareOfColors("Kr", 0)),
+      kt(in.ShareOfColors("Kt", 0)),
+      opacity(in.ShareOfColors("opacity", 1)),
       eta(in.IndexOfRefraction()),
       roughness(UberRoughness(in)) {}
 

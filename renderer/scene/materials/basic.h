@@ -22,7 +22,7 @@ struct Matte {
     FloatTexture sigma;  // degrees, clamped to [0, 90]; 0: Lambertian, else Oren-Nayar
 
     explicit Matte(const MaterialReader& in)
-        : kd(in.Spectrum("Kd", 0.5f)), sigma(in.Float("sigma", 0)) {}
+        : kd(in.ShareOfColors("Kd", 0.5f)), sigma(in.Float("sigma", 0)) {}
 
     MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1, kd, sigma); }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
@@ -32,7 +32,7 @@ struct Matte {
 struct Mirror {
     SpectrumTexture kr;
 
-    explicit Mirror(const MaterialReader& in) : kr(in.Spectrum("Kr", 0.9f)) {}
+    explicit Mirror(const MaterialReader& in) : kr(in.ShareOfColors("Kr", 0.9f)) {}
 
     MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1, kr); }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;

@@ -5,20 +5,20 @@
 namespace lull {
 
 Disney::Disney(const MaterialReader& in)
-    : color(in.Spectrum("color", 0.5f)),
+    : color(in.ShareOfColors("color", 0.5f)),
       scatterDistance(in.Spectrum("scatterdistance", 0)),
-      metallic(in.Float("metallic", 0)),
+      metallic(in.Share("metallic", 0)),
       eta(in.Float("eta", 1.5f)),
       rough(in.Float("roughness", 0.5f)),
-      specularTint(in.Float("speculartint", 0)),
-      anisotropic(in.Float("anisotropic", 0)),
-      sheen(in.Float("sheen", 0)),
-      sheenTint(in.Float("sheentint", 0.5f)),
-      clearcoat(in.Float("clearcoat", 0)),
-      clearcoatGloss(in.Float("clearcoatgloss", 1)),
-      specTrans(in.Float("spectrans", 0)),
+      specularTint(in.Share("speculartint", 0)),
+      anisotropic(in.Share("anisotropic", 0)),
+      sheen(in.Share("sheen", 0)),
+      sheenTint(in.Share("sheentint", 0.5f)),
+      clearcoat(in.Share("clearcoat", 0)),
+      clearcoatGloss(in.Share("clearcoatgloss", 1)),
+      specTrans(in.Share("spectrans", 0)),
       thin(in.entity.parameters.GetBool("thin", false)),
-      flatness(in.Float("flatness", 0)),
+      flatness(in.Share("flatness", 0)),
       diffTrans(in.Float("difftrans", 1)) {}
 
 MaterialTraits Disney::Traits(const MaterialReader& in) const {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/rounding.h"
 #include "renderer/base/visit.h"
+#include "renderer/input/nonnegative.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/materials/basic.h"
 #include "renderer/scene/materials/disney.h"
@@ -166,6 +168,32 @@ Frame TangentFrame(const SurfaceInteraction& hit) {
 }
 
 }  // namespace
+
+namespace {
+
+void WarnUnlessShare(const MaterialReader& in, const std::string& name, float least, float most) {
+    if (!IsAbove(double(most), 1) && least >= 0) return;
+    in.warnings.Add(in.entity.loc,
+                    "number outside of 0 to 1: the surface can return more light than it "
+                    "receives, as in pbrt-v3",
+                    fmt::format("\"{}\" of material \"{}\"", name, Printable(in.entity.name)));
+}
+
+}  // namespace
+
+SpectrumTexture MaterialReader::ShareOfColors(const std::string& name, float otherwise) const {
+    const SpectrumTexture texture = Spectrum(name, otherwise);
+    // Saturated colours have negative components, which count as 0.
+    if (texture.IsConstant()) WarnUnlessShare(*this, name, 0, texture.constant.maxCoeff());
+    return texture;
+}
+
+FloatTexture MaterialReader::Share(const std::string& name, float otherwise) const {
+    const FloatTexture texture = Float(name, otherwise);
+    if (texture.IsConstant())
+        WarnUnlessShare(*this, name, RaisedToZero(texture.constant), texture.constant);
+    return texture;
+}
 
 SurfaceTilt MaterialReader::BumpMap() const {
     const auto bump = FloatOrNone("bumpmap");

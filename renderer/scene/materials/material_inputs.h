@@ -66,6 +66,9 @@ struct MaterialReader {
     SpectrumTexture Spectrum(const std::string& name, float otherwise) const {
         return textures.GetSpectrum(entity, name, Rgb::Constant(otherwise));
     }
+    // Read shares of light, from 0 to 1. Warn of constants outside, which count as in pbrt-v3.
+    SpectrumTexture ShareOfColors(const std::string& name, float otherwise) const;
+    FloatTexture Share(const std::string& name, float otherwise) const;
     std::optional<FloatTexture> FloatOrNone(const std::string& name) const {
         return textures.GetFloatOrNone(entity, name);
     }

@@ -4,7 +4,7 @@
 namespace lull {
 
 Mix::Mix(const MaterialReader& in)
-    : amount(in.Spectrum("amount", 0.5f)), operands(in.entity.operands) {}
+    : amount(in.ShareOfColors("amount", 0.5f)), operands(in.entity.operands) {}
 
 std::string Mix::Problem(const MaterialReader& in) const {
     for (int i = 0; i < 2; ++i) {

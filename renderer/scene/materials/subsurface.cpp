@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/base/rounding.h"
-#include "renderer/bsdf/medium_presets.h"
 #include "renderer/input/nonnegative.h"
-#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -22,24 +20,16 @@ bool IsTabulated(float eta, float g) {
     return eta >= 1 && eta <= kMostEta && std::abs(g) <= kMostG;
 }
 
-// Measured media are given by their reduced coefficients, for which g is 0.
-float MeanCosine(const MaterialReader& in) {
+float MeanCosine(const MaterialReader& in, const MediumPreset& preset) {
     const float g = in.entity.parameters.GetFloat("g", 0);
-    Rgb sigmaA, sigmaS;
-    return FindMediumPreset(in.entity.parameters.GetString("name", ""), &sigmaA, &sigmaS) ? 0 : g;
-}
-
-Rgb PresetOr(const MaterialReader& in, bool scattering, const Rgb& otherwise) {
-    Rgb sigmaA = otherwise, sigmaS = otherwise;
-    FindMediumPreset(in.entity.parameters.GetString("name", ""), &sigmaA, &sigmaS);
-    return scattering ? sigmaS : sigmaA;
+    return preset.isMeasured ? 0 : g;
 }
 
 }  // namespace
 
 TranslucentSolid::TranslucentSolid(const MaterialReader& in, float g)
-    : kr(in.Spectrum("Kr", 1)),
-      kt(in.Spectrum("Kt", 1)),
+    : kr(in.ShareOfColors("Kr", 1)),
+      kt(in.ShareOfColors("Kt", 1)),
       roughness(in, in.Float("uroughness", 0), in.Float("vroughness", 0)),
       eta(WithinRounding(in.entity.parameters.GetFloat("eta", 1.33f), 1, kMostEta)),
       g(WithinRounding(g, -kMostG, kMostG)),
@@ -64,16 +54,13 @@ void TranslucentSolid::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 }
 
 Subsurface::Subsurface(const MaterialReader& in)
-    : TranslucentSolid(in, MeanCosine(in)),
-      sigmaA(in.textures.GetSpectrum(in.entity, "sigma_a",
-                                     PresetOr(in, false, Rgb(0.0011f, 0.0024f, 0.014f)))),
-      sigmaS(in.textures.GetSpectrum(in.entity, "sigma_s",
-                                     PresetOr(in, true, Rgb(2.55f, 3.21f, 3.77f)))) {
-    const std::string preset = in.entity.parameters.GetString("name", "");
-    if (Rgb ignored; !preset.empty() && !FindMediumPreset(preset, &ignored, &ignored))
-        in.warnings.Add(in.entity.loc, "unknown medium preset, pbrt-v3's default is used",
-                        Printable(preset));
-}
+    : Subsurface(in, ReadMediumPreset(in.entity.parameters.GetString("name", ""), in.entity.loc,
+                                      in.warnings)) {}
+
+Subsurface::Subsurface(const MaterialReader& in, const MediumPreset& preset)
+    : TranslucentSolid(in, MeanCosine(in, preset)),
+      sigmaA(in.textures.GetSpectrum(in.entity, "sigma_a", preset.sigmaA)),
+      sigmaS(in.textures.GetSpectrum(in.entity, "sigma_s", preset.sigmaS)) {}
 
 std::optional<SubsurfaceProfile> Subsurface::Profile(const MaterialInputs& in) const {
     return SubsurfaceProfile{
@@ -82,7 +69,7 @@ std::optional<SubsurfaceProfile> Subsurface::Profile(const MaterialInputs& in) c
 
 KdSubsurface::KdSubsurface(const MaterialReader& in)
     : TranslucentSolid(in, in.entity.parameters.GetFloat("g", 0)),
-      kd(in.Spectrum("Kd", 0.5f)),
+      kd(in.ShareOfColors("Kd", 0.5f)),
       meanFreePath(in.Spectrum("mfp", 1)) {}
 
 std::optional<SubsurfaceProfile> KdSubsurface::Profile(const MaterialInputs& in) const {

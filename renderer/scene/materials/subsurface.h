@@ -4,6 +4,7 @@
 
 #include "renderer/bsdf/diffusion_profile.h"
 #include "renderer/scene/materials/basic.h"
+#include "renderer/scene/materials/medium_preset.h"
 
 namespace lull {
 
@@ -35,6 +36,7 @@ struct Subsurface : TranslucentSolid {
     SpectrumTexture sigmaA, sigmaS;
 
     explicit Subsurface(const MaterialReader& in);
+    Subsurface(const MaterialReader& in, const MediumPreset& preset);
 
     MaterialTraits Traits(const MaterialReader& in) const {
         return SolidTraits(in, sigmaA, sigmaS);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "renderer/base/rounding.h"
-#include "renderer/bsdf/medium_presets.h"
 #include "renderer/input/nonnegative.h"
 #include "renderer/scene/geometry/animated_transform.h"
 #include "renderer/scene/geometry/reach.h"
+#include "renderer/scene/materials/medium_preset.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
@@ -100,15 +100,12 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
 Medium MakeMedium(const MediumEntity& entity, Warnings& warnings) {
     const Parameters& params = entity.parameters;
     params.GetString("type", "");  // already in entity.name
-    Rgb sigmaA(0.0011f, 0.0024f, 0.014f), sigmaS(2.55f, 3.21f, 3.77f);
-    const std::string preset = params.GetString("preset", "");
-    if (!preset.empty() && !FindMediumPreset(preset, &sigmaA, &sigmaS))
-        warnings.Add(entity.loc, "unknown medium preset, pbrt-v3's default is used",
-                     Printable(preset));
+    const MediumPreset preset =
+        ReadMediumPreset(params.GetString("preset", ""), entity.loc, warnings);
     const float scale = params.GetFloat("scale", 1);
     float g = params.GetFloat("g", 0);
-    sigmaA = ReadCoefficient(entity, "sigma_a", sigmaA, scale);
-    sigmaS = ReadCoefficient(entity, "sigma_s", sigmaS, scale);
+    const Rgb sigmaA = ReadCoefficient(entity, "sigma_a", preset.sigmaA, scale);
+    const Rgb sigmaS = ReadCoefficient(entity, "sigma_s", preset.sigmaS, scale);
     constexpr float kMostForward = 0.99999f;  // with 1, light would go straight on
     if (!InRange(double(g), -1, 1))
         throw Error(entity.loc, fmt::format("\"g\" of medium \"{}\" has to lie between -1 and 1",

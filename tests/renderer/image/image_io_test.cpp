@@ -229,6 +229,12 @@ TEST(ReadImage, UndoesExposureOfRadianceHdr) {
                                       "COLORCORR=1 2 4\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
                                           FromHex("80808084"));
     ExpectNear(Texels<float>(image), {1, 0.5f, 0.25f}, 0.01f);
+    // Exposed first, (0.5 * 8)^(1 / 2) is stored as 2.
+    const Image raised = ReadFromBytes("a.hdr",
+                                       "#?RADIANCE\nGAMMA= 2.0\nEXPOSURE=8\n"
+                                       "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
+                                           FromHex("80402082"));
+    ExpectNear(Texels<float>(raised), {0.5f, 0.125f, 0.03125f}, 0.01f);
     const TemporaryDirectory directory;
     const std::string xyz = directory.Write(
         "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + FromHex("80808084"));

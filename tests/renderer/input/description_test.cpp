@@ -61,11 +61,13 @@ TEST(Parameters, ReportsWhatWasNotLookedUp) {
     p.Add(Floats(ParameterType::Float, "twice", {1, 2}));
     p.GetFloat("used", 0);
     p.GetFloat("twice", 0);  // has two values, so this does not find it
-    std::string first;
-    Warnings warnings([&](const std::string& message) { first = message; });
+    std::vector<std::string> messages;
+    Warnings warnings([&](const std::string& message) { messages.push_back(message); });
     p.ReportUnused("shape \"sphere\"", warnings);
     EXPECT_EQ(warnings.Total(), 2);
-    EXPECT_EQ(first, "warning: unused parameter: 'unused' of shape \"sphere\" has no effect");
+    EXPECT_EQ(messages.at(0),
+              "warning: unused parameter: 'unused' of shape \"sphere\" has no effect");
+    EXPECT_EQ(p.Mistyped("twice"), "; it has 2 values and has to have 1");
 }
 
 TEST(Parameters, NameTheTypeThatIsWanted) {

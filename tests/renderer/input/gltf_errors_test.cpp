@@ -73,6 +73,8 @@ TEST(GltfErrors, NameTheirPlace) {
         {"/accessors/1/count", 2, "/meshes/0/primitives/0: has 2 TEXCOORD_0 for 3 vertices"},
         {"/bufferViews/0/byteLength", 4000, "/bufferViews/0: ends at byte 4000 of a buffer of 66"},
         {"/bufferViews/0/byteStride", 6, "/bufferViews/0/byteStride: has to be a multiple of 4"},
+        {"/bufferViews/0/byteStride", 8,
+         "/accessors/0: its elements of 12 bytes overlap: the byteStride of /bufferViews/0 is 8"},
         {"/bufferViews/0/buffer", 1, "/bufferViews/0/buffer: is 1, but there are only 1 buffers"},
         {"/materials/0/alphaMode", "MAYBE",
          "/materials/0/alphaMode: is \"MAYBE\", which is not "
@@ -127,6 +129,9 @@ TEST(GltfErrors, CheckTheRangesOfExtensions) {
         {"/extensions/KHR_materials_variants/variants",
          {{{"name", 3}}},
          "/0/name: has to be a string"},
+        {material + "KHR_materials_unlit", true, ": has to be an object"},
+        {"/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes", json::object(),
+         ": needs at least one attribute, which counts the copies"},
         {"/extensions/KHR_materials_variants/variants", json::array({json::object()}),
          "/0: lacks \"name\""},
         {"/extensions/KHR_materials_variants/variants", 5, ": has to be an array"},

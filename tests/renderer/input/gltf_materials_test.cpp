@@ -202,22 +202,42 @@ TEST(GltfMaterials, WarnOfWhatIsMissing) {
     file.root["extensionsUsed"] = {"EXT_texture_webp"};
     file.root["materials"] = {
         {{"extensions", {{"KHR_materials_iridescence", json::object()}}},
-         {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}};
+         {"pbrMetallicRoughness",
+          {{"baseColorTexture",
+            {{"index", 0}, {"texCoord", 1}, {"extensions", {{"EXT_a", json::object()}}}}}}}}};
+    file.root["extensions"] = {{"EXT_b", json::object()}};
     const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
     file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"material", 0}})},
-               {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
+               {"extensions", {{"EXT_c", json::object()}}},
+               {"extras", {{"extensions", {{"EXT_d", json::object()}}}}}});
     Warnings warnings;
     const Description d = kFolder.Parse(file, {}, &warnings);
     EXPECT_EQ(d.textures.at(0).parameters.GetString("filename", ""), "a.webp");
-    EXPECT_EQ(warnings.Total(), 3);
-    EXPECT_EQ(
-        warnings.Counts().count("extension \"KHR_node_visibility\" is not supported and left out"),
-        1u);
-    EXPECT_EQ(warnings.Counts().count(
-                  "extension \"KHR_materials_iridescence\" is not supported and left out"),
-              1u);
+    EXPECT_EQ(warnings.Total(), 5);
+    for (const std::string name : {"KHR_materials_iridescence", "EXT_a", "EXT_b", "EXT_c"})
+        EXPECT_EQ(
+            warnings.Counts().count("extension \"" + name + "\" is not supported and left out"),
+            1u);
     EXPECT_EQ(warnings.Counts().count("a texture is misplaced, since its mesh lacks TEXCOORD_1"),
               1u);
+}
+
+TEST(GltfMaterials, WarnOfNumbersBeyondTheirRange) {
+    GltfFile file;
+    file.root["materials"] = {
+        {{"emissiveFactor", {2, 0, -0.5}},
+         {"pbrMetallicRoughness",
+          {{"baseColorFactor", {1.5, 1, 0, 1}}, {"metallicFactor", -1}, {"roughnessFactor", 1}}},
+         {"extensions",
+          {{"KHR_materials_specular",
+            {{"specularFactor", 1.00001}, {"specularColorFactor", {3, 1, 1}}}},
+           {"KHR_materials_emissive_strength", {{"emissiveStrength", -1e-6}}}}}}};
+    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    Warnings warnings;
+    kFolder.Parse(file, {}, &warnings);
+    EXPECT_EQ(warnings.Total(), 3);
+    EXPECT_EQ(warnings.Counts().at("negative number, which counts as 0"), 1);
+    EXPECT_EQ(warnings.Counts().at("number beyond 0 to 1, to which it is clamped"), 2);
 }
 
 TEST(GltfMaterials, CarryDiffuseTransmission) {

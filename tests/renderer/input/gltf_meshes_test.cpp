@@ -1,4 +1,6 @@
 // Checks what becomes of the arrays of glTF files.
+#include <functional>
+
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull {
@@ -104,6 +106,72 @@ TEST(GltfMeshes, ReplaceSparseValues) {
     ExpectNear(Positions(d, 1), {0, 0, 0, 5, 6, 7, 8, 9, 10}, 0);
 }
 
+TEST(GltfMeshes, ReplaceSparseIndices) {
+    GltfFile file;
+    const json sparse = {
+        {"count", 1},
+        {"indices", {{"bufferView", file.View(std::vector<uint8_t>{2})}, {"componentType", 5121}}},
+        {"values", {{"bufferView", file.View(std::vector<uint16_t>{1})}}}};
+    const int full = file.Accessor(file.View(std::vector<uint16_t>{2, 0, 0}), 5123, 3, "SCALAR",
+                                   {{"sparse", sparse}});
+    file.Node({{"mesh", file.Triangle({{"indices", full}})}});
+    const GltfFolder folder;
+    ExpectNear(Indices(folder.Parse(file)), {2, 0, 1}, 0);
+    file.root["accessors"][size_t(full)]["sparse"]["values"]["bufferView"] =
+        file.View(std::vector<uint16_t>{3});
+    EXPECT_EQ(folder.ErrorOf(file),
+              "scene.gltf: /accessors/0: index 3 is out of range: there are 3 vertices");
+}
+
+// Some exporters write a stride of 0 for elements that follow each other.
+TEST(GltfMeshes, FollowEachOtherWithAStrideOfZero) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    file.root["bufferViews"][0]["byteStride"] = 0;
+    ExpectNear(Positions(GltfFolder().Parse(file)), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
+}
+
+// 4.0 and 4e0 are the integer 4, as in other readers of JSON.
+TEST(GltfMeshes, ReadWholeNumbersThatAreWrittenAsFractions) {
+    GltfFile file;
+    file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};
+    file.Node({{"mesh", file.Triangle({{"indices", file.Indices({0, 2, 1})}, {"material", 0}})}});
+    json root = json::parse(file.Text());
+    const std::function<void(json&)> toFractions = [&](json& value) {
+        if (value.is_number()) value = value.get<double>();
+        if (value.is_structured())
+            for (json& member : value) toFractions(member);
+    };
+    toFractions(root);
+    std::string fractions = root.dump();
+    for (size_t at; (at = fractions.find("5126.0")) != std::string::npos;)
+        fractions.replace(at, 6, "5.126e3");
+    ASSERT_TRUE(Contains(fractions, "\"mesh\":0.0"));
+    const GltfFolder folder;
+    Warnings warnings;
+    const Description d = ParseGltf(folder.Write("scene.gltf", fractions), {}, warnings);
+    ExpectNear(Positions(d), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
+    ExpectNear(Indices(d), {0, 2, 1}, 0);
+    EXPECT_TRUE(d.shapes.at(0).areaLight);
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
+// The data of a buffer may be longer than it says (3.6.1.1).
+TEST(GltfMeshes, LieInLongerFiles) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle()}});
+    const GltfFolder folder;
+    json root = json::parse(file.Text());
+    root["buffers"][0]["uri"] =
+        "data:application/octet-stream;base64," + Base64(file.bytes + "more");
+    EXPECT_EQ(folder.ErrorOf(root.dump()), "");
+    folder.Write("a mesh.bin", file.bytes + "more");
+    root["buffers"][0]["uri"] = "a%20mesh.bin";
+    EXPECT_EQ(folder.ErrorOf(root.dump()), "");
+    folder.Write("a mesh.bin", file.bytes.substr(1));
+    EXPECT_NE(folder.ErrorOf(root.dump()), "");
+}
+
 TEST(GltfMeshes, UnrollStripsAndFans) {
     const auto indices = [](int mode) {
         GltfFile file;
@@ -116,6 +184,14 @@ TEST(GltfMeshes, UnrollStripsAndFans) {
     ExpectNear(indices(4), {0, 1, 2}, 0);
     ExpectNear(indices(5), {0, 1, 2, 1, 3, 2, 2, 3, 4}, 0);
     ExpectNear(indices(6), {1, 2, 0, 2, 3, 0, 3, 4, 0}, 0);
+}
+
+TEST(GltfMeshes, LeaveOutCornersOfNoTriangle) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle({{"indices", file.Indices({0, 1, 2, 1, 2})}})}});
+    Warnings warnings;
+    ExpectNear(Indices(GltfFolder().Parse(file, {}, &warnings)), {0, 1, 2}, 0);
+    EXPECT_EQ(warnings.Counts().at("the last corners, which make up no triangle, are left out"), 1);
 }
 
 TEST(GltfMeshes, LeaveOutPointsAndLines) {

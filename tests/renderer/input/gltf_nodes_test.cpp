@@ -54,6 +54,39 @@ TEST(GltfNodes, ShareMeshesAsInstances) {
     EXPECT_EQ(d.instances[1].worldFromInstance(2, 3), 4);
 }
 
+// Meshes and lights of what is below an invisible node are left out; cameras are not.
+TEST(GltfNodes, HideWhatIsBelowInvisibleOnes) {
+    const auto visibility = [](bool visible) {
+        return json{{"KHR_node_visibility", {{"visible", visible}}}};
+    };
+    GltfFile file;
+    const int mesh = file.Triangle();
+    json lamp = visibility(true);
+    lamp["KHR_lights_punctual"] = {{"light", 0}};
+    file.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
+    file.root["extensionsRequired"] = {"KHR_node_visibility"};
+    file.root["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.root["nodes"] = {{{"extensions", visibility(false)}, {"children", {1, 2, 3}}},
+                          {{"mesh", mesh}, {"extensions", visibility(true)}},
+                          {{"extensions", lamp}},
+                          {{"camera", 0}, {"translation", {0, 0, 7}}}};
+    Warnings warnings;
+    const Description hidden = kFolder.Parse(file, {}, &warnings);
+    EXPECT_TRUE(hidden.shapes.empty());
+    EXPECT_TRUE(hidden.lights.empty());
+    EXPECT_EQ(hidden.camera.name, "perspective");
+    EXPECT_EQ(warnings.Total(), 0);
+    file.root["nodes"][0]["extensions"] = visibility(true);
+    const Description shown = kFolder.Parse(file);
+    EXPECT_EQ(shown.shapes.size(), 1u);
+    EXPECT_EQ(shown.lights.size(), 1u);
+    file.root["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = 0;
+    EXPECT_EQ(kFolder.ErrorOf(file),
+              "scene.gltf: /nodes/0/extensions/KHR_node_visibility/visible: has to be true or "
+              "false");
+}
+
 TEST(GltfNodes, CopyWhatEmitsInsteadOfInstancing) {
     GltfFile file;
     file.root["materials"] = {{{"emissiveFactor", {1, 0.5, 0}}}};

@@ -84,6 +84,18 @@ TEST(Integrator, KeepsSubpathsFromLightsShort) {
     EXPECT_EQ(warnings.Total(), 1);
 }
 
+// Nothing else ends paths between mirrors that reflect all light.
+TEST(Integrator, EndsPathsThatLoseNothing) {
+    Warnings warnings;
+    EXPECT_EQ(MaxDepth(Read("Integrator \"path\" \"integer maxdepth\" [100000]", &warnings)),
+              100000);
+    EXPECT_EQ(warnings.Total(), 0);
+    EXPECT_EQ(MaxDepth(Read("Integrator \"volpath\" \"integer maxdepth\" [2000000000]", &warnings,
+                            -1, true)),
+              100000);
+    EXPECT_EQ(warnings.Counts().at("paths of \"volpath\" have 100000 bounces at most"), 1);
+}
+
 TEST(Integrator, ReportsWhatItCannotUse) {
     Warnings warnings;
     Read("Integrator \"path\" \"integer maxdpeth\" [9]", &warnings);

@@ -257,6 +257,14 @@ TEST(Camera, RefusesNonsense) {
                      MakeTestCamera(FilmOf(9, 9), {FloatParameter("screenwindow", {1, 1, -1, 1})});
                  }),
                  "no extent"));
+    // No ray through these is finite.
+    for (const Parameter& parameter :
+         {FloatParameter("screenwindow", {-3e38f, 3e38f, -1, 1}),
+          FloatParameter("frameaspectratio", {1e-38f}), FloatParameter("screenfit", {1, 1e30f}),
+          FloatParameter("screenshift", {0, 1e20f})})
+        EXPECT_TRUE(Contains(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {parameter}); }),
+                             "is the farthest"))
+            << parameter.name;
     Description description;
     description.camera.name = "fisheye";
     Warnings warnings;

@@ -3,6 +3,7 @@
 
 #include "renderer/bsdf/diffusion_profile.h"
 #include "renderer/input/spectrum.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/materials/material_scene.h"
 
 namespace lull::test {

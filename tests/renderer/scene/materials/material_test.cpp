@@ -6,6 +6,30 @@
 namespace lull::test {
 namespace {
 
+// Colours of 0 to 255, for instance.
+TEST(Material, WarnsOfMoreLightThanItReceives) {
+    const char* const kind =
+        "number outside of 0 to 1: the surface can return more light than it receives, as in "
+        "pbrt-v3";
+    struct Case {
+        const char* material;
+        Parameter parameter;
+        int warnings;
+    };
+    for (const Case& c :
+         {Case{"matte", Grey("Kd", 1.000005f), 0}, Case{"matte", Color("Kd", {-0.1f, 1, 1}), 0},
+          Case{"matte", Color("Kd", {0.5f, 128, 0}), 1}, Case{"mirror", Grey("Kr", 1.5f), 1},
+          Case{"uber", Grey("opacity", 2), 1}, Case{"disney", Float("metallic", 1), 0},
+          Case{"disney", Float("metallic", -1), 1}, Case{"disney", Float("spectrans", 2), 1},
+          Case{"disney", Float("difftrans", 2), 0}, Case{"metal", Grey("k", 9), 0}}) {
+        MaterialScene b;
+        b.AddMaterial(c.material, {c.parameter});
+        b.Make();
+        EXPECT_EQ(b.warnings.Total(), c.warnings) << c.material << " " << c.parameter.name;
+        EXPECT_EQ(b.warnings.Counts().count(kind), size_t(c.warnings));
+    }
+}
+
 TEST(Mix, ScalesTheLobesOfBoth) {
     MaterialScene b;
     b.AddMaterial("glass");
