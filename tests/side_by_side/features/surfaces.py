@@ -167,6 +167,15 @@ def transparent_colour(scene):
     ball(matte("ball", (0.6, 0.2, 0.1, 1)))
 
 
+@case("Principled: rough walls seen along their surface")
+def rough_walls(scene):
+    made = principled(Roughness=0.9, Specular=0.2)[0]
+    mesh = bpy.data.meshes.new("walls")
+    mesh.from_pydata([(x, y, z) for x in (-1, 1) for y, z in ((-5, 0), (4, 0), (4, 3), (-5, 3))], [], [(0, 1, 2, 3), (4, 5, 6, 7)])
+    mesh.materials.append(made)
+    scene.collection.objects.link(bpy.data.objects.new("walls", mesh))
+
+
 @case("surface by kinds of rays: shadows without glass")
 def glass_by_rays(scene):
     made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
