@@ -358,6 +358,7 @@ bpy.data.lights['Light'].use_shadow = False""")
         passes, said = self.render("doubtful", SAMPLES + "s.texture = 64")
         for text in (
                 "1 material is the same from all sides and for all rays: 'by rays'",
+                "1 material is in the viewport colour, as nothing is known of the surface: 'unknown'",
                 "1 material is with the normals of the first of mixed surfaces that has any: 'bumped'",
                 "1 material is displaced as finely as meshes are, without bump: 'moved'",
                 "1 material is letting light through where transparent: 'veiled'",

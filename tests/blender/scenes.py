@@ -539,6 +539,8 @@ def doubtful(folder):
     bpy.context.object.name = "soft"
     bpy.ops.mesh.primitive_cube_add(size=0.5, location=(3, 3, 0.5))
     dress(matte("plain"), smooth=True).name = "round"
+    bpy.ops.mesh.primitive_cube_add(size=0.5, location=(-3, 3, 0.5))
+    dress(material("unknown", 'Holdout'))
 
     parts = bpy.data.collections.new("parts")
     bpy.ops.mesh.primitive_cube_add(size=0.3)

@@ -243,11 +243,13 @@ class _Surface:
             self.tree.links.new(root, output.inputs['Surface'])
         self.absorbs = self._absorption(output)
         self.parameters = self._closure(output.inputs['Surface'])
-        self._take_numbers()
         self.needs_mesh, baked = False, []  # of a mesh, all that is baked is over the same UVs
         if self.parameters is None:
             notes.add("in the viewport colour, as nothing is known of the surface", self.name, "materials")
             return
+        if self.parameters.pop('Added', False):
+            self.copy["lull_adds"] = True
+        self._take_numbers()
         self._mark(source_of(output.inputs['Surface']).node)
         if source_of(output.inputs['Displacement']) and not displacement.moves(material):
             self.parameters['Normal'] = source_of(output.inputs['Displacement'])  # with which the normals are baked
@@ -324,7 +326,7 @@ class _Surface:
             found[name] = value_of(principled_input(node, name))
         if HAS_ADDED_INTERFACE:
             found['Clearcoat'] = self._times(0.25, found['Clearcoat'])
-            self.copy["lull_adds"] = True
+            found['Added'] = True
         if found['Clearcoat'] != 0 and principled_input(node, 'Clearcoat Normal').links:
             self.notes.add("with the normals of the surface on its clear coat", self.name, "materials")
         emission = principled_input(node, 'Emission')
@@ -394,6 +396,8 @@ class _Surface:
                     self.notes.add("without colour where they are transparent", self.name, "materials")
                 return dict(other, Alpha=self._times(other['Alpha'], share))
         mixed = {name: self._mix(factor, a[name], b[name]) for name in _DEFAULTS}
+        if 'Added' in a or 'Added' in b:
+            mixed['Added'] = True
         if not self._is_output(factor):
             self._keep_highlights(mixed, a, b, factor)
         if 'Normal' in a or 'Normal' in b:
