@@ -14,7 +14,8 @@ DenoisedImage DenoiseWithReports(Picture picture, const PixelRect& region,
                                  const std::vector<Block>& blocks, ProgressStyle style,
                                  DenoiserOptions options = {}) {
     StepPrinter printer("denoising", style, stderr);
-    options.onShare = [&](double share) { printer.Print(share); };
+    constexpr double kFilter = 0.85;  // of the time: 0.9, or 0.79 of the largest pictures
+    options.onShare = [&](double share) { printer.Print(kFilter * share); };
     return DenoiseImage(std::move(picture), region, blocks, options);
 }
 
