@@ -288,8 +288,8 @@ def try_case(lull, reader, files, seed, number, keep):
 
 
 def without_seconds(path):
-    """Returns the bytes of a result, of a table those of the columns that are no times."""
-    data = path.read_bytes()
+    """Returns the bytes of a result but times: those in the notes of recordings, and columns of tables."""
+    data = re.sub(rb"\d+ s of threads for (\d+ spp), \d+ s for", rb"\1", path.read_bytes())
     if path.suffix != ".csv" or b"seconds" not in data:
         return data
     rows = [line.split(b",") for line in data.split(b"\n")]
