@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws scenes/pictures/decision.svg: a model's estimates for the block of stops.png, with its stop and the human threshold.
 
-decision.py LULL: trains a model without staircase2 on the recordings in stopping/data, and runs it on those of staircase2.
+decision.py LULL: trains a model without staircase2 on the recordings in stopping/data, and runs it on that of staircase2.
 """
 import csv
 import pathlib

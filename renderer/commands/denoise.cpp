@@ -112,7 +112,8 @@ NoisyPicture ReadHalves(const Options& options, ExrImage* exr) {
     return ReadPicture(*exr, options.input, half, options.half);
 }
 
-// Leaves out what the denoised image replaces, as the next steps need the memory, and NaN.
+// Leaves out the channels that the denoised image replaces, as the next steps need the memory, and
+// NaN.
 void KeepOtherChannels(ExrImage* exr) {
     std::erase_if(exr->channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     for (ExrChannel& channel : exr->channels)  // depths may be infinite

@@ -15,8 +15,9 @@ import solids
 import uvs
 from versions import HAS_ADDED_INTERFACE, displacement_method, principled_input
 
+# The marks of surfaces that the rays of an output pass.
+_HIDING_RAYS = {'Is Camera Ray': "lull_hidden", 'Is Shadow Ray': "lull_shadowless"}
 # What depends on the direction from which a surface is seen, or on who asks.
-_HIDING_RAYS = {'Is Camera Ray': "lull_hidden", 'Is Shadow Ray': "lull_shadowless"}  # marks of what they pass
 _BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA', 'LIGHT_FALLOFF', 'TEX_IES'}
 _OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': ('Backfacing', 'Incoming'), 'TEX_COORD': ('Camera', 'Window', 'Reflection')}
 _BY_PLACE = {'NEW_GEOMETRY', 'OBJECT_INFO', 'PARTICLE_INFO', 'HAIR_INFO', 'POINT_INFO', 'TANGENT', 'AMBIENT_OCCLUSION', 'BEVEL',

@@ -32,7 +32,7 @@ class ExrFile {
     // Takes these channels alone, in this order. Those that the file lacks are read as 0.
     void Choose(std::vector<std::string> names) { channels = std::move(names); }
     bool IsHalf(const std::string& channel) const;
-    // Returns what ImageFile::Chromaticities() does; nothing where they are those of Rec. 709.
+    // As ImageFile::Chromaticities(); nothing for the primaries of Rec. 709.
     std::optional<std::array<float, 8>> Chromaticities() const;
     // Read the first `count` channels side by side, as halves, if all are, or as floats; integers
     // become 0 to 1. Read() takes the data window, ReadDisplayed() the display window, 0 where the

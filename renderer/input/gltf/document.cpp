@@ -10,6 +10,7 @@
 #include "renderer/files/file_contents.h"
 #include "renderer/files/text_file.h"
 #include "renderer/input/gltf/decompression.h"
+#include "renderer/input/gltf/json_at.h"
 #include "renderer/input/gltf/uri.h"
 #include "renderer/input/gltf/validation.h"
 
@@ -96,17 +97,12 @@ std::string ProblemOf(const std::string& extension) {
 // of the value has been bounded.
 void CheckUnlisted(const std::string& file, const std::string& path, const nlohmann::json& value,
                    const std::vector<std::string>& listed, Warnings& warnings) {
-    const auto place = [&](const std::string& of) {
-        return FileLoc{
-            std::make_shared<const std::string>(fmt::format("{}: {}", file, of.empty() ? "/" : of)),
-            0};
-    };
     if (value.is_object() && value.contains("extensions") && value.at("extensions").is_object())
         for (const auto& [name, extension] : value.at("extensions").items()) {
             if (IsModelled(name) && !extension.is_object())
-                throw Error(place(path + "/extensions/" + name), "has to be an object");
+                throw Error(PlaceIn(file, path + "/extensions/" + name), "has to be an object");
             if (!IsModelled(name) && std::find(listed.begin(), listed.end(), name) == listed.end())
-                warnings.Add(place(path), ProblemOf(name));
+                warnings.Add(PlaceIn(file, path), ProblemOf(name));
         }
     for (const auto& [key, member] : value.items())
         if (member.is_structured() && key != "extras")
@@ -115,8 +111,7 @@ void CheckUnlisted(const std::string& file, const std::string& path, const nlohm
 
 void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnings& warnings) {
     const auto place = [&](const char* list, size_t i) {
-        return FileLoc{
-            std::make_shared<const std::string>(fmt::format("{}: /{}/{}", file, list, i)), 0};
+        return PlaceIn(file, fmt::format("/{}/{}", list, i));
     };
     std::vector<std::string> required;
     if (root.contains("extensionsRequired"))
@@ -198,9 +193,7 @@ bool OwnFlag(const GltfDocument& document, const tinygltf::Value& extras, const 
     return value->Get<bool>();
 }
 
-FileLoc GltfDocument::At(const std::string& path) const {
-    return {std::make_shared<const std::string>(file + ": " + path), 0};
-}
+FileLoc GltfDocument::At(const std::string& path) const { return PlaceIn(file, path); }
 
 GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
     const FileContents contents = ReadFile(file);

@@ -17,6 +17,11 @@ namespace lull {
 // Beyond this no file of ours or anybody's goes, and all sums of two are still exact.
 inline constexpr uint64_t kLargestJsonSize = uint64_t(1) << 48;
 
+// Returns a place in a file by its JSON pointer; "": the whole.
+inline FileLoc PlaceIn(const std::string& file, const std::string& path) {
+    return {std::make_shared<const std::string>(file + ": " + (path.empty() ? "/" : path)), 0};
+}
+
 // A file's JSON while it is checked.
 struct JsonChecked {
     nlohmann::json& root;
@@ -32,12 +37,9 @@ struct JsonAt {
     std::string path;
 
     [[noreturn]] void Fail(const std::string& problem) const {
-        throw Error(fmt::format("{}: {}: {}", json.file, path.empty() ? "/" : path, problem));
+        throw Error(Loc().Prefix() + problem);
     }
-    FileLoc Loc() const {
-        return {std::make_shared<const std::string>(json.file + ": " + (path.empty() ? "/" : path)),
-                0};
-    }
+    FileLoc Loc() const { return PlaceIn(json.file, path); }
     JsonAt Member(const std::string& name) const {
         return {json, value.at(name), path + "/" + name};
     }

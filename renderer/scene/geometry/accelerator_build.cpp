@@ -40,9 +40,10 @@ bool IsFromBehind(const Shape& shape, const RTCRay& ray, const RTCHit& hit) {
     return front.dot(Vec3f(ray.dir_x, ray.dir_y, ray.dir_z)) > 0;
 }
 
+// Returns whether a ray passes a mesh, by its kind or by the mesh's coverage.
 bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
+    if (IsHidden(user, ray)) return true;
     const Shape& shape = user.shapes->shapes[user.shape];
-    if (shape.hiddenFrom & ray.id) return true;
     if (!shape.coverage) return false;
     if (shape.coverage->openBehind && IsFromBehind(shape, ray, hit)) return true;
     const Vec3f p(ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,

@@ -41,8 +41,9 @@ struct MovingUser {
     void Attach(RTCDevice device, RTCScene world, unsigned id);
 };
 
-// Filters of Embree, which reject hits that alpha cuts out. Like the callbacks below they are
-// called with one ray at a time, as rays are traced one at a time.
+// Filters of Embree, which reject hits that alpha cuts out, and of rays that a shape is hidden
+// from. Like the callbacks below they are called with one ray at a time, as rays are traced one at
+// a time.
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterByCoverage(const RTCFilterFunctionNArguments* args);
@@ -94,9 +95,8 @@ const S& ShapeOf(void* user) {
     return *std::get_if<S>(&shapes->shapes[index].geometry);
 }
 
-inline bool IsHidden(void* user, const RTCRay& ray) {
-    const auto& [shapes, textures, index] = *static_cast<const ShapeUser*>(user);
-    return shapes->shapes[size_t(index)].hiddenFrom & ray.id;
+inline bool IsHidden(const ShapeUser& user, const RTCRay& ray) {
+    return user.shapes->shapes[size_t(user.shape)].hiddenFrom & ray.id;
 }
 
 template <typename S>
@@ -144,13 +144,15 @@ void OccludedCallback(const RTCOccludedFunctionNArguments* args) {
 // Those of shapes that are hidden from some rays.
 template <typename S>
 void SeenIntersectCallback(const RTCIntersectFunctionNArguments* args) {
-    if (!IsHidden(args->geometryUserPtr, reinterpret_cast<const RTCRayHit*>(args->rayhit)->ray))
+    if (!IsHidden(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                  reinterpret_cast<const RTCRayHit*>(args->rayhit)->ray))
         IntersectCallback<S>(args);
 }
 
 template <typename S>
 void SeenOccludedCallback(const RTCOccludedFunctionNArguments* args) {
-    if (!IsHidden(args->geometryUserPtr, *reinterpret_cast<const RTCRay*>(args->ray)))
+    if (!IsHidden(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                  *reinterpret_cast<const RTCRay*>(args->ray)))
         OccludedCallback<S>(args);
 }
 

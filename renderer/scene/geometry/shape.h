@@ -81,7 +81,7 @@ struct Coverage {
     }
 };
 
-// What a ray asks for; bits, of the kinds that a shape can be hidden from.
+// Kinds of rays, as bits: shapes can be hidden from some.
 enum RayKind : unsigned { kOtherRay = 0, kCameraRay = 1, kShadowRay = 2 };
 
 struct Shape {

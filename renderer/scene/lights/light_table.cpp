@@ -254,7 +254,7 @@ void LightTable::AddAreaLights(const ShapeEntity& from, const TextureTable& text
     light.map = map.get();
     if (map) emissionMaps.push_back(std::move(map));
     if (shape->PrimitiveCount() == 0) {
-        const bool isMade = shape->material >= 0;  // else an error says what is wrong with it
+        const bool isMade = shape->material >= 0;  // otherwise an error names its fault
         if (isMade) warnings.Add(from.loc, "area light without area", "it gives no light");
         return;
     }

@@ -54,7 +54,7 @@ TEST(GltfNodes, ShareMeshesAsInstances) {
     EXPECT_EQ(d.instances[1].worldFromInstance(2, 3), 4);
 }
 
-// Meshes and lights of what is below an invisible node are left out; cameras are not.
+// Meshes and lights below an invisible node are left out; cameras are not.
 TEST(GltfNodes, HideWhatIsBelowInvisibleOnes) {
     const auto visibility = [](bool visible) {
         return json{{"KHR_node_visibility", {{"visible", visible}}}};

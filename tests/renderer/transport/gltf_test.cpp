@@ -1,120 +1,10 @@
 // Renders glTF files whose radiance is known, or that exist as pbrt files as well.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include "renderer/base/color.h"
-#include "renderer/image/image_io.h"
-#include "tests/renderer/input/gltf_files.h"
-#include "tests/renderer/scene_of.h"
-#include "tests/renderer/transport/pixel_statistics.h"
+#include "tests/renderer/transport/gltf_scene.h"
 
-// Its names would be in the way of those of the other tests.
 namespace lull::gltf_test {
 namespace {
-
-constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
-
-CompileOptions ImageOf(int size) {
-    CompileOptions options;
-    options.threads = 1;
-    options.film.resolution = Vec2i(size, size);
-    return options;
-}
-
-// Compiles the text of a pbrt-v3 file.
-std::unique_ptr<const Scene> Compiled(const std::string& text, int size) {
-    Warnings warnings;
-    auto scene = SceneOf(text, ImageOf(size), &warnings);
-    EXPECT_EQ(warnings.Total(), 0);
-    return scene;
-}
-
-std::unique_ptr<const Scene> Compiled(const Description& description, int size) {
-    Warnings warnings;
-    auto scene = Compile(description, ImageOf(size), warnings);
-    EXPECT_EQ(warnings.Total(), 0);
-    return scene;
-}
-
-// Compiles a file with its first camera, or with one 3 above the origin that sees from -1 to 1.
-std::unique_ptr<const Scene> Compiled(GltfFile file, int size = 4) {
-    if (!file.root.contains("cameras")) {
-        file.root["cameras"] = {
-            {{"type", "orthographic"},
-             {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}};
-        file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
-    }
-    const GltfFolder folder;
-    Warnings warnings;
-    const Description d = ParseGltf(folder.Write("scene.gltf", file.Text()), {}, warnings);
-    EXPECT_EQ(warnings.Total(), 0);
-    return Compiled(d, size);
-}
-
-struct Total {
-    Rgb mean;
-    float error;  // standard, of the green channel
-};
-
-Total Measure(const Scene& scene, Estimator estimator = Estimator::Combined, int samples = 256) {
-    const PixelStatistics pixels = MeasurePixels(scene, estimator, SamplerKind::Random, samples, 3);
-    EXPECT_EQ(pixels.rejected, 0);
-    Eigen::Array3d mean = Eigen::Array3d::Zero();
-    double variance = 0;
-    const double n = double(pixels.mean.size());
-    for (size_t i = 0; i < pixels.mean.size(); ++i) {
-        mean += pixels.mean[i] / n;
-        variance += pixels.variance[i].y();
-    }
-    return {mean.cast<float>(), float(std::sqrt(variance / samples) / n)};
-}
-
-// Adds the square from -1 to 1 in the plane z = 0, its front towards +z and its image upright.
-int Square(GltfFile* file, const json& material, bool withTexture = false) {
-    json attributes = {
-        {"POSITION", file->Floats({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3")}};
-    if (withTexture) {
-        attributes["NORMAL"] = file->Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
-        attributes["TEXCOORD_0"] = file->Floats({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2");
-    }
-    file->root["materials"].push_back(material);
-    return file->Mesh(attributes, {{"indices", file->Indices({0, 1, 2, 0, 2, 3})},
-                                   {"material", file->root["materials"].size() - 1}});
-}
-
-// Adds an image of bytes, RGB a pixel, and returns its texture.
-int Texture(GltfFile* file, const std::vector<std::array<int, 3>>& pixels, int width) {
-    std::vector<Rgb> linear;
-    for (const auto& p : pixels) {
-        Rgb c;
-        for (int i = 0; i < 3; ++i) c[i] = LinearFromSrgb(float(p[size_t(i)]) / 255);
-        linear.push_back(c);
-    }
-    const std::vector<std::byte> png = EncodePng(linear, width, int(pixels.size()) / width);
-    const int view = file->View(png);
-    file->root["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
-    file->root["textures"].push_back({{"source", file->root["images"].size() - 1}});
-    return int(file->root["textures"].size()) - 1;
-}
-
-json Matte(double r, double g, double b) {
-    return {{"pbrMetallicRoughness",
-             {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
-            {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
-}
-
-int AddLight(GltfFile* file, const json& light) {
-    file->root["extensions"]["KHR_lights_punctual"]["lights"].push_back(light);
-    return int(file->root["extensions"]["KHR_lights_punctual"]["lights"].size()) - 1;
-}
-
-// Adds a directional light from direction `d` that gives an irradiance of 1 at right angles.
-void Sun(GltfFile* file, const Vec3f& d) {
-    const int light = AddLight(file, {{"type", "directional"}, {"intensity", 683}});
-    const auto q = Eigen::Quaternionf::FromTwoVectors(Vec3f::UnitZ(), d);
-    file->Node({{"rotation", {q.x(), q.y(), q.z(), q.w()}},
-                {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
-}
 
 TEST(GltfScenes, AgreeWithPbrt) {
     // A coloured corner, lit by a lamp above and a point of light at the side; nothing in it is
@@ -283,10 +173,7 @@ TEST(GltfShutter, BlursByTheTimeThatIsCovered) {
         {{"samplers", {{{"input", times}, {"output", ways}}}},
          {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
     Sun(&file, Vec3f::UnitZ());
-    file.root["cameras"] = {
-        {{"type", "orthographic"},
-         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}};
-    file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
+    LookDown(&file);
     const GltfFolder folder;
     // It covers each point that is seen for half of the time.
     const auto blurred = Compiled(folder.Parse(file, {.frame = 0, .shutter = 1}), 4);
@@ -444,103 +331,6 @@ TEST(GltfMaterial, MayBeOpenBehind) {
             }
 }
 
-// A green sheet under the sun, above a white floor. Seen, the sheet is in the picture; hidden from
-// the camera, the floor is, in its shadow unless it casts none. It is the node's property or the
-// material's; the sheet is an instance, or moves, or shadow rays look for media, as there is glass.
-TEST(GltfNode, MayBeHiddenFromTheCameraAndShadowRays) {
-    for (const bool isHidden : {false, true})
-        for (const bool isShadowless : {false, true})
-            for (const std::string how : {"node", "material", "twice", "moving", "media"}) {
-                GltfFile file;
-                const int mesh = Square(&file, Matte(0, 1, 0));
-                json sheet = {{"mesh", mesh}, {"translation", {0, 0, 1}}, {"scale", {3, 3, 1}}};
-                json& owner = how == "material" ? file.root["materials"][0] : sheet;
-                owner["extras"]["lull"] = {{"hiddenFromCamera", isHidden},
-                                           {"castsNoShadow", isShadowless}};
-                file.Node(sheet);
-                if (how == "twice") {
-                    sheet["translation"] = {100, 0, 0};
-                    file.Node(sheet);
-                }
-                if (how == "moving") {
-                    const int times = file.Floats({0, 1}, "SCALAR");
-                    const int ways = file.Floats({0, 0, 1, 1, 0, 1}, "VEC3");
-                    file.root["animations"] = {
-                        {{"samplers", {{{"input", times}, {"output", ways}}}},
-                         {"channels",
-                          {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
-                }
-                if (how == "media") {
-                    json glass = Matte(1, 1, 1);
-                    glass["extensions"] = {
-                        {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                        {"KHR_materials_volume",
-                         {{"thicknessFactor", 1},
-                          {"attenuationDistance", 1},
-                          {"attenuationColor", {0.5, 0.5, 0.5}}}}};
-                    file.Node({{"mesh", Square(&file, glass)}, {"translation", {100, 0, 0}}});
-                }
-                file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}});
-                Sun(&file, Vec3f::UnitZ());
-                file.root["cameras"] = {
-                    {{"type", "orthographic"},
-                     {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}};
-                file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
-                const GltfFolder folder;
-                const GltfOptions opened{.frame = 0, .shutter = 1};
-                Description d = folder.Parse(file, how == "moving" ? opened : GltfOptions());
-                for (const bool isBidirectional : {false, true}) {
-                    if (isBidirectional && how == "media") continue;  // which bdpt has not
-                    if (isBidirectional) d.integrator.name = "bdpt";
-                    const Rgb seen = Measure(*Compiled(d, 4), Estimator::Combined, 16).mean * kPi;
-                    EXPECT_NEAR(seen.x(), isHidden && isShadowless ? 1 : 0, 1e-4f)
-                        << how << ' ' << isHidden << isShadowless << isBidirectional;
-                    if (!isHidden) {
-                        EXPECT_NEAR(seen.y(), 1, 1e-4f) << how;
-                    }
-                }
-            }
-}
-
-// The camera sees no sphere of a hidden light, which lights the floor as the point does.
-TEST(GltfNode, HidesTheSphereOfItsLight) {
-    for (const bool isHidden : {false, true}) {
-        GltfFile file;
-        file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}, {"scale", {0.05, 0.05, 1}}});
-        const int bulb = AddLight(
-            &file,
-            {{"type", "point"}, {"intensity", 683}, {"extras", {{"lull", {{"radius", 0.5}}}}}});
-        json node = {{"translation", {0, 0, 1}},
-                     {"extensions", {{"KHR_lights_punctual", {{"light", bulb}}}}}};
-        if (isHidden) node["extras"] = {{"lull", {{"hiddenFromCamera", true}}}};
-        file.Node(node);
-        file.root["cameras"] = {
-            {{"type", "orthographic"},
-             {"orthographic", {{"xmag", 0.04}, {"ymag", 0.04}, {"znear", 0}, {"zfar", 10}}}}};
-        file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
-        const Total t = Measure(*Compiled(file), Estimator::Combined, 1000);
-        // A bulb that is seen adds its own radiance: a watt per steradian from a disk of that
-        // radius.
-        const double bulbs = isHidden ? 0 : 1 / (kPi * 0.25);
-        EXPECT_NEAR(t.mean.y(), bulbs + 1 / kPi, 4.5 * t.error + 2e-3) << isHidden;
-    }
-}
-
-// What the camera does not see lights the floor: of two parallel squares of side 2 at a distance of
-// 1, each is lit by 0.4153 of what the other sends (Hottel's form factor).
-TEST(GltfNode, ShinesWhereItIsHidden) {
-    GltfFile file;
-    json lamp = Matte(0, 0, 0);
-    lamp["emissiveFactor"] = {1, 1, 1};
-    lamp["doubleSided"] = true;
-    file.Node({{"mesh", Square(&file, lamp)},
-               {"translation", {0, 0, 1}},
-               {"extras", {{"lull", {{"hiddenFromCamera", true}}}}}});
-    file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}});
-    const Total t = Measure(*Compiled(file), Estimator::Combined, 4000);
-    EXPECT_NEAR(t.mean.y(), 0.4153, 4.5 * t.error + 1e-4);
-}
-
 TEST(GltfMaterial, ColoursItsVertices) {
     GltfFile file;
     const int mesh = Square(&file, Matte(1, 0.5, 1));
@@ -587,10 +377,7 @@ TEST(GltfLights, FallOffInTheirCone) {
                              {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}});
         file.Node({{"translation", {tangent, 0, 1}},
                    {"extensions", {{"KHR_lights_punctual", {{"light", spot}}}}}});
-        file.root["cameras"] = {
-            {{"type", "orthographic"},
-             {"orthographic", {{"xmag", 1e-3}, {"ymag", 1e-3}, {"znear", 0}, {"zfar", 9}}}}};
-        file.Node({{"camera", 0}, {"translation", {0, 0, 3}}});
+        LookDown(&file, 1e-3);
         const double cosine = 1 / std::hypot(1, tangent), distance2 = 1 + tangent * tangent;
         const double x =
             std::clamp((cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer)), 0.0, 1.0);

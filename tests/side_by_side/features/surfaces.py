@@ -176,24 +176,23 @@ def rough_walls(scene):
     scene.collection.objects.link(bpy.data.objects.new("walls", mesh))
 
 
-@case("surface by kinds of rays: shadows without glass")
-def glass_by_rays(scene):
-    made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
+def clear_for(kind, made, bsdf, tree):
+    """Dresses the ball in a surface that is transparent for rays of a kind."""
     rays, clear, mix = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader'))
-    for a, b in ((rays.outputs['Is Shadow Ray'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2])):
+    for a, b in ((rays.outputs[kind], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2])):
         tree.links.new(a, b)
     cover(mix, tree)
     dressed(made)
+
+
+@case("surface by kinds of rays: shadows without glass")
+def glass_by_rays(scene):
+    clear_for('Is Shadow Ray', *surface('BsdfGlass', Roughness=0, IOR=1.45))
 
 
 @case("surface by kinds of rays: the camera does not see it")
 def unseen_by_rays(scene):
-    made, bsdf, tree = principled()
-    rays, clear, mix = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader'))
-    for a, b in ((rays.outputs['Is Camera Ray'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2])):
-        tree.links.new(a, b)
-    cover(mix, tree)
-    dressed(made)
+    clear_for('Is Camera Ray', *principled())
 
 
 def sheet(made):

@@ -8,21 +8,30 @@
 
 namespace lull {
 
+// Writes an image whose texel i has value(channel, i) in the channels R, G and B. Returns its file.
+template <typename Value>
+std::string WriteMap(const TemporaryDirectory& directory, const std::string& name, int width,
+                     int height, const Value& value) {
+    ExrImage image;
+    image.width = width;
+    image.height = height;
+    for (const char* channel : {"R", "G", "B"}) {
+        image.channels.push_back({channel, {}, false});
+        for (int i = 0; i < width * height; ++i)
+            image.channels.back().values.push_back(value(channel[0], i));
+    }
+    WriteExr(directory.File(name), image);
+    return directory.File(name);
+}
+
 // Its folder has an environment map, sky.exr.
 struct LightScene {
     TemporaryDirectory directory;
     std::unique_ptr<const Scene> scene;
 
     explicit LightScene(const std::string& world) {
-        ExrImage sky;
-        sky.width = 8;
-        sky.height = 4;
-        for (const char* channel : {"R", "G", "B"}) {
-            sky.channels.push_back({channel, {}, false});
-            for (int i = 0; i < 32; ++i)
-                sky.channels.back().values.push_back(float(i * 7 % 13) + (i == 13) * 90);
-        }
-        WriteExr(directory.File("sky.exr"), sky);
+        WriteMap(directory, "sky.exr", 8, 4,
+                 [](char, int i) { return float(i * 7 % 13) + (i == 13) * 90; });
         Warnings warnings;
         // A scene without a shape is worth a warning.
         const std::string text = "Camera \"perspective\"\nWorldBegin\n" + world +

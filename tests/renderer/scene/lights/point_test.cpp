@@ -76,17 +76,9 @@ TEST(Lights, SpotsInMirroredCoordinatesShineWhereTheirImagesDo) {
 
 // Writes a 4x2 image whose texel (x, y) is x + 10 y in red, and 1 in green and blue.
 std::string WriteBeam(const TemporaryDirectory& directory) {
-    ExrImage image;
-    image.width = 4;
-    image.height = 2;
-    for (const char* channel : {"R", "G", "B"}) {
-        image.channels.push_back({channel, {}, false});
-        for (int i = 0; i < 8; ++i)
-            image.channels.back().values.push_back(channel[0] == 'R' ? float(i % 4 + 10 * (i / 4))
-                                                                     : 1);
-    }
-    WriteExr(directory.File("beam.exr"), image);
-    return directory.File("beam.exr");
+    return WriteMap(directory, "beam.exr", 4, 2, [](char channel, int i) {
+        return channel == 'R' ? float(i % 4 + 10 * (i / 4)) : 1;
+    });
 }
 
 LightSample SampleOf(const Scene& scene, const Vec3f& from) {

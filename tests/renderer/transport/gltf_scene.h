@@ -1,0 +1,123 @@
+// Makes scenes of glTF files, and measures their radiance.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "renderer/base/color.h"
+#include "renderer/image/image_io.h"
+#include "tests/renderer/input/gltf_files.h"
+#include "tests/renderer/scene_of.h"
+#include "tests/renderer/transport/pixel_statistics.h"
+
+// Its names would be in the way of those of other tests.
+namespace lull::gltf_test {
+
+inline constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
+
+inline CompileOptions ImageOf(int size) {
+    CompileOptions options;
+    options.threads = 1;
+    options.film.resolution = Vec2i(size, size);
+    return options;
+}
+
+// Compiles the text of a pbrt-v3 file.
+inline std::unique_ptr<const Scene> Compiled(const std::string& text, int size) {
+    Warnings warnings;
+    auto scene = SceneOf(text, ImageOf(size), &warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    return scene;
+}
+
+inline std::unique_ptr<const Scene> Compiled(const Description& description, int size) {
+    Warnings warnings;
+    auto scene = Compile(description, ImageOf(size), warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    return scene;
+}
+
+// Adds a camera 3 above the origin that sees from -half to half.
+inline void LookDown(GltfFile* file, double half = 1) {
+    file->root["cameras"] = {
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", half}, {"ymag", half}, {"znear", 0}, {"zfar", 10}}}}};
+    file->Node({{"camera", 0}, {"translation", {0, 0, 3}}});
+}
+
+// Compiles a file with its first camera, or with one 3 above the origin that sees from -1 to 1.
+inline std::unique_ptr<const Scene> Compiled(GltfFile file, int size = 4) {
+    if (!file.root.contains("cameras")) LookDown(&file);
+    const GltfFolder folder;
+    Warnings warnings;
+    const Description d = ParseGltf(folder.Write("scene.gltf", file.Text()), {}, warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+    return Compiled(d, size);
+}
+
+struct Total {
+    Rgb mean;
+    float error;  // standard, of the green channel
+};
+
+inline Total Measure(const Scene& scene, Estimator estimator = Estimator::Combined,
+                     int samples = 256) {
+    const PixelStatistics pixels = MeasurePixels(scene, estimator, SamplerKind::Random, samples, 3);
+    EXPECT_EQ(pixels.rejected, 0);
+    Eigen::Array3d mean = Eigen::Array3d::Zero();
+    double variance = 0;
+    const double n = double(pixels.mean.size());
+    for (size_t i = 0; i < pixels.mean.size(); ++i) {
+        mean += pixels.mean[i] / n;
+        variance += pixels.variance[i].y();
+    }
+    return {mean.cast<float>(), float(std::sqrt(variance / samples) / n)};
+}
+
+// Adds the square from -1 to 1 in the plane z = 0, its front towards +z and its image upright.
+inline int Square(GltfFile* file, const json& material, bool withTexture = false) {
+    json attributes = {
+        {"POSITION", file->Floats({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3")}};
+    if (withTexture) {
+        attributes["NORMAL"] = file->Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+        attributes["TEXCOORD_0"] = file->Floats({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2");
+    }
+    file->root["materials"].push_back(material);
+    return file->Mesh(attributes, {{"indices", file->Indices({0, 1, 2, 0, 2, 3})},
+                                   {"material", file->root["materials"].size() - 1}});
+}
+
+// Adds an image of bytes, RGB a pixel, and returns its texture.
+inline int Texture(GltfFile* file, const std::vector<std::array<int, 3>>& pixels, int width) {
+    std::vector<Rgb> linear;
+    for (const auto& p : pixels) {
+        Rgb c;
+        for (int i = 0; i < 3; ++i) c[i] = LinearFromSrgb(float(p[size_t(i)]) / 255);
+        linear.push_back(c);
+    }
+    const std::vector<std::byte> png = EncodePng(linear, width, int(pixels.size()) / width);
+    const int view = file->View(png);
+    file->root["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
+    file->root["textures"].push_back({{"source", file->root["images"].size() - 1}});
+    return int(file->root["textures"].size()) - 1;
+}
+
+inline json Matte(double r, double g, double b) {
+    return {{"pbrMetallicRoughness",
+             {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+            {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
+}
+
+inline int AddLight(GltfFile* file, const json& light) {
+    file->root["extensions"]["KHR_lights_punctual"]["lights"].push_back(light);
+    return int(file->root["extensions"]["KHR_lights_punctual"]["lights"].size()) - 1;
+}
+
+// Adds a directional light from direction `d` that gives an irradiance of 1 at right angles.
+inline void Sun(GltfFile* file, const Vec3f& d) {
+    const int light = AddLight(file, {{"type", "directional"}, {"intensity", 683}});
+    const auto q = Eigen::Quaternionf::FromTwoVectors(Vec3f::UnitZ(), d);
+    file->Node({{"rotation", {q.x(), q.y(), q.z(), q.w()}},
+                {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+}
+
+}  // namespace lull::gltf_test
