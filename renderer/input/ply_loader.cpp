@@ -8,6 +8,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "renderer/files/text_file.h"
@@ -324,6 +326,11 @@ void WarnOfOmissions(const PlyElement& element, const FileLoc& loc, Warnings& wa
     const bool isVertex = element.name == "vertex";
     if ((isVertex || element.name == "face") && (has("red") || has("diffuse_red") || has("r")))
         warnings.Add(loc, "colours of a PLY file are left out; glTF files can have them");
+    std::unordered_set<std::string_view> names;
+    for (const PlyProperty& property : element.properties)
+        if (!names.insert(property.name).second && (isVertex || element.name == "face"))
+            warnings.Add(loc, "PLY property given twice, of which one counts",
+                         Printable(property.name));
     const bool hasUvs = std::ranges::any_of(kUvs, [&](const auto& uv) { return has(uv.first); });
     for (const PlyProperty& property : element.properties)
         if (isVertex && !hasUvs && (IsWedgeUvs(property) || property.name.starts_with("tex")))

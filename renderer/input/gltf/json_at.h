@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -182,13 +183,19 @@ struct JsonAt {
         extension.Object();
         f(extension);
     }
-    // Calls f with the extras of the object for lull.
+    // Calls f with the extras of the object for lull; warns of members that are not among `known`.
     template <typename F>
-    void Extras(const F& f) const {
+    void Extras(std::initializer_list<const char*> known, const F& f) const {
         if (!Has("extras") || !value.at("extras").contains("lull")) return;
         const JsonAt extras = Member("extras").Member("lull");
         extras.Object();
+        for (const auto& [key, v] : extras.value.items())
+            if (std::ranges::find(known, key) == known.end())
+                json.warnings.Add(extras.Loc(), "unknown property of lull's own", Printable(key));
         f(extras);
+    }
+    void Extras(std::initializer_list<const char*> known) const {
+        Extras(known, [](const JsonAt&) {});
     }
 
   private:

@@ -196,6 +196,7 @@ void CheckNode(const JsonAt& o) {
                 fmt::format("is {}, but there are only {} lights", light, count));
     });
     o.Extension("KHR_node_visibility", [](const JsonAt& e) { e.Bool("visible"); });
+    o.Extras({"hiddenFromCamera", "castsNoShadow"});
 }
 
 // Textures are named all over a material and its extensions, always by members called ...Texture.
@@ -282,6 +283,7 @@ void CheckMaterial(const JsonAt& o) {
         e.NumberWithin("anisotropyStrength", 0, 1);
         e.Number("anisotropyRotation");
     });
+    o.Extras({"addedInterface", "spread", "openBehind", "hiddenFromCamera", "castsNoShadow"});
     CheckTextureInfos(o);
 }
 
@@ -299,13 +301,14 @@ void CheckCamera(const JsonAt& o) {
         for (const char* name : {"yfov", "znear"}) view.Required(name);
     else
         for (const char* name : {"xmag", "ymag", "znear", "zfar"}) view.Required(name);
-    o.Extras([](const JsonAt& lens) {
-        lens.Numbers("shift", 2);
-        lens.Number("lensRadius");
-        lens.Number("focusDistance");
-        lens.Number("clipStart");
-        lens.Number("clipEnd");
-    });
+    o.Extras({"shift", "lensRadius", "focusDistance", "clipStart", "clipEnd"},
+             [](const JsonAt& lens) {
+                 lens.Numbers("shift", 2);
+                 lens.Number("lensRadius");
+                 lens.Number("focusDistance");
+                 lens.Number("clipStart");
+                 lens.Number("clipEnd");
+             });
 }
 
 void CheckImage(const JsonAt& o) {
@@ -353,7 +356,7 @@ void CheckLights(const JsonAt& root) {
             light.NotBelowZero("color");
             light.Number("intensity");
             light.Number("range");
-            light.Extras([](const JsonAt& e) {
+            light.Extras({"radius", "angle", "profile"}, [](const JsonAt& e) {
                 for (const char* name : {"radius", "angle"}) e.Number(name);
                 e.String("profile");
             });

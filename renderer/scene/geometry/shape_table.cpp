@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/geometry/shapes/placement.h"
 #include "renderer/scene/geometry/shapes/shape_factory.h"
 
 namespace lull {
@@ -66,11 +67,11 @@ ShapeTable::ShapeTable(const Description& description, const TextureTable& textu
         objectBounds.emplace_back();
         for (const ShapeEntity& entity : object.shapes) objectBounds.back().Extend(add(entity));
     }
-    AddInstances(description, objectBounds);
+    AddInstances(description, objectBounds, warnings);
 }
 
 void ShapeTable::AddInstances(const Description& description,
-                              std::span<const Bounds3f> objectBounds) {
+                              std::span<const Bounds3f> objectBounds, Warnings& warnings) {
     std::vector<FileLoc> places;
     const Shutter shutter = ReadShutter(description.camera);
     for (const InstanceEntity& entity : description.instances) {
@@ -78,7 +79,7 @@ void ShapeTable::AddInstances(const Description& description,
         if (b.IsEmpty()) continue;
         Instance instance{entity.object, -1, entity.worldFromInstance, Mat4d::Identity(),
                           int(&entity - description.instances.data())};
-        if (entity.motion >= 0) AddMotion(description, entity, shutter, &instance);
+        if (entity.motion >= 0) AddMotion(description, entity, shutter, &instance, warnings);
         instance.instanceFromWorld = instance.worldFromInstance.inverse();
         if (!instance.instanceFromWorld.allFinite())
             throw Error(entity.loc, "the instance's transform cannot be inverted");
@@ -111,11 +112,16 @@ void ShapeTable::LimitReach(std::span<const FileLoc> placesOfInstances) {
 // Gives an instance the motion that the description has for it, or the place where it is all the
 // time that the shutter is open.
 void ShapeTable::AddMotion(const Description& description, const InstanceEntity& entity,
-                           const Shutter& shutter, Instance* instance) {
+                           const Shutter& shutter, Instance* instance, Warnings& warnings) {
     const auto& [startTime, endTime] = description.transformTimes;
     std::vector<AnimatedTransform> transforms;
-    for (const TransformPair& pair : description.motions[entity.motion])
+    for (const TransformPair& pair : description.motions[entity.motion]) {
+        if (Mirrors(pair.at[0]) != Mirrors(pair.at[1]))
+            warnings.Add(entity.loc,
+                         "motion from a pose to a mirrored one, which no rotation joins: it is "
+                         "turned and flattened between them");
         transforms.emplace_back(pair.at[0], pair.at[1], startTime, endTime, shutter);
+    }
     instance->worldFromInstance = ProductAt(transforms, 0);
     if (std::all_of(transforms.begin(), transforms.end(),
                     [](const AnimatedTransform& t) { return t.IsConstant(); }))

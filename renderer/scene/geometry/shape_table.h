@@ -62,8 +62,8 @@ struct ShapeTable {
     Vec2f Uv(int shape, uint32_t primitive, float b1, float b2) const;
 
   private:
-    void AddInstances(const Description&, std::span<const Bounds3f> objectBounds);
-    void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*);
+    void AddInstances(const Description&, std::span<const Bounds3f> objectBounds, Warnings&);
+    void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*, Warnings&);
     void LimitReach(std::span<const FileLoc> placesOfInstances);
     void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,
                         SurfaceInteraction*) const;

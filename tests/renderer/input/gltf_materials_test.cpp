@@ -240,6 +240,23 @@ TEST(GltfMaterials, WarnOfNumbersBeyondTheirRange) {
     EXPECT_EQ(warnings.Counts().at("number beyond 0 to 1, to which it is clamped"), 2);
 }
 
+TEST(GltfMaterials, WarnOfUnknownPropertiesOfOurOwn) {
+    GltfFile file;
+    file.root["materials"] = {
+        {{"extras", {{"lull", {{"openBehind", true}, {"openbehind", true}}}}}}};
+    file.root["cameras"] = {{{"type", "perspective"},
+                             {"perspective", {{"yfov", 1}, {"znear", 0.1}}},
+                             {"extras", {{"lull", {{"lensradius", 1}}}, {"other", 1}}}}};
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "point"}, {"extras", {{"lull", {{"width", 1}}}}}}};
+    file.Node({{"mesh", file.Triangle({{"material", 0}})},
+               {"extras", {{"lull", {{"castsNoShadow", true}, {"hidden", true}}}}}});
+    Warnings warnings;
+    kFolder.Parse(file, {}, &warnings);
+    EXPECT_EQ(warnings.Total(), 4);
+    EXPECT_EQ(warnings.Counts().at("unknown property of lull's own"), 4);
+}
+
 TEST(GltfMaterials, CarryDiffuseTransmission) {
     GltfFile file;
     file.root["materials"] = {{{"extensions",

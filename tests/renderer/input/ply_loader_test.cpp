@@ -169,6 +169,17 @@ TEST_F(Ply, WarnsOfWhatIsLeftOut) {
               5);
 }
 
+TEST_F(Ply, WarnsOfPropertiesGivenTwice) {
+    const MeshData mesh =
+        Load("ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(kPositions) +
+             "property float x\nelement face 1\n" + kFaces +
+             "element other 1\nproperty int a\nproperty int a\nend_header\n"
+             "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n1 2\n");
+    EXPECT_EQ(mesh.positions[1], Vec3f(1, 0, 0));
+    EXPECT_EQ(warnings.Total(), 1);
+    EXPECT_EQ(warnings.Counts().at("PLY property given twice, of which one counts"), 1);
+}
+
 TEST_F(Ply, PropertiesInAnyOrderAndType) {
     for (const std::string format : kFormats) {
         PlyWriter ply(format);

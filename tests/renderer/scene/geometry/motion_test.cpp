@@ -135,6 +135,21 @@ std::string Numbers(const Mat4d& m) {
     return text + "]";
 }
 
+TEST(Motion, WarnsOfMirroredPoses) {
+    const auto warningsOf = [](const char* end) {
+        Warnings warnings;
+        SceneOf(WorldText(std::string("ActiveTransform EndTime Scale ") + end +
+                              " ActiveTransform All Shape \"disk\" LightSource \"point\"",
+                          "Camera \"perspective\" \"float shutterclose\" 1"),
+                {}, &warnings);
+        return warnings.Counts().count(
+            "motion from a pose to a mirrored one, which no rotation joins: it is turned and "
+            "flattened between them");
+    };
+    EXPECT_EQ(warningsOf("-1 1 1"), 1u);
+    EXPECT_EQ(warningsOf("-2 -1 1"), 0u);
+}
+
 // Instances, shapes, and shapes within instances that move, of each kind.
 TEST(Motion, MovingScenesAreAtEachTimeTheScenesThatStandThere) {
     const Mat4d outer0 = Translation(0.3, -0.2, 0.1) * Rotation(70, {1, -1, 0.5});
