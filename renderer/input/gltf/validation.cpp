@@ -108,6 +108,14 @@ void CheckPrimitive(const JsonAt& o) {
     o.Required("attributes");
     o.ForEachValue("attributes", [](const JsonAt& a) { a.IndexItself("accessors"); });
     o.Index("indices", "accessors");
+    const bool isPacked =
+        o.Has("extensions") && o.Member("extensions").Has("KHR_draco_mesh_compression");
+    if (o.Has("indices") && !isPacked) {
+        const auto indices = o.value.at("indices").get<size_t>();
+        if (!o.json.root.at("accessors").at(indices).contains("bufferView"))
+            o.Member("indices").Fail(
+                "is an accessor without a \"bufferView\", which is not modelled for indices");
+    }
     o.ForEach("targets", [](const JsonAt& target) {
         for (const auto& [name, accessor] : target.value.items())
             JsonAt{target.json, accessor, target.path + "/" + Printable(name)}.IndexItself(

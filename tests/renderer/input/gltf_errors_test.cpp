@@ -68,6 +68,10 @@ TEST(GltfErrors, NameTheirPlace) {
         {"/accessors/0/byteOffset", 30,
          "/accessors/0: its 3 elements go beyond the 36 bytes of "
          "/bufferViews/0"},
+        {"/accessors/2",
+         {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}},
+         "/meshes/0/primitives/0/indices: is an accessor without a \"bufferView\", which is not "
+         "modelled for indices"},
         {"/accessors/2/componentType", 5126,
          "/accessors/2: has to hold unsigned integers, as indices do"},
         {"/accessors/1/count", 2, "/meshes/0/primitives/0: has 2 TEXCOORD_0 for 3 vertices"},
