@@ -114,7 +114,7 @@ void CheckPrimitive(const JsonAt& o) {
         const auto indices = o.value.at("indices").get<size_t>();
         if (!o.json.root.at("accessors").at(indices).contains("bufferView"))
             o.Member("indices").Fail(
-                "is an accessor without a \"bufferView\", which is not modelled for indices");
+                "is an accessor without a \"bufferView\", which is not supported for indices");
     }
     o.ForEach("targets", [](const JsonAt& target) {
         for (const auto& [name, accessor] : target.value.items())

@@ -71,7 +71,7 @@ TEST(GltfErrors, NameTheirPlace) {
         {"/accessors/2",
          {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}},
          "/meshes/0/primitives/0/indices: is an accessor without a \"bufferView\", which is not "
-         "modelled for indices"},
+         "supported for indices"},
         {"/accessors/2/componentType", 5126,
          "/accessors/2: has to hold unsigned integers, as indices do"},
         {"/accessors/1/count", 2, "/meshes/0/primitives/0: has 2 TEXCOORD_0 for 3 vertices"},
