@@ -173,8 +173,10 @@ RowSource MeansOf(const RgbImage& image) {
 
 int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Picture picture,
                    ResultFiles* results) {
-    const auto& [film, denoised, result, layers, format] = picture;
-    ExrImage exr = MakeExr(origin, film, result);
+    const Film& film = picture.film;
+    const DenoisedImage* denoised = picture.denoised;
+    const PictureFormat& format = picture.format;
+    ExrImage exr = MakeExr(origin, film, picture.result);
     if (denoised) {
         const RowSource noisy =
             format.isTransparent ? WithoutBackground(MeansOf(film), false, film) : MeansOf(film);
@@ -183,7 +185,7 @@ int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Pictu
         exr.attributes["denoised"] = kDenoisedNote;
     }
     std::ranges::move(picture.layers.channels, std::back_inserter(exr.channels));
-    exr.attributes.insert(layers.attributes.begin(), layers.attributes.end());
+    exr.attributes.insert(picture.layers.attributes.begin(), picture.layers.attributes.end());
     ApplyTo(&exr, format);
     RowSource colours = denoised ? MeansOf(denoised->image) : MeansOf(film);
     const RgbImage foreground{exr.width, exr.height, std::move(picture.layers.colours)};
