@@ -8,6 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "stopping/base/hdf5_heaps.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
@@ -120,9 +121,10 @@ Hdf5Group Hdf5Group::Open(const std::string& path) {
     // The library does not say why it cannot.
     if (const std::string reason = ReasonNotToRead(path); !reason.empty())
         Fail("open it: " + reason);
-    std::FILE* file = std::fopen(path.c_str(), "rb");
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                               std::fclose);
     if (!file) Fail(std::string("open it: ") + std::strerror(errno));
-    std::fclose(file);
+    CheckGlobalHeaps(file.get());
     return Hdf5Group(
         Share(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it as HDF5"));
 }

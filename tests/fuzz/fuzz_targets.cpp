@@ -235,7 +235,7 @@ void FuzzStudyTexts(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     try {
         AllStudyTexts(ReadStudyTexts(path));
-    } catch (const Error&) {
+    } catch (const std::runtime_error&) {
     }
 }
 

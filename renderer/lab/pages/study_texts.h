@@ -17,7 +17,7 @@ std::string DefaultStudyTexts();
 // after such a line replace the text of that key, and others stay unchanged. Throws Error
 // beginning with "path:line" for an unknown or repeated key, or a {name} that the page's own
 // text does not have; and for a file that cannot be read, is empty or longer than anybody would
-// read.
+// read. Throws std::runtime_error for one that is not UTF-8 or has marks of its end amid the text.
 StudyTexts ReadStudyTexts(const std::string& path);
 
 // Returns all texts of a page, of which `own` replaces some.

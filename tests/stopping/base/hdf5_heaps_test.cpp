@@ -1,0 +1,64 @@
+#include "stopping/base/hdf5_heaps.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "stopping/base/hdf5_file.h"
+#include "tests/stopping/scratch_file.h"
+
+namespace lull {
+namespace {
+
+std::string ContentsOf(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string TextIn(const std::string& path) {
+    try {
+        return Hdf5Group::Open(path).String("text");
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+}
+
+// The library never returned from an object that has no size, or one so large that the sum with its
+// header is 0.
+TEST(GlobalHeaps, HaveObjectsThatEnd) {
+    const ScratchFile file(".h5");
+    {
+        Hdf5Group root = Hdf5Group::Create(file.path);
+        root.SetString("text", "thirteen more");
+        // Beyond the first chunk that is read.
+        root.AddArray<double>("x", std::vector<int64_t>{200000}, std::vector<double>(200000, 1));
+        root.SetString("second", std::string(3000, 'x'));
+    }
+    EXPECT_EQ(TextIn(file.path), "thirteen more");
+
+    const std::string good = ContentsOf(file.path);
+    int heaps = 0;
+    for (size_t at = good.find("GCOL"); at != good.npos; at = good.find("GCOL", at + 4), ++heaps)
+        for (const uint16_t index : {0, 1})
+            for (const uint64_t size :
+                 {uint64_t(0), ~uint64_t(0), ~uint64_t(15), uint64_t(1) << 40}) {
+                if (index == 1 && size == 0) continue;  // an empty text
+                std::string bad = good;
+                bad.replace(at + 16, 2, reinterpret_cast<const char*>(&index), 2);
+                bad.replace(at + 24, 8, reinterpret_cast<const char*>(&size), 8);
+                std::ofstream(file.path, std::ios::binary) << bad;
+                EXPECT_EQ(TextIn(file.path), "cannot read its texts: a heap of them is damaged")
+                    << at << " " << index << " " << size;
+            }
+    EXPECT_GE(heaps, 1);
+    for (size_t size = 0; size < good.size(); size += 509) {
+        std::ofstream(file.path, std::ios::binary) << good.substr(0, size);
+        EXPECT_NE(TextIn(file.path), "thirteen more");
+    }
+}
+
+}  // namespace
+}  // namespace lull
