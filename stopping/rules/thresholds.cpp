@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "stopping/base/input_file.h"
-#include "stopping/base/text_encoding.h"
 #include "stopping/base/text_lines.h"
 
 namespace lull {
@@ -31,8 +30,9 @@ ThresholdsRow ParseRow(const std::string& line) {
     if (fields.empty() || fields[0].empty())
         throw std::invalid_argument("the name of the viewpoint is missing");
     // As where files were put together; written first in a file, it would be taken for its own.
-    if (fields[0].starts_with(kByteOrderMark) || !WideEncoding(fields[0]).empty())
-        throw std::invalid_argument("the name begins with a byte order mark; remove it");
+    for (const char* mark : {"\xef\xbb\xbf", "\xff\xfe", "\xfe\xff"})
+        if (fields[0].starts_with(mark))
+            throw std::invalid_argument("the name begins with a byte order mark; remove it");
     ThresholdsRow row{fields[0], {}};
     for (size_t i = 1; i < fields.size(); ++i) {
         const char *begin = fields[i].data(), *end = begin + fields[i].size();
