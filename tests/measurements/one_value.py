@@ -72,7 +72,7 @@ QUANTITIES = [
     ('bytes of a pixel with a half buffer', RENDERING, 'film takes 24 bytes; # with', 'of which the film takes 24 or #'),
     ('shortest time by --denoise, s', (*TIMES, min), 'after # to [0-9]+ s of CPU time', 'takes # to [0-9]+ s of CPU time in'),
     ('longest of the 13, s', RENDERER, 'after 2 to # s of CPU time', 'takes 2 to # s of CPU time in 13'),
-    ('longest of the 17, s', (*TIMES, max), '160 to # s in four', r'\([0-9]+ and # s\)'),
+    ('longest of all, s', (*TIMES, max), '160 to # s in eight', r'\([0-9]+, [0-9]+, # and [0-9]+ s'),
     ('scenes compared with pbrt-v3', RENDERER, 'with those of pbrt-v3, # scenes', 'and on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),

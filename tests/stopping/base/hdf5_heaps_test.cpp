@@ -54,7 +54,7 @@ TEST(GlobalHeaps, HaveObjectsThatEnd) {
                     << at << " " << index << " " << size;
             }
     EXPECT_GE(heaps, 1);
-    for (size_t size = 0; size < good.size(); size += 509) {
+    for (size_t size = 0; size < good.size(); size += good.size() / 40) {
         std::ofstream(file.path, std::ios::binary) << good.substr(0, size);
         EXPECT_NE(TextIn(file.path), "thirteen more");
     }
