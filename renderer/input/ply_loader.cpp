@@ -324,11 +324,12 @@ void WarnOfOmissions(const PlyElement& element, const FileLoc& loc, Warnings& wa
     if (element.name == "tristrips")
         warnings.Add(loc, "triangle strips of a PLY file are left out; save them as faces");
     const bool isVertex = element.name == "vertex";
-    if ((isVertex || element.name == "face") && (has("red") || has("diffuse_red") || has("r")))
+    const bool isOfMesh = isVertex || element.name == "face";
+    if (isOfMesh && (has("red") || has("diffuse_red") || has("r")))
         warnings.Add(loc, "colours of a PLY file are left out; glTF files can have them");
     std::unordered_set<std::string_view> names;
     for (const PlyProperty& property : element.properties)
-        if (!names.insert(property.name).second && (isVertex || element.name == "face"))
+        if (isOfMesh && !names.insert(property.name).second)
             warnings.Add(loc, "PLY property given twice, of which one counts",
                          Printable(property.name));
     const bool hasUvs = std::ranges::any_of(kUvs, [&](const auto& uv) { return has(uv.first); });

@@ -1,4 +1,4 @@
-// Checks what the HDF5 library takes for granted.
+// Finds damage to HDF5 files that the library does not detect.
 #pragma once
 
 #include <cstdio>

@@ -5,11 +5,15 @@
 #include <fstream>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "stopping/base/input_file.h"
+#include "stopping/base/text_encoding.h"
 #include "stopping/base/text_lines.h"
 
 namespace lull {
+
+using namespace std::string_view_literals;
 
 namespace {
 
@@ -30,7 +34,7 @@ ThresholdsRow ParseRow(const std::string& line) {
     if (fields.empty() || fields[0].empty())
         throw std::invalid_argument("the name of the viewpoint is missing");
     // As where files were put together; written first in a file, it would be taken for its own.
-    for (const char* mark : {"\xef\xbb\xbf", "\xff\xfe", "\xfe\xff"})
+    for (const std::string_view mark : {kByteOrderMark, "\xff\xfe"sv, "\xfe\xff"sv})
         if (fields[0].starts_with(mark))
             throw std::invalid_argument("the name begins with a byte order mark; remove it");
     ThresholdsRow row{fields[0], {}};

@@ -172,6 +172,9 @@ struct JsonAt {
         for (const auto& [key, v] : member.value.items())
             f(JsonAt{json, v, member.path + "/" + Printable(key)});
     }
+    bool HasExtension(const std::string& name) const {
+        return Has("extensions") && Member("extensions").Has(name);
+    }
     // Calls f with an extension that the object has.
     template <typename F>
     void Extension(const std::string& name, const F& f) const {

@@ -108,9 +108,7 @@ void CheckPrimitive(const JsonAt& o) {
     o.Required("attributes");
     o.ForEachValue("attributes", [](const JsonAt& a) { a.IndexItself("accessors"); });
     o.Index("indices", "accessors");
-    const bool isPacked =
-        o.Has("extensions") && o.Member("extensions").Has("KHR_draco_mesh_compression");
-    if (o.Has("indices") && !isPacked) {
+    if (o.Has("indices") && !o.HasExtension("KHR_draco_mesh_compression")) {
         const auto indices = o.value.at("indices").get<size_t>();
         if (!o.json.root.at("accessors").at(indices).contains("bufferView"))
             o.Member("indices").Fail(
@@ -244,9 +242,7 @@ void CheckMaterial(const JsonAt& o) {
         pbr.Numbers("baseColorFactor", 4);
         pbr.Number("metallicFactor");
         pbr.Number("roughnessFactor");
-        const bool isUnlit =
-            o.Has("extensions") && o.Member("extensions").Has("KHR_materials_unlit");
-        if (!isUnlit)  // which shines as brightly as it says
+        if (!o.HasExtension("KHR_materials_unlit"))  // which shines as brightly as it says
             for (const char* name : {"baseColorFactor", "metallicFactor", "roughnessFactor"})
                 pbr.Clamped(name);
     }
