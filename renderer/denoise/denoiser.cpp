@@ -28,6 +28,8 @@ void Raise(const Blocks& errors, Blocks* blocks) {
         VisibleError& error = (*blocks)[i].value();
         error.estimate = std::max(error.estimate, errors[i]->estimate);
         error.upper = std::max(error.upper, errors[i]->upper);
+        error.worstPixels = std::max(error.worstPixels, errors[i]->worstPixels);
+        error.worst = std::max(error.worst, errors[i]->worst);
     }
 }
 

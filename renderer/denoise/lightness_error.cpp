@@ -14,7 +14,7 @@ namespace lull {
 namespace {
 
 constexpr int kSide = 10;         // sub-blocks a side
-constexpr double kUpper = 1.645;  // standard deviations, of a one-sided 95 %
+constexpr double kUpper = 1.282;  // standard deviations, of a one-sided 90 %
 constexpr int kSmoothRadius = kErrorReach;
 constexpr double kLeast = 0.01;  // of the mean deviation
 // Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
@@ -29,8 +29,9 @@ constexpr float kVisible = 1.13f;  // times the standard deviation of a sum of p
 constexpr double kUsual = 1.27;
 constexpr double kUsualDeviation = 0.25;
 // Standard deviation of the logarithm of the true error about its estimate, beyond the variances of
-// the samples and of the usual ratio.
-constexpr double kModelDeviation = 0.2;
+// the samples and of the usual ratio. Chosen on 13 scenes by three seeds, so that the bound of the
+// visible difference is exceeded in 5 % (tests/measurements/renderer.md).
+constexpr double kModelDeviation = 0.15;
 // The bound is not below this fraction of the samples' own bound, because of errors hidden under
 // the noise of unusual pictures.
 constexpr double kTrust = 0.8;

@@ -32,7 +32,7 @@ Planes AsSeen(Planes difference);
 // is not in it.
 struct LightnessError {
     double estimate = 0;
-    double upper = 0;  // not exceeded in 95 of 100 blocks
+    double upper = 0;  // not exceeded in 90 of 100 blocks
     double least = 0;  // the part that still changes; the others are not below
 };
 

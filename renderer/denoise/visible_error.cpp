@@ -1,10 +1,13 @@
 #include "renderer/denoise/visible_error.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "renderer/denoise/displayed_lightness.h"
 #include "renderer/denoise/missing_detail.h"
 #include "renderer/denoise/tile.h"
+#include "renderer/denoise/worst_pixels.h"
 #include "renderer/vision/visible_difference.h"
 
 namespace lull {
@@ -33,45 +36,96 @@ Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const floa
     return MissingDetail(crossed, ratio);
 }
 
+constexpr double kWhite = 100;  // in lightness
+
+// A block as it is compared with what it could be.
+struct ShownBlock {
+    Planes picture;
+    std::vector<float> slope;  // of lightness by luminance
+    std::vector<float> sure;   // share of the luminance that is not fireflies' doubtful light
+    VisibleReference reference;
+
+    // Compares the picture with itself, plus some colours, plus lightness that it lacks.
+    VisibleDifference Compare(const Planes& noise, float ratio, const Planes& missing) const {
+        Planes other = picture;
+        for (size_t i = 0; i < picture.Area(); ++i) {
+            const float luminance = slope[i] > 0 ? missing.values[i] / slope[i] : 0;
+            for (int c = 0; c < kColours; ++c)
+                other.Plane(c)[i] =
+                    sure[i] * picture.Plane(c)[i] + ratio * noise.Plane(c)[i] + luminance;
+        }
+        return FindVisibleDifference(Interleaved(other), reference);
+    }
+};
+
+ShownBlock Show(Planes picture, const Planes& returned, const DisplayModel& display) {
+    ShownBlock block;
+    block.picture = std::move(picture);
+    for (size_t i = 0; i < block.picture.Area(); ++i) {
+        const float y = LuminanceOf(block.picture, i);
+        block.slope.push_back(DisplayedLightness(y).slope);
+        block.sure.push_back(y > 0 ? std::max(0.f, 1 - returned.values[i] / y) : 1);
+    }
+    block.reference = PrepareReference(Interleaved(block.picture), block.picture.width,
+                                       block.picture.height, display);
+    return block;
+}
+
+// Returns half the difference of two pictures.
+Planes HalfDifference(const Halves& halves) {
+    Planes half = halves.a;
+    for (size_t i = 0; i < half.values.size(); ++i)
+        half.values[i] = (half.values[i] - halves.b.values[i]) / 2;
+    return half;
+}
+
+// Returns the error as if there were none in these pixels of a block.
+EstimatedError Without(std::span<const size_t> pixels, EstimatedError error,
+                       const PixelRect& block) {
+    for (const size_t i : pixels) {
+        const int x = block.min.x() + int(i) % block.Width(),
+                  y = block.min.y() + int(i) / block.Width();
+        for (Planes* plane : {&error.squared, &error.deviation, &error.least})
+            plane->Row(0, y)[x] = 0;
+    }
+    return error;
+}
+
 }  // namespace
 
 VisibleError MeasureVisibleError(const DenoisedPicture& denoised, const EstimatedError& error,
-                                 const PixelRect& block, const DisplayModel& display) {
-    const LightnessError lightness = MeasureLightnessError(error, block);
-    const ImageTile tile{block.min.x(), block.min.y(), block.max.x(), block.max.y()};
-    const Planes picture = Crop(denoised.picture, tile), structure = Crop(error.structure, tile);
-    const Planes returned = Crop(denoised.returned, tile);
-    const Halves halves{Crop(denoised.halves.a, tile), Crop(denoised.halves.b, tile)};
-    const Halves noisy{Crop(error.noisy.a, tile), Crop(error.noisy.b, tile)};
-    std::vector<float> slope, sure;  // of lightness by luminance; share of the luminance
-    for (size_t i = 0; i < picture.Area(); ++i) {
-        const float y = LuminanceOf(picture, i);
-        slope.push_back(DisplayedLightness(y).slope);
-        sure.push_back(y > 0 ? std::max(0.f, 1 - returned.values[i] / y) : 1);
-    }
-    const VisibleReference reference =
-        PrepareReference(Interleaved(picture), block.Width(), block.Height(), display);
+                                 const PixelRect& pixels, const DisplayModel& display) {
+    const ImageTile tile{pixels.min.x(), pixels.min.y(), pixels.max.x(), pixels.max.y()};
+    const ShownBlock block =
+        Show(Crop(denoised.picture, tile), Crop(denoised.returned, tile), display);
+    const Halves halves = Crop(denoised.halves, tile), noisy = Crop(error.noisy, tile);
+    const Planes structure = Crop(error.structure, tile);
+    Planes noise = HalfDifference(halves);
+
+    std::vector<float> wrong;  // in lightness
+    for (size_t i = 0; i < noise.Area(); ++i)
+        wrong.push_back(block.slope[i] * LuminanceOf(noise, i));
+    const Planes none(noise.width, noise.height, 1);
+    const std::vector<size_t> worst = WorstPixels(block.Compare(noise, 1, none), wrong);
+    const LightnessError lightness = MeasureLightnessError(Without(worst, error, pixels), pixels);
     const auto ratioOf = [&](double magnitude) {
         return lightness.least > 0 ? float(magnitude / lightness.least) : 1;
     };
-    // Adds to the picture the pattern of the halves' difference, and lightness that it lacks.
-    const auto difference = [&](float ratio, const Planes& missing) {
-        Planes other = picture;
-        for (size_t i = 0; i < picture.Area(); ++i) {
-            const float lacks = structure.values[i] + missing.values[i];
-            const float luminance = slope[i] > 0 ? lacks / slope[i] : 0;
-            for (int c = 0; c < kColours; ++c)
-                other.Plane(c)[i] = sure[i] * picture.Plane(c)[i] +
-                                    ratio * ((halves.a.Plane(c)[i] - halves.b.Plane(c)[i]) / 2) +
-                                    luminance;
-        }
-        return PooledDifference(FindVisibleDifference(Interleaved(other), reference));
-    };
-    VisibleError result;
     const float estimate = ratioOf(lightness.estimate), upper = ratioOf(lightness.upper);
-    result.estimate = difference(estimate, Planes(block.Width(), block.Height(), 1));
+    VisibleError result;
+    for (const size_t i : worst) {
+        const double most = std::min(kWhite, std::abs(double(upper * wrong[i])));
+        if (most >= kNoticedError) {
+            ++result.worstPixels;
+            result.worst = std::max(result.worst, most);
+        }
+        for (int c = 0; c < kColours; ++c) noise.Plane(c)[i] = 0;
+    }
+    Planes missing = MissingIn(halves, noisy, block.slope, upper);
+    for (size_t i = 0; i < missing.Area(); ++i) missing.values[i] += structure.values[i];
+    result.estimate = PooledDifference(block.Compare(noise, estimate, structure));
     result.upper =
-        std::max(result.estimate, difference(upper, MissingIn(halves, noisy, slope, upper)));
+        std::max(result.estimate, PooledDifference(block.Compare(noise, upper, missing)));
     return result;
 }
 

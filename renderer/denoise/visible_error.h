@@ -7,11 +7,18 @@
 namespace lull {
 
 // The visible difference (renderer/vision/visible_difference.h) between a block of the picture and
-// the true one.
+// the true one, without the noise of its worst pixels, one of 5,000: a single rare path would
+// decide for the block.
 struct VisibleError {
     double estimate = 0;
     double upper = 0;  // seldom exceeded
+    // How many of the worst pixels may be wrong by kNoticedError or more, and by how much at most,
+    // in lightness.
+    int worstPixels = 0;
+    double worst = 0;
 };
+
+inline constexpr double kNoticedError = 5;  // of a pixel, in lightness
 
 // Measures a block of at least 10 pixels a side. Half the difference of the denoised halves has the
 // pattern of the error; it is scaled to the error in lightness (MeasureLightnessError). Structure

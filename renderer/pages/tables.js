@@ -19,6 +19,7 @@ function showBlock(data, i) {
   if (block.end) rows.push(["end", blockEnds[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["masked noise, L*", block.visibleNoise.toFixed(2)]);
   if (block.visibleDifference) rows.push(["visible difference, denoised", `${block.visibleDifference.estimate.toFixed(1)}, upper bound ${block.visibleDifference.upper.toFixed(1)}`]);
+  if (block.visibleDifference && block.visibleDifference.worstPixels) rows.push(["worst pixels, not in it", `${showCount(block.visibleDifference.worstPixels)}, by up to ${block.visibleDifference.worst.toFixed(0)} in L*`]);
   if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["estimated stop", `${showCount(block.neededSpp)} spp`]);
   if (isNumber(block.neededSeconds)) rows.push(["missing CPU time (estimate)", `~${showSeconds(block.neededSeconds)}`]);
   byId("block-facts").replaceChildren(makeTable("", images.length > 1 ? ["", ...images.map(m => m.name)] : null, rows));

@@ -8,7 +8,7 @@ class Denoised:
     """A denoised image of height x width pixels, and its estimated error.
 
     `picture` is height x width x 3, float32, linear. `error` is the standard error of each pixel in L*.
-    `blocks` are (x, y, width, height), row by row. `estimate` and `upper` (exceeded in 5 of 100 blocks)
+    `blocks` are (x, y, width, height), row by row. `estimate` and `upper` (exceeded in 10 of 100 blocks)
     are their visible differences from the true image, as arrays of rows x columns.
     """
     picture: np.ndarray

@@ -168,7 +168,7 @@ PYBIND11_MODULE(lull_denoising, module) {
             "observers just accept 3.1.")
         .def_property_readonly(
             "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
-            "Upper bound of the visible difference, exceeded in 5 of 100 blocks.")
+            "Upper bound of the visible difference, exceeded in 10 of 100 blocks.")
         .def("__repr__", [](const Denoised& d) { return ReprOf(d); });
 
     module.def("denoise", &Denoise, "a"_a, "b"_a, py::kw_only(), "albedo"_a = py::none(),

@@ -56,19 +56,31 @@ DenoisedImage DenoisePreview(const Film& film, int64_t mostPixels) {
 
 std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
     std::vector<double> upper;
-    for (const auto& error : blocks)
-        if (error) upper.push_back(error->upper);
+    int64_t worstPixels = 0;
+    double worst = 0;
+    for (const auto& error : blocks) {
+        if (!error) continue;
+        upper.push_back(error->upper);
+        worstPixels += error->worstPixels;
+        worst = std::max(worst, error->worst);
+    }
     if (upper.empty())
         return fmt::format(
             "visible difference unknown: blocks have less than {} pixels a side, or few samples",
             kSmallestMeasuredSide);
     std::ranges::sort(upper);
     const bool isKnown = upper.size() == blocks.size();
-    return fmt::format(
+    std::string text = fmt::format(
         "visible difference from the true image probably at most {:.2g} in half of the {}blocks{} "
         "and {:.2g} in all (accepted: {})",
         upper[upper.size() / 2], isKnown ? "" : fmt::format("{} ", upper.size()),
         isKnown ? "" : " of which it is known", upper.back(), kVisibilityThreshold);
+    if (worstPixels == 1)
+        text += fmt::format(", except for a pixel that may be wrong by {:.0f} in L*", worst);
+    if (worstPixels > 1)
+        text += fmt::format(", except for {} pixels that may be wrong by up to {:.0f} in L*",
+                            worstPixels, worst);
+    return text;
 }
 
 std::vector<ExrChannel> ColourChannels(const std::string& layer, std::span<const float> rgb) {

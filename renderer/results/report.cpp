@@ -158,7 +158,9 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
         for (size_t i = 0; i < result.blocks.size(); ++i)
             if (const auto& error = denoised->blocks[i])
                 report["blocks"][i]["visibleDifference"] = {{"estimate", error->estimate},
-                                                            {"upper", error->upper}};
+                                                            {"upper", error->upper},
+                                                            {"worstPixels", error->worstPixels},
+                                                            {"worst", error->worst}};
     if (result.timeUp) AddShortfall(provenance, result, &report);
     AddCapped(provenance, result, &report);
     report["warnings"] = warnings;

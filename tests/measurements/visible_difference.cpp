@@ -3,6 +3,8 @@
 //   visible_difference DISPLAY WIDTH HEIGHT BLOCK   reads a reference and any number of pictures
 //       (linear RGB, 32-bit floats, row by row), and prints for each the visible difference of the
 //       whole and of each block, row by row, in a line
+//   visible_difference without DISPLAY WIDTH HEIGHT   prints for each picture the visible
+//       difference of the whole without its worst pixels
 //   visible_difference moments DISPLAY WIDTH HEIGHT POWER...   prints for each picture the mean
 //       powers of the difference of the whole, in lines of a channel of a band, and an empty line
 //   visible_difference sensitivity   reads lines of cycles per degree, square degrees and cd/m2,
@@ -13,9 +15,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <span>
 #include <string>
 
+#include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/denoise/displayed_lightness.h"
+#include "renderer/denoise/worst_pixels.h"
 #include "renderer/vision/visible_difference.h"
 
 using namespace lull;
@@ -53,6 +59,24 @@ static void PrintDifferences(const DisplayModel& display, int width, int height,
     }
 }
 
+static void PrintWithoutWorst(const DisplayModel& display, int width, int height) {
+    std::vector<float> reference(size_t(width) * size_t(height) * 3), picture(reference.size());
+    if (!ReadPicture(&reference)) return;
+    const VisibleReference prepared = PrepareReference(reference, width, height, display);
+    std::vector<float> lightness(size_t(width) * size_t(height));
+    const auto lightnessOf = [](std::span<const float> rgb) {
+        return DisplayedLightness(Luminance(Rgb(rgb[0], rgb[1], rgb[2]))).lightness;
+    };
+    while (ReadPicture(&picture)) {
+        for (size_t i = 0; i < lightness.size(); ++i)
+            lightness[i] = lightnessOf(std::span(picture).subspan(3 * i, 3)) -
+                           lightnessOf(std::span(reference).subspan(3 * i, 3));
+        for (const size_t i : WorstPixels(FindVisibleDifference(picture, prepared), lightness))
+            std::copy_n(&reference[3 * i], 3, &picture[3 * i]);
+        fmt::print("{:.6g}\n", PooledDifference(FindVisibleDifference(picture, prepared)));
+    }
+}
+
 static void PrintMoments(const DisplayModel& display, int width, int height,
                          const std::vector<double>& powers) {
     std::vector<float> reference(size_t(width) * size_t(height) * 3), picture(reference.size());
@@ -76,6 +100,11 @@ int main(int count, char** arguments) {
     try {
         if (count == 2 && arguments[1] == std::string("sensitivity")) {
             PrintSensitivities();
+            return 0;
+        }
+        if (count == 5 && arguments[1] == std::string("without")) {
+            PrintWithoutWorst(ParseDisplay(arguments[2]), std::atoi(arguments[3]),
+                              std::atoi(arguments[4]));
             return 0;
         }
         if (count > 5 && arguments[1] == std::string("moments")) {

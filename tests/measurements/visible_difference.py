@@ -135,7 +135,10 @@ def pool(powers, place, band):
 
 def curve(o, viewing, block):
     """Returns the logarithms of the visible differences at the spp of LADDER."""
-    out = measure(block, o.program, viewing, 'WIDTH', 'HEIGHT', str(SIDE))
+    if o.without_worst:
+        out = measure(block, o.program, 'without', viewing, 'WIDTH', 'HEIGHT')
+    else:
+        out = measure(block, o.program, viewing, 'WIDTH', 'HEIGHT', str(SIDE))
     return np.log([float(line.split()[0]) for line in out.splitlines()])
 
 
@@ -280,5 +283,6 @@ if __name__ == '__main__':
         s.set_defaults(run=run)
         if run == judge_blocks:
             s.add_argument('--blocks', action='store_true', help='a line a block')
+            s.add_argument('--without-worst', action='store_true', help='leave out the worst pixels, as `denoised` does')
     o = p.parse_args()
     o.run(o)

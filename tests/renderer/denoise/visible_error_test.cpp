@@ -84,6 +84,42 @@ TEST(VisibleError, IsNotThatOfOnePathWhichIsTaken) {
     EXPECT_LT(denoised.variance.Row(0, kMiddle)[kMiddle], 0.1f);
 }
 
+// Returns a grey picture whose halves differ in lightness by noise, and by much in some pixels.
+DenoisedPicture WithWildPixels(int side, int count) {
+    constexpr float kGrey = 0.2f, kNoise = 0.002f, kWild = 0.15f;
+    std::mt19937 generator(1);
+    std::normal_distribution<float> gauss(0, kNoise);
+    const Planes flat(side, side, 3, kGrey);
+    DenoisedPicture denoised{
+        flat, {flat, flat}, {flat, flat}, Planes(side, side, 3, 1e-6f), Planes(side, side, 1), {}};
+    for (int i = 0; i < side * side; ++i) {
+        const bool isWild =
+            i % (side * side / std::max(1, count)) == side * side / 200 && count > 0;
+        const float half = isWild ? kWild : gauss(generator);
+        for (int c = 0; c < 3; ++c) {
+            denoised.halves.a.Plane(c)[i] += half;
+            denoised.halves.b.Plane(c)[i] -= half;
+        }
+    }
+    denoised.noisy = denoised.halves;
+    return denoised;
+}
+
+// Few pixels that are still wrong do not decide for a block; they are told apart. Many do.
+TEST(VisibleError, IsNotThatOfFewPixels) {
+    constexpr int kSide = 130;
+    const VisibleError without = ErrorOf(WithWildPixels(kSide, 0)),
+                       few = ErrorOf(WithWildPixels(kSide, 3)),
+                       many = ErrorOf(WithWildPixels(kSide, 60));
+    EXPECT_EQ(without.worstPixels, 0);
+    EXPECT_EQ(without.worst, 0);
+    EXPECT_LT(few.upper, 1.2 * without.upper);
+    EXPECT_EQ(few.worstPixels, 3);
+    EXPECT_GT(few.worst, 20);
+    EXPECT_LT(few.worst, 80);
+    EXPECT_GT(many.upper, 2 * without.upper);
+}
+
 // Of two halves of a picture the noisy one has the error.
 TEST(VisibleError, IsThatOfTheBlock) {
     const DenoisedPicture denoised = Denoise(NoiseOnTheRight());

@@ -1,5 +1,6 @@
 #include "renderer/results/denoised_image.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "renderer/vision/visible_difference.h"
@@ -17,6 +18,18 @@ TEST(DenoisedImage, IsAcceptedWhereTheRuleStops) {
         return 0.0;
     };
     EXPECT_EQ(ParseRule(kDenoisedRuleName, context).threshold, kVisibilityThreshold);
+}
+
+TEST(DenoisedImage, NamesTheWorstPixels) {
+    const VisibleError clean{.estimate = 1, .upper = 2}, one{1, 2, 1, 7.4}, some{1, 2.5, 2, 20.6};
+    const std::string most =
+        "visible difference from the true image probably at most 2 in half of the blocks and 2 in "
+        "all (accepted: " +
+        fmt::format("{}", kVisibilityThreshold) + ")";
+    EXPECT_EQ(TextOf({clean, clean}), most);
+    EXPECT_EQ(TextOf({clean, one}), most + ", except for a pixel that may be wrong by 7 in L*");
+    EXPECT_TRUE(
+        TextOf({one, some}).ends_with(", except for 3 pixels that may be wrong by up to 21 in L*"));
 }
 
 PathSample WithoutSpikes(Sampler& sampler, const Vec2i& pixel, uint32_t index,

@@ -56,7 +56,7 @@ typedef struct lull_noisy_picture {
 typedef struct lull_block_error {
     int x, y, width, height; /* set by the caller; at least 10 pixels a side */
     double estimate;         /* estimated visible difference */
-    double upper;            /* upper bound, exceeded in 5 of 100 blocks */
+    double upper;            /* upper bound, exceeded in 10 of 100 blocks */
 } lull_block_error;
 
 /* The results. */
