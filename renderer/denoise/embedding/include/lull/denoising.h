@@ -51,8 +51,8 @@ typedef struct lull_noisy_picture {
     lull_halves depth;  /* of first hits: above 0; 0 or infinite without a hit */
 } lull_noisy_picture;
 
-/* Visible difference of a block from the true picture, on a display of 100 cd/m2 and 40 pixels per
- * degree; observers just accept 3.1. */
+/* Visible difference of a block from the true picture, but for the noise of its worst pixels, one
+ * of 5,000, on a display of 100 cd/m2 and 40 pixels per degree; observers just accept 3.1. */
 typedef struct lull_block_error {
     int x, y, width, height; /* set by the caller; at least 10 pixels a side */
     double estimate;         /* estimated visible difference */
