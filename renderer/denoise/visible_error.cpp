@@ -36,7 +36,7 @@ Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const floa
     return MissingDetail(crossed, ratio);
 }
 
-constexpr double kWhite = 100;  // in lightness
+constexpr double kMostError = 100;  // in lightness: black instead of white
 
 // A block as it is compared with what it could be.
 struct ShownBlock {
@@ -114,7 +114,7 @@ VisibleError MeasureVisibleError(const DenoisedPicture& denoised, const Estimate
     const float estimate = ratioOf(lightness.estimate), upper = ratioOf(lightness.upper);
     VisibleError result;
     for (const size_t i : worst) {
-        const double most = std::min(kWhite, std::abs(double(upper * wrong[i])));
+        const double most = std::min(kMostError, std::abs(double(upper * wrong[i])));
         if (most >= kNoticedError) {
             ++result.worstPixels;
             result.worst = std::max(result.worst, most);

@@ -29,6 +29,7 @@ import numpy as np
 CAP, PASS, SIDE = 10000, 20, 200
 LADDER = [250, 500, 1000, 2000, 4000, 7000, 9500]
 PLACES, BANDS = (1, 1.5, 2, 3), (1, 2, 4, np.inf)  # exponents of the pooling
+LIMIT = 3.1  # of `lull compare` and the rule `denoised`
 STILL = 0.577918291  # weight of still pictures in ColorVideoVDP
 
 
@@ -215,6 +216,9 @@ def report(o, viewing, blocks):
           f'viewpoints {np.mean([r[3] for r in rows]):.2f}; with one limit for all, {limit:.3g} (95 %: {low:.2g} to {high:.2g}), '
           f'{np.mean([100 * critical_error(human[v], stops_of(v, limit)) for v in views]):.1f}; accepted: median '
           f'{np.median(every):.3g}, from {every.min():.3g} to {every.max():.3g}', flush=True)
+    ratio = np.exp(np.mean([np.mean(np.log(np.divide(stops_of(v, LIMIT), human[v]))) for v in views]))
+    print(f'    with {LIMIT} for all {np.mean([100 * critical_error(human[v], stops_of(v, LIMIT)) for v in views]):.1f} %, '
+          f'predicted / human thresholds {ratio:.2f}', flush=True)
     for v, limit, error, r, h, s, a, _ in rows:
         print(f'    {v:<26} limit of the others {limit:.3g}: {error:.1f} %, correlation of logarithms within {r:.2f}, '
               f'people {h:.0f} spp, predicted {s:.0f}; accepted, median {a:.3g}', flush=True)
