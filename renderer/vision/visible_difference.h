@@ -55,7 +55,7 @@ VisibleDifference FindVisibleDifference(std::span<const float> image,
 VisibleDifference FindVisibleDifference(std::span<const float> image, const VisibleReference&);
 
 // Visible difference above which a block differs visibly. The one number that agrees best with the
-// human thresholds of 91 blocks is 3.4 (95 %: 2.1 to 4.9; docs/denoising.md).
+// human thresholds of 102 blocks is 3.45 (95 %: 2.0 to 5.1; docs/denoising.md).
 inline constexpr double kVisibilityThreshold = 3.1;
 
 // Returns the visible difference of a part of the picture, in pixels; not empty. This is the
