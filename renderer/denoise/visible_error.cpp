@@ -14,6 +14,8 @@ namespace lull {
 
 namespace {
 
+constexpr double kMostError = 100;  // in lightness: black instead of white
+
 // Returns the detail that a block lacks, in lightness, where its error is `ratio` times half the
 // difference of the halves.
 Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const float> slope,
@@ -36,16 +38,15 @@ Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const floa
     return MissingDetail(crossed, ratio);
 }
 
-constexpr double kMostError = 100;  // in lightness: black instead of white
-
-// A block as it is compared with what it could be.
+// The picture of a block, prepared for comparisons with pictures that differ by its error.
 struct ShownBlock {
     Planes picture;
     std::vector<float> slope;  // of lightness by luminance
     std::vector<float> sure;   // share of the luminance that is not fireflies' doubtful light
     VisibleReference reference;
 
-    // Compares the picture with itself, plus some colours, plus lightness that it lacks.
+    // Compares the picture with its sum with `ratio` times the noise, R, G, B, and the missing
+    // lightness, less the doubtful light.
     VisibleDifference Compare(const Planes& noise, float ratio, const Planes& missing) const {
         Planes other = picture;
         for (size_t i = 0; i < picture.Area(); ++i) {
@@ -79,21 +80,19 @@ Planes HalfDifference(const Halves& halves) {
     return half;
 }
 
-// Returns the error as if there were none in these pixels of a block.
-EstimatedError Without(std::span<const size_t> pixels, EstimatedError error,
-                       const PixelRect& block) {
+// Sets the error to 0 in these pixels of a block.
+void Clear(std::span<const size_t> pixels, const PixelRect& block, EstimatedError* error) {
     for (const size_t i : pixels) {
         const int x = block.min.x() + int(i) % block.Width(),
                   y = block.min.y() + int(i) / block.Width();
-        for (Planes* plane : {&error.squared, &error.deviation, &error.least})
+        for (Planes* plane : {&error->squared, &error->deviation, &error->least})
             plane->Row(0, y)[x] = 0;
     }
-    return error;
 }
 
 }  // namespace
 
-VisibleError MeasureVisibleError(const DenoisedPicture& denoised, const EstimatedError& error,
+VisibleError MeasureVisibleError(const DenoisedPicture& denoised, EstimatedError error,
                                  const PixelRect& pixels, const DisplayModel& display) {
     const ImageTile tile{pixels.min.x(), pixels.min.y(), pixels.max.x(), pixels.max.y()};
     const ShownBlock block =
@@ -107,7 +106,8 @@ VisibleError MeasureVisibleError(const DenoisedPicture& denoised, const Estimate
         wrong.push_back(block.slope[i] * LuminanceOf(noise, i));
     const Planes none(noise.width, noise.height, 1);
     const std::vector<size_t> worst = WorstPixels(block.Compare(noise, 1, none), wrong);
-    const LightnessError lightness = MeasureLightnessError(Without(worst, error, pixels), pixels);
+    Clear(worst, pixels, &error);
+    const LightnessError lightness = MeasureLightnessError(error, pixels);
     const auto ratioOf = [&](double magnitude) {
         return lightness.least > 0 ? float(magnitude / lightness.least) : 1;
     };

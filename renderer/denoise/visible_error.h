@@ -23,7 +23,7 @@ inline constexpr double kNoticedError = 5;  // of a pixel, in lightness
 // Measures a block of at least 10 pixels a side. Half the difference of the denoised halves has the
 // pattern of the error; it is scaled to the error in lightness (MeasureLightnessError). Structure
 // that is missing is added to it, and fireflies' light is taken off by its standard deviation.
-VisibleError MeasureVisibleError(const DenoisedPicture&, const EstimatedError&, const PixelRect&,
+VisibleError MeasureVisibleError(const DenoisedPicture&, EstimatedError, const PixelRect&,
                                  const DisplayModel& = {});
 
 }  // namespace lull

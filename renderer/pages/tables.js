@@ -18,8 +18,9 @@ function showBlock(data, i) {
   if (block.people) rows.push(["human threshold, 80 % range", (isNumber(block.people.to) ? `${showCount(block.people.from)} to ${showCount(block.people.to)}` : `${showCount(block.people.from)} or more`) + " spp"]);
   if (block.end) rows.push(["end", blockEnds[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["masked noise, L*", block.visibleNoise.toFixed(2)]);
-  if (block.visibleDifference) rows.push(["visible difference, denoised", `${block.visibleDifference.estimate.toFixed(1)}, upper bound ${block.visibleDifference.upper.toFixed(1)}`]);
-  if (block.visibleDifference && block.visibleDifference.worstPixels) rows.push(["worst pixels, not in it", `${showCount(block.visibleDifference.worstPixels)}, by up to ${block.visibleDifference.worst.toFixed(0)} in L*`]);
+  const error = block.visibleDifference;
+  if (error) rows.push(["visible difference, denoised", `${error.estimate.toFixed(1)}, upper bound ${error.upper.toFixed(1)}`]);
+  if (error && error.worstPixels) rows.push(["worst pixels, not in it", `${showCount(error.worstPixels)}, by up to ${error.worst.toFixed(0)} in L*`]);
   if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["estimated stop", `${showCount(block.neededSpp)} spp`]);
   if (isNumber(block.neededSeconds)) rows.push(["missing CPU time (estimate)", `~${showSeconds(block.neededSeconds)}`]);
   byId("block-facts").replaceChildren(makeTable("", images.length > 1 ? ["", ...images.map(m => m.name)] : null, rows));

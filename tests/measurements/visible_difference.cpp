@@ -41,12 +41,18 @@ static bool ReadPicture(std::vector<float>* values) {
     return std::fread(values->data(), sizeof(float), values->size(), stdin) == values->size();
 }
 
-static void PrintDifferences(const DisplayModel& display, int width, int height, int block) {
+// Calls use(picture, reference, prepared) for each picture after the reference.
+template <typename Use>
+static void ForEachPicture(const DisplayModel& display, int width, int height, const Use& use) {
     std::vector<float> reference(size_t(width) * size_t(height) * 3), picture(reference.size());
     if (!ReadPicture(&reference)) return;
-    while (ReadPicture(&picture)) {
-        const VisibleDifference difference =
-            FindVisibleDifference(picture, reference, width, height, display);
+    const VisibleReference prepared = PrepareReference(reference, width, height, display);
+    while (ReadPicture(&picture)) use(picture, reference, prepared);
+}
+
+static void PrintDifferences(const DisplayModel& display, int width, int height, int block) {
+    ForEachPicture(display, width, height, [&](const auto& picture, auto&, auto& prepared) {
+        const VisibleDifference difference = FindVisibleDifference(picture, prepared);
         fmt::print("{:.6g}", PooledDifference(difference));
         for (int y = 0; y < height; y += block)
             for (int x = 0; x < width; x += block)
@@ -56,33 +62,29 @@ static void PrintDifferences(const DisplayModel& display, int width, int height,
                         difference,
                         {{x, y}, {std::min(x + block, width), std::min(y + block, height)}}));
         fmt::print("\n");
-    }
+    });
+}
+
+static float PixelLightness(std::span<const float> rgb) {
+    return DisplayedLightness(Luminance(Rgb(rgb[0], rgb[1], rgb[2]))).lightness;
 }
 
 static void PrintWithoutWorst(const DisplayModel& display, int width, int height) {
-    std::vector<float> reference(size_t(width) * size_t(height) * 3), picture(reference.size());
-    if (!ReadPicture(&reference)) return;
-    const VisibleReference prepared = PrepareReference(reference, width, height, display);
     std::vector<float> lightness(size_t(width) * size_t(height));
-    const auto lightnessOf = [](std::span<const float> rgb) {
-        return DisplayedLightness(Luminance(Rgb(rgb[0], rgb[1], rgb[2]))).lightness;
-    };
-    while (ReadPicture(&picture)) {
-        for (size_t i = 0; i < lightness.size(); ++i)
-            lightness[i] = lightnessOf(std::span(picture).subspan(3 * i, 3)) -
-                           lightnessOf(std::span(reference).subspan(3 * i, 3));
-        for (const size_t i : WorstPixels(FindVisibleDifference(picture, prepared), lightness))
-            std::copy_n(&reference[3 * i], 3, &picture[3 * i]);
-        fmt::print("{:.6g}\n", PooledDifference(FindVisibleDifference(picture, prepared)));
-    }
+    ForEachPicture(
+        display, width, height, [&](auto& picture, const auto& reference, auto& prepared) {
+            for (size_t i = 0; i < lightness.size(); ++i)
+                lightness[i] = PixelLightness(std::span(picture).subspan(3 * i, 3)) -
+                               PixelLightness(std::span(reference).subspan(3 * i, 3));
+            for (const size_t i : WorstPixels(FindVisibleDifference(picture, prepared), lightness))
+                std::copy_n(&reference[3 * i], 3, &picture[3 * i]);
+            fmt::print("{:.6g}\n", PooledDifference(FindVisibleDifference(picture, prepared)));
+        });
 }
 
 static void PrintMoments(const DisplayModel& display, int width, int height,
                          const std::vector<double>& powers) {
-    std::vector<float> reference(size_t(width) * size_t(height) * 3), picture(reference.size());
-    if (!ReadPicture(&reference)) return;
-    const VisibleReference prepared = PrepareReference(reference, width, height, display);
-    while (ReadPicture(&picture)) {
+    ForEachPicture(display, width, height, [&](const auto& picture, auto&, auto& prepared) {
         for (const VisibleBand& band : FindVisibleDifference(picture, prepared).bands)
             for (const Plane& plane : band.difference) {
                 for (const double power : powers) {
@@ -93,7 +95,7 @@ static void PrintMoments(const DisplayModel& display, int width, int height,
                 fmt::print("\n");
             }
         fmt::print("\n");
-    }
+    });
 }
 
 int main(int count, char** arguments) {

@@ -199,6 +199,7 @@ def report(o, viewing, blocks):
     curves = {v: [curve(o, viewing, b) for b in blocks if b[0] == v] for v in views}
     limits = np.geomspace(0.2, 300, 150)
     stops_of = lambda v, limit: [stop(c, limit) for c in curves[v]]
+    error_with = lambda limit: 100 * np.mean([critical_error(human[v], stops_of(v, limit)) for v in views])
     accepted = {v: [np.exp(np.interp(deviation(h), deviation(LADDER)[::-1], c[::-1])) for h, c in zip(human[v], curves[v])
                     if h < CAP] for v in views}
     rows = []
@@ -214,11 +215,10 @@ def report(o, viewing, blocks):
     low, high = interval(human, limits, stops_of, o.seed)
     print(f'{viewing}: critical error {np.mean([r[2] for r in rows]):.1f} %, correlation of logarithms {together:.2f}, within '
           f'viewpoints {np.mean([r[3] for r in rows]):.2f}; with one limit for all, {limit:.3g} (95 %: {low:.2g} to {high:.2g}), '
-          f'{np.mean([100 * critical_error(human[v], stops_of(v, limit)) for v in views]):.1f}; accepted: median '
+          f'{error_with(limit):.1f}; accepted: median '
           f'{np.median(every):.3g}, from {every.min():.3g} to {every.max():.3g}', flush=True)
     ratio = np.exp(np.mean([np.mean(np.log(np.divide(stops_of(v, LIMIT), human[v]))) for v in views]))
-    print(f'    with {LIMIT} for all {np.mean([100 * critical_error(human[v], stops_of(v, LIMIT)) for v in views]):.1f} %, '
-          f'predicted / human thresholds {ratio:.2f}', flush=True)
+    print(f'    with {LIMIT} for all {error_with(LIMIT):.1f} %, predicted / human thresholds {ratio:.2f}', flush=True)
     for v, limit, error, r, h, s, a, _ in rows:
         print(f'    {v:<26} limit of the others {limit:.3g}: {error:.1f} %, correlation of logarithms within {r:.2f}, '
               f'people {h:.0f} spp, predicted {s:.0f}; accepted, median {a:.3g}', flush=True)

@@ -93,8 +93,7 @@ DenoisedPicture WithWildPixels(int side, int count) {
     DenoisedPicture denoised{
         flat, {flat, flat}, {flat, flat}, Planes(side, side, 3, 1e-6f), Planes(side, side, 1), {}};
     for (int i = 0; i < side * side; ++i) {
-        const bool isWild =
-            i % (side * side / std::max(1, count)) == side * side / 200 && count > 0;
+        const bool isWild = count > 0 && i % (side * side / count) == side * side / 200;
         const float half = isWild ? kWild : gauss(generator);
         for (int c = 0; c < 3; ++c) {
             denoised.halves.a.Plane(c)[i] += half;
