@@ -1,5 +1,7 @@
 #include "renderer/render/task_set_internal.h"
 
+#include <exception>
+
 namespace lull {
 
 template <typename Work>

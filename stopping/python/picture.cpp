@@ -1,5 +1,7 @@
 #include "stopping/python/picture.h"
 
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 #include "stopping/python/arrays.h"

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 #include <lull/denoising.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 extern "C" const char* lull_denoise_in_c(void);

@@ -2,6 +2,7 @@
 // stop just where those are still missing, and leave the image too dark.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 

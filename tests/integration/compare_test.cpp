@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"

@@ -1,6 +1,7 @@
 #include <draco/compression/decode.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstring>
 
 #include "renderer/input/gltf/decompression.h"

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 #include "renderer/base/memory.h"
 #include "renderer/input/gltf/decompression.h"
 

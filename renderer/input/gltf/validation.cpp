@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+
 #include "renderer/input/gltf/json_at.h"
 #include "renderer/input/gltf/uri.h"
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <cstdio>
 
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/film/add_sample.h"

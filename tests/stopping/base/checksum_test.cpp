@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "stopping/base/hdf5_file.h"
 #include "tests/stopping/scratch_file.h"
 

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "renderer/base/sampling.h"
 #include "renderer/scene/geometry/shapes/quadric_internal.h"
 

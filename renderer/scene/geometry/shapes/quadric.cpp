@@ -1,5 +1,7 @@
 #include "renderer/scene/geometry/shapes/quadric_internal.h"
 
+#include <tuple>
+
 namespace lull {
 
 Bounds3f TransformBounds(const Mat4d& m, const Vec3f& lower, const Vec3f& upper) {

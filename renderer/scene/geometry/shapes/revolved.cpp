@@ -1,5 +1,7 @@
 #include "renderer/scene/geometry/shapes/revolved.h"
 
+#include <tuple>
+
 #include "renderer/scene/geometry/shapes/quadric_internal.h"
 
 namespace lull {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "stopping/base/csv.h"
 #include "stopping/lab/evaluation/single_answers.h"
 #include "tests/stopping/lab/observers/example_answers.h"

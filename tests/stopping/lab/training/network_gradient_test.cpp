@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "stopping/base/parallel.h"
 #include "stopping/lab/training/rmsprop.h"
