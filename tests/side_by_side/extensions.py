@@ -3,9 +3,9 @@
 
     tests/side_by_side/extensions.py FOLDER
 
-absorption.glb: KHR_materials_volume, anisotropy.glb, sheen.glb, variants.glb: the extensions of these
-names; pose.glb: a skin and morph targets, to be seen at 1 s; shutter.glb: things that move, to be seen
-while a shutter is open for 0.5 s from 0.5 s on.
+absorption.glb: KHR_materials_volume, anisotropy.glb, variants.glb: the extensions of these names;
+pose.glb: a skin and morph targets, to be seen at 1 s; shutter.glb: things that move, to be seen while a
+shutter is open for 0.5 s from 0.5 s on.
 """
 
 import math
@@ -132,17 +132,6 @@ def anisotropy():
     return glb
 
 
-def sheen():
-    """Dark and coloured cloth of four roughnesses."""
-    glb = Glb()
-    for row, colour in enumerate(((.02, .02, .05), (.5, .1, .1))):
-        for i, roughness in enumerate((.15, .3, .6, 1)):
-            cloth = glb.material(f'cloth {row} {i}', colour, 0, 1, {**MATTE, 'KHR_materials_sheen': {
-                'sheenColorFactor': [.9, .9, 1], 'sheenRoughnessFactor': roughness}})
-            glb.node(mesh=glb.sphere(cloth), scale=(.6, .6, .6), translation=(-2.1 + 1.4 * i, .61 + 1.2 * row, .5 - 1.8 * row))
-    return glb
-
-
 def variants():
     """Two spheres in three sets of colours; the floor has none."""
     glb = Glb()
@@ -222,5 +211,5 @@ def shutter():
 if __name__ == '__main__':
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    for scene in absorption, anisotropy, sheen, variants, pose, shutter:
+    for scene in absorption, anisotropy, variants, pose, shutter:
         scene().write(folder / f'{scene.__name__}.glb')
