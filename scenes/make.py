@@ -309,7 +309,9 @@ class Glb:
         self.node(matrix=[round(v, 6) for axis in axes for v in (*axis, 0)] + [*eye, 1], **entry)
 
     def node(self, **entry):
-        self.root['scenes'][0]['nodes'].append(self.add('nodes', **entry))
+        nodes = self.root['scenes'][0]['nodes']
+        nodes.append(self.add('nodes', **entry))
+        return nodes[-1]
 
     def write(self, path):
         self.data += bytes(-len(self.data) % 4)

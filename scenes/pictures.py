@@ -1,56 +1,279 @@
 #!/usr/bin/env python3
-"""Renders scenes until their blocks have stopped, and makes the pictures of the documents in scenes/pictures.
+"""Makes the pictures of the documents in scenes/pictures.
 
-pictures.py LULL [cornell|room]: of cornell report.jpg, a screenshot of its report; of the room, denoised, room-day.jpg, and
-room-night.jpg within ten minutes. All by default. Needs oiiotool (Debian: openimageio-tools) and, for the screenshot, chromium.
+pictures.py NAME...: caution, remedies, gallery, report, room (by day and by night), decision, observed (stops.png and
+night-block.jpg, of scenes in ../shared or $LULL_SHARED). Renders stay in out/pictures; existing ones are not rendered again.
+Needs what tests/measurements/measure.py needs, Pillow (Debian: python3-pil) and, for the report, chromium. The panels of the
+add-on are taken in a Blender where it is installed:
+
+xvfb-run -s "-screen 0 560x820x24" blender --factory-startup --window-geometry 0 0 560 820 --python scenes/pictures.py -- panels
 """
+import csv
+import math
+import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-SCENES = pathlib.Path(__file__).resolve().parent
-SIDE = 400  # of cornell, in pixels
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.append(str(ROOT / "tests/measurements"))
+from measure import Renders, lull, read, run  # noqa: E402
+
+SCENES, PICTURES, OUT = ROOT / "scenes", ROOT / "scenes/pictures", ROOT / "out/pictures"
+SHARED = pathlib.Path(os.environ.get("LULL_SHARED", ROOT.parent / "shared")) / "pbrt-scenes"
+FONTS = "/usr/share/fonts/truetype/dejavu/DejaVuSans%s.ttf"
+PAPER, INK, FAINT = (250, 249, 246), (40, 42, 46), (120, 122, 126)
 
 
-def jpeg(source, target, quality=92):
-    subprocess.run(["oiiotool", source, "--nosoftwareattrib", "--compression", f"jpeg:{quality}", "-o", target], check=True)
+def render(name, scene, **options):
+    """Renders unless that has been done; returns the report and the picture."""
+    report = Renders(OUT, SCENES / scene).render(name, **options)
+    return report, Image.open(OUT / f"{name}.png").convert("RGB")
 
 
-def screenshot(page, target, size):
-    """Shows a page in a browser without a window, and writes a picture of it."""
-    picture = page.with_suffix(".page.png")
-    subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
-                    f"--window-size={size}", f"--screenshot={picture}", page.as_uri()], check=True,
-                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    jpeg(picture, target, 80)
+def sheet(rows):
+    """Returns rows of crops of one size, each given as (lines of text, image), in pixels of twice the size."""
+    rows = [[(words, image.resize((image.width * 2, image.height * 2), Image.NEAREST)) for words, image in row] for row in rows]
+    gap, line = 10, 17
+    font = ImageFont.truetype(FONTS % "", 12)
+    lines, first = rows[0][0]
+    text = len(lines) * line + 6
+    column, height = first.width + gap, first.height + text + gap
+    picture = Image.new("RGB", (max(map(len, rows)) * column + gap, len(rows) * height + gap), PAPER)
+    draw = ImageDraw.Draw(picture)
+    for y, row in enumerate(rows):
+        for x, (words, image) in enumerate(row):
+            left, top = gap + x * column, gap + y * height
+            for k, words_of_line in enumerate(words):
+                draw.text((left, top + 2 + k * line), words_of_line, fill=INK, font=font)
+            picture.paste(image, (left, top + text))
+    return picture
 
 
-def cornell(lull, out, pictures):
-    page = out / "r.html"
-    subprocess.run([lull, "render", SCENES / "cornell/scene.pbrt", "--resolution", f"{SIDE}x{SIDE}", "-o", out / "r.exr",
-                    "--report", page], check=True)
-    screenshot(page, pictures / "report.jpg", "1400,1620")
+def labelled_crops(name, rows):
+    """Returns the sheet of renders of one block, given as (title, scene, options), with their samples and CPU seconds."""
+    def labelled(place, title, scene, options):
+        report, image = render(f"{name}-{place}", f"{scene}/scene.pbrt", threads=1, **options)
+        block, = report["blocks"]
+        return [title, f"{block['spp']:,} spp, {block['seconds']:.1f} s"], image
+    return sheet([[labelled(f"{y}{x}", *how) for x, how in enumerate(row)] for y, row in enumerate(rows)])
 
 
-def room(lull, out, pictures):
-    for name, scene, settings in (("day", "room", ["--resolution", "600x400"]),
-                                  ("night", "room-night", ["--time", "10m"])):
-        subprocess.run([lull, "render", SCENES / f"room/{scene}.pbrt", "--denoise", *settings, "-o", out / f"{name}.exr"],
-                       check=True)
-        jpeg(out / f"{name}.png", pictures / f"room-{name}.jpg")
+def caution():
+    """One block of cornell by the default rule and by `denoised`, each with several thresholds."""
+    size = dict(resolution="100x100")
+    picture = labelled_crops("caution", [
+        [(f"--caution {c}{' (default)' * (c == '1')}", "cornell", dict(size, caution=c)) for c in ("0.5", "1", "2")],
+        [(title, "cornell", dict(size, denoise=True, stop=f"denoised:{limit}"))
+         for limit, title in (("6", "--denoise, denoised:6"), ("3.1", "--denoise (3.1)"), ("1.5", "--denoise, denoised:1.5"))]])
+    picture.save(PICTURES / "caution.png", optimize=True)
 
 
-def main():
-    makers = {"cornell": cornell, "room": room}
-    if len(sys.argv) not in (2, 3) or sys.argv[2:] and sys.argv[2] not in makers:
-        raise SystemExit(__doc__)
-    pictures = SCENES / "pictures"
-    pictures.mkdir(exist_ok=True)
-    for name in sys.argv[2:] or makers:
-        with tempfile.TemporaryDirectory() as folder:
-            makers[name](sys.argv[1], pathlib.Path(folder), pictures)
+def remedies():
+    """Pairs of noise and remedy."""
+    dark, caustic, glossy = (dict(resolution="200x200", crop=crop, **how) for crop, how in (
+        ("0,0.5,0.5,1", dict(spp=128, sampler="sobol")), ("0.5,1,0.5,1", dict(spp=64, sampler="sobol")),
+        ("0.2,0.7,0.5,1", dict(denoise=True))))
+    labelled_crops("remedies", [
+        [("caustic, path", "caustic", caustic), ("dark, path", "dark", dark),
+         ("glossy, --denoise --spp 4", "glossy", dict(glossy, spp=4))],
+        [("--integrator bdpt", "caustic", dict(caustic, integrator="bdpt")), ("--guide on", "dark", dict(dark, guide="on")),
+         ("--denoise", "glossy", glossy)]]).save(PICTURES / "remedies.jpg", quality=92)
+
+
+TITLES = {  # of the gallery, in its order
+    "direct": "direct light stops early", "textured": "texture hides noise", "gltf": "a glTF model", "many-lights": "67 lamps",
+    "cornell": "light by way of walls", "glossy": "metal that sees metal", "dark": "a dark room, a door",
+    "caustic": "light through glass"}
+GALLERY = dict(resolution="400x400", block=200, cap=2000)
+# Viridis at equal steps: as the program's own map of samples.
+VIRIDIS = [(68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137), (53, 183, 121),
+           (110, 206, 88), (181, 222, 43), (253, 231, 37)]
+
+
+def colour(spp, least, most):
+    t = (math.log(spp / least) / math.log(most / least) if most > least else 0) * (len(VIRIDIS) - 1)
+    i = min(int(t), len(VIRIDIS) - 2)
+    return tuple(round(a + (t - i) * (b - a)) for a, b in zip(VIRIDIS[i], VIRIDIS[i + 1]))
+
+
+def samples_map(blocks, scale, side, every, font):
+    """Draws the blocks in the colours of their samples, with the numbers."""
+    picture = Image.new("RGB", (side, side), PAPER)
+    draw = ImageDraw.Draw(picture)
+    for block in blocks:
+        x, y, w, h = (block[key] * scale for key in ("x", "y", "width", "height"))
+        fill = colour(block["spp"], min(every), max(every))
+        draw.rectangle([x, y, x + w - 1, y + h - 1], fill=fill, outline=PAPER)
+        ink = INK if sum(fill) > 330 else (255, 255, 255)
+        draw.text((x + w / 2, y + h / 2), str(block["spp"]), fill=ink, font=font, anchor="mm")
+    return picture
+
+
+def gallery():
+    """All scenes by the default rule, in pairs of image and map, with a line of words above each."""
+    renders = {n: render(n, next((SCENES / n).glob("scene.[pg]*")), **GALLERY) for n in TITLES}
+    bold, plain, small = (ImageFont.truetype(FONTS % style, size) for style, size in (("-Bold", 15), ("", 13), ("", 12)))
+    columns, gap, text, side = 2, 14, 46, 240
+    pair = 2 * side + 4
+    picture = Image.new("RGB", (columns * (pair + gap) + gap, -(-len(renders) // columns) * (side + text + gap) + gap), PAPER)
+    draw = ImageDraw.Draw(picture)
+    every = [block["spp"] for report, _ in renders.values() for block in report["blocks"]]
+    for place, (name, (report, image)) in enumerate(renders.items()):
+        x = gap + place % columns * (pair + gap)
+        y = gap + place // columns * (side + text + gap)
+        mean, cap = report["totals"]["samples"] / (image.width * image.height), GALLERY["cap"]
+        draw.text((x, y + 4), name, fill=INK, font=bold)
+        draw.text((x, y + 24), TITLES[name], fill=FAINT, font=plain)
+        draw.text((x + pair, y + 4), f"{100 * (1 - mean / cap):.0f} % saved", fill=INK, font=bold, anchor="ra")
+        draw.text((x + pair, y + 24), f"{mean:.0f} of {cap} spp", fill=FAINT, font=plain, anchor="ra")
+        picture.paste(image.resize((side, side), Image.LANCZOS), (x, y + text))
+        picture.paste(samples_map(report["blocks"], side / image.width, side, every, small), (x + side + 4, y + text))
+    picture.save(PICTURES / "gallery.png", optimize=True)
+
+
+def report():
+    """A screenshot of the report of cornell."""
+    with tempfile.TemporaryDirectory() as folder:
+        page, picture = pathlib.Path(folder) / "r.html", pathlib.Path(folder) / "page.png"
+        lull.render(SCENES / "cornell/scene.pbrt", resolution="400x400", output=page.with_suffix(".exr"), report=page)
+        run("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1400,1620",
+            f"--screenshot={picture}", page.as_uri())
+        Image.open(picture).convert("RGB").save(PICTURES / "report.jpg", quality=80)
+
+
+def room():
+    """The room, denoised, by night within ten minutes."""
+    for name, scene, how in (("day", "room", dict(resolution="600x400")), ("night", "room-night", dict(time="10m"))):
+        render(f"room-{name}", f"room/{scene}.pbrt", denoise=True, **how)[1].save(PICTURES / f"room-{name}.jpg", quality=92)
+
+
+# The stop is by a model trained without staircase2, the threshold the mean of the observers. In stopping/data:
+#   lull train *.h5 --human human.csv --leave-out p3d_staircase2-view0_part6 --threads 1 -o out.h5
+#   lull evaluate staircase2-view0.h5 --human human.csv --stop learned:out.h5 --blocks stops.csv
+STAIRS = {20: "", 2380: "stop", 2886: "human threshold", 10000: "reference"}
+WALL = {300: "the stop", 2333: "the human threshold"}
+
+
+def brightened(image):
+    """Returns a picture of an EXR, three stops brighter."""
+    rgb = np.clip(8 * read(image), 0, 1)
+    srgb = np.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055)
+    return Image.fromarray(np.round(255 * srgb).astype(np.uint8))
+
+
+def observed():
+    """A quarter of block 5 of staircase2, and 150x110 pixels of block 15 of pavilion by night, as it is and brighter."""
+    def images(name, counts, scene, **options):  # as for the observers, each on from fewer samples
+        return {spp: render(f"{name}-{spp}", SHARED / scene, resolution="800x800", estimator="pbrt-v3", sampler="random",
+                            spp=spp, threads=1, checkpoint=OUT / f"{name}.h5", keep_checkpoint=True, resume=True,
+                            **options)[1] for spp in counts}
+    stairs = images("stairs", STAIRS, "staircase2/scene.pbrt", crop="0.3125,0.4375,0.275,0.4")
+    sheet([[([f"{spp:,} spp", STAIRS[spp]], image) for spp, image in stairs.items()]]).save(PICTURES / "stops.png", optimize=True)
+    wall = images("wall", WALL, "pavilion/night-view2.pbrt", substitute=True, crop="0.75,0.9375,0.75,0.8875")
+    bright = {spp: brightened(OUT / f"wall-{spp}.exr") for spp in WALL}
+    sheet([[([f"{spp:,} spp: {WALL[spp]}", how], image) for spp, image in row.items()]
+           for how, row in (("as observers saw it", wall), ("three stops brighter", bright))]
+          ).save(PICTURES / "night-block.jpg", quality=92)
+
+
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 420, 300, 60, 24, 12, 44  # of decision.svg and its margins, in pixels
+LAST = 5000  # spp of the right border
+
+
+def place(spp, value):
+    return (LEFT + spp / LAST * (WIDTH - LEFT - RIGHT), TOP + (1 - value) * (HEIGHT - BOTTOM - TOP))
+
+
+def mark(spp, label, color, y):
+    """Returns a vertical line at spp with a label at its right side."""
+    x = place(spp, 0)[0]
+    return (f'<path d="M{x:.1f} {TOP}V{HEIGHT - BOTTOM}" stroke="{color}"/>'
+            f'<text x="{x + 6:.1f}" y="{y}" fill="{color}">{label}</text>')
+
+
+def decision():
+    """Estimates for the block of stops.png by a model trained without staircase2, with its stop and the human threshold."""
+    data = ROOT / "stopping/data"
+    with tempfile.TemporaryDirectory() as folder:
+        model, curves = f"{folder}/model.h5", f"{folder}/curves.csv"
+        lull.program.run("train", sorted(data.glob("*.h5")), dict(human=data / "human.csv", threads=1, output=model,
+                                                                  leave_out="p3d_staircase2-view0_part6"), False)
+        lull.evaluate(data / "staircase2-view0.h5", human=data / "human.csv", stop=f"learned:{model}", curves=curves)
+        with open(curves) as file:
+            rows = [row for row in csv.DictReader(file) if int(row["block"]) == 5 and int(row["spp"]) <= LAST]
+    stop, human = int(rows[0]["stop"]), int(rows[0]["human"])
+    line = " ".join("%.1f,%.1f" % place(int(r["spp"]), float(r["value"])) for r in rows)
+    limit = place(0, float(rows[0]["threshold"]))[1]
+    grid = "".join(f'<path d="M{place(s, 0)[0]:.0f} {TOP}V{HEIGHT - BOTTOM}" stroke="#ddd"/>'
+                   f'<text x="{place(s, 0)[0]:.0f}" y="{HEIGHT - BOTTOM + 17}" text-anchor="middle">{s:,}</text>'
+                   for s in range(0, LAST + 1, 1000))
+    grid += "".join(f'<path d="M{LEFT} {place(0, v)[1]:.0f}H{WIDTH - RIGHT}" stroke="#ddd"/>'
+                    f'<text x="{LEFT - 6}" y="{place(0, v)[1] + 4:.0f}" text-anchor="end">{v:g}</text>'
+                    for v in (0, .25, .5, .75, 1))
+    (PICTURES / "decision.svg").write_text(f"""\
+<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}"
+ font-family="sans-serif" font-size="13" fill="#444">
+<style>@media (prefers-color-scheme: dark) {{ svg {{ fill: #bbb }} rect {{ fill: #0d1117 }} [stroke="#ddd"] {{ stroke: #333 }}
+ [stroke="#246"] {{ stroke: #79c0ff }} [fill="#246"] {{ fill: #79c0ff }} [stroke="#c33"] {{ stroke: #ff7b72 }}
+ [fill="#c33"] {{ fill: #ff7b72 }} [stroke="#777"] {{ stroke: #999 }} [fill="#777"] {{ fill: #999 }} }}</style>
+<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>
+{grid}
+<path d="M{LEFT} {limit:.1f}H{WIDTH - RIGHT}" stroke="#777" stroke-dasharray="5 4"/>
+<text x="{LEFT + 6}" y="{limit + 16:.1f}" fill="#777">votes to stop below 1/2</text>
+{mark(stop, f"stop: {stop:,}", "#246", TOP + 46)}
+{mark(human, f"observers: {human:,}", "#c33", TOP + 16)}
+<polyline points="{line}" fill="none" stroke="#246" stroke-width="2"/>
+<text x="{(WIDTH + LEFT) / 2:.0f}" y="{HEIGHT - 6}" text-anchor="middle">samples per pixel</text>
+<text transform="translate(15 {(HEIGHT - BOTTOM) / 2 + 6:.0f}) rotate(-90)" text-anchor="middle">P(observer sees noise)</text>
+</svg>
+""")
+
+
+def panels():
+    """The add-on's panels, in Blender."""
+    import bpy
+    pause = 3  # seconds for Blender to draw the effect of a step
+
+    def largest_area():
+        return max(bpy.context.window_manager.windows[0].screen.areas, key=lambda area: area.width * area.height)
+
+    def open_panels():
+        from lull_engine import panels
+        for panel in panels.CLASSES:
+            bpy.utils.unregister_class(panel)
+            panel.bl_options = set()
+            bpy.utils.register_class(panel)
+        bpy.context.scene.render.engine = 'LULL'
+        largest_area().type = 'PROPERTIES'
+
+    def choose(tab):
+        largest_area().spaces[0].context = tab
+
+    def take(tab):
+        picture = PICTURES / f"panels-{tab.lower().replace('_', '-')}.png"
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=largest_area()):
+            bpy.ops.screen.screenshot_area(filepath=str(picture))
+
+    steps = [open_panels] + [lambda act=act, tab=tab: act(tab) for tab in ("RENDER", "VIEW_LAYER") for act in (choose, take)]
+    steps.append(bpy.ops.wm.quit_blender)
+
+    def take_step():
+        steps.pop(0)()
+        return pause if steps else None
+
+    bpy.context.preferences.view.show_splash = False
+    bpy.ops.preferences.addon_enable(module="lull_engine")
+    bpy.app.timers.register(take_step, first_interval=pause)
 
 
 if __name__ == "__main__":
-    main()
+    makers = {maker.__name__: maker for maker in (caution, remedies, gallery, report, room, decision, observed, panels)}
+    names = sys.argv[sys.argv.index("--") + 1 if "--" in sys.argv else 1:]
+    if not names or set(names) - set(makers):
+        sys.exit(__doc__)
+    for name in names:
+        makers[name]()

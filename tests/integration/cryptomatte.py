@@ -1,7 +1,7 @@
 """Reads the Cryptomattes and the alpha of a render as compositors do.
 
-Knows nothing of lull but its command line: EXR files are read here by the OpenEXR file layout, hashes
-made by Appleby's MurmurHash3, masks by the Cryptomatte specification 1.2.0.
+Knows nothing of lull but its command line and its reader of EXR files: hashes are made by Appleby's MurmurHash3, masks by the
+Cryptomatte specification 1.2.0.
 
     cryptomatte.py LULL
 """
@@ -14,68 +14,12 @@ import sys
 import tempfile
 import zlib
 
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / 'renderer/python/lull'))
+import exr  # noqa: E402
+
 WIDTH, HEIGHT = 40, 20
-
-
-def read_exr(path):
-    """Returns attributes and channels (rows of values) of a scan-line file of floats with ZIP."""
-    data = path.read_bytes()
-    magic, version = struct.unpack_from('<II', data)
-    assert magic == 20000630 and version & 0xff == 2 and not version & 0x1a00, 'no plain EXR'
-    at = 8
-
-    def text():
-        nonlocal at
-        end = data.index(b'\0', at)
-        value = data[at:end].decode()
-        at = end + 1
-        return value
-
-    attributes = {}
-    while name := text():
-        kind = text()
-        size, = struct.unpack_from('<I', data, at)
-        attributes[name] = (kind, data[at + 4:at + 4 + size])
-        at += 4 + size
-    left, top, right, bottom = struct.unpack('<4i', attributes['dataWindow'][1])
-    width, height = right - left + 1, bottom - top + 1
-    compression = attributes['compression'][1][0]
-    lines = {0: 1, 2: 1, 3: 16}[compression]
-    names, raw, place = [], attributes['channels'][1], 0
-    while raw[place]:
-        end = raw.index(b'\0', place)
-        kind, = struct.unpack_from('<I', raw, end + 1)
-        assert kind == 2, 'a channel is not of 32-bit floats'
-        names.append(raw[place:end].decode())
-        place = end + 17
-    channels = {name: [None] * height for name in names}
-    blocks = (height + lines - 1) // lines
-    for offset in struct.unpack_from(f'<{blocks}Q', data, at):
-        y, size = struct.unpack_from('<iI', data, offset)
-        block = data[offset + 8:offset + 8 + size]
-        count = min(lines, bottom + 1 - y)
-        if compression and size < count * width * 4 * len(names):
-            packed = bytearray(zlib.decompress(block))
-            for i in range(1, len(packed)):
-                packed[i] = (packed[i - 1] + packed[i] - 128) & 255
-            half = (len(packed) + 1) // 2
-            block = bytearray(len(packed))
-            block[0::2], block[1::2] = packed[:half], packed[half:]
-        for row in range(count):
-            for i, name in enumerate(names):
-                start = (row * len(names) + i) * width * 4
-                channels[name][y - top + row] = bytes(block[start:start + width * 4])
-    texts = {n: v.decode() for n, (kind, v) in attributes.items() if kind == 'string'}
-    return texts, channels
-
-
-def floats(rows):
-    return [struct.unpack(f'<{len(row) // 4}f', row) for row in rows]
-
-
-def ids(rows):
-    """Ids are compared as bits."""
-    return [struct.unpack(f'<{len(row) // 4}I', row) for row in rows]
 
 
 def murmur(text):
@@ -103,26 +47,24 @@ def id_of(text):
 
 
 def mattes(texts, channels, layer):
-    """Returns the masks of a layer: for each name of its manifest rows of coverage."""
+    """Returns the masks of a layer: for each name of its manifest the coverage."""
     key = f'cryptomatte/{id_of(layer):08x}'[:len('cryptomatte/') + 7]
-    assert texts[key + '/name'] == layer
-    assert texts[key + '/hash'] == 'MurmurHash3_32'
-    assert texts[key + '/conversion'] == 'uint32_to_float32'
+    assert texts[key + '/name'] == layer.encode()
+    assert texts[key + '/hash'] == b'MurmurHash3_32'
+    assert texts[key + '/conversion'] == b'uint32_to_float32'
     manifest = {n: int(h, 16) for n, h in json.loads(texts[key + '/manifest']).items()}
     for name, number in manifest.items():
         assert number == id_of(name), name
-    masks = {n: [[0.0] * WIDTH for _ in range(HEIGHT)] for n in manifest}
-    names = {number: name for name, number in manifest.items()}
-    before = [[1.0] * WIDTH for _ in range(HEIGHT)]
+    masks = {n: np.zeros((HEIGHT, WIDTH)) for n in manifest}
+    before = np.ones((HEIGHT, WIDTH))
     for rank in range(6):
-        numbers = ids(channels[f'{layer}{rank // 2:02}.{"RB"[rank % 2]}'])
-        shares = floats(channels[f'{layer}{rank // 2:02}.{"GA"[rank % 2]}'])
-        for y in range(HEIGHT):
-            for x in range(WIDTH):
-                assert 0 <= shares[y][x] <= before[y][x] + 1e-6, 'ranks are not in order'
-                before[y][x] = shares[y][x]
-                if shares[y][x] > 0:
-                    masks[names[numbers[y][x]]][y][x] += shares[y][x]
+        numbers = channels[f'{layer}{rank // 2:02}.{"RB"[rank % 2]}'].view(np.uint32)  # ids are compared as bits
+        shares = channels[f'{layer}{rank // 2:02}.{"GA"[rank % 2]}']
+        assert (0 <= shares).all() and (shares <= before + 1e-6).all(), 'ranks are not in order'
+        assert set(numbers[shares > 0]) <= set(manifest.values())
+        for name, number in manifest.items():
+            masks[name] += np.where(numbers == number, shares, 0)
+        before = shares
     return masks
 
 
@@ -209,10 +151,11 @@ def main(lull):
                         '--quiet', '-o', 'out.exr'],
                        cwd=folder, check=True, stdout=subprocess.DEVNULL,
                        stderr=subprocess.DEVNULL)
-        texts, channels = read_exr(folder / 'out.exr')
+        channels, texts = exr.read(folder / 'out.exr')
+        assert b'/manifest\0string\0' in (folder / 'out.exr').read_bytes()
         objects = mattes(texts, channels, 'CryptoObject')
         materials = mattes(texts, channels, 'CryptoMaterial')
-        alpha, red = floats(channels['A']), floats(channels['R'])
+        alpha, red = channels['A'], channels['R']
         png = read_png(folder / 'out.png')
 
     assert set(objects) == {'left', 'fröhlich', 'right'}, set(objects)
@@ -227,9 +170,7 @@ def main(lull):
         near(materials['paper'][y][x], shares[2])
         near(alpha[y][x], sum(shares))
         assert png[y][4 * x + 3] == int(255 * alpha[y][x] + 0.5)
-    for y in range(HEIGHT):
-        for x in range(WIDTH):
-            near(sum(m[y][x] for m in objects.values()), alpha[y][x], 1e-5)
+    near(np.abs(sum(objects.values()) - alpha).max(), 0, 1e-5)
     # Colours are multiplied by alpha in the EXR, and are not in the PNG.
     assert red[3][5] == 0 and red[15][5] > 0.05
     near(red[9][5] / alpha[9][5], red[15][5], 0.15 * red[15][5])

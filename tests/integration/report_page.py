@@ -1,20 +1,14 @@
-#!/usr/bin/env python3
-"""Opens the pages that lull writes in a headless browser and uses them as a person would.
-
-report_page.py LULL CHROMIUM: exits with 0 if the pages open from disk without errors and without
-asking the network for anything, and if blocks that are clicked or reached by keys show their curves.
-"""
+"""Tests the pages of renders and comparisons: they open from disk, and blocks that are clicked or reached by keys show their
+curves."""
 import csv
 import io
 import json
-import os
 import pathlib
-import select
 import subprocess
-import sys
 import tempfile
-import time
 import xml.etree.ElementTree
+
+from browser import check, check_widths
 
 SCENE = """LookAt 0 0 -3  0 0 0  0 1 0
 Camera "perspective" "float fov" [40]
@@ -26,118 +20,10 @@ Shape "sphere"
 WorldEnd
 """
 
-
-class Browser:
-    """Speaks the DevTools protocol over a pipe: JSON texts that end with a zero."""
-
-    def __init__(self, program, profile):
-        to_browser, self.out = os.pipe()
-        self.inp, from_browser = os.pipe()
-        self.process = subprocess.Popen(
-            ["bash", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "--", program,
-             "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-             "--no-first-run", "--window-size=1400,1800", f"--user-data-dir={profile}",
-             "--remote-debugging-pipe"],
-            pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.buffer, self.serial, self.session, self.problems = b"", 0, None, []
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.call("Target.attachToTarget", targetId=target,
-                                 flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log", "Network"):
-            self.call(domain + ".enable")
-
-    def receive(self, seconds):
-        """Returns the next message; None if there is none for so long."""
-        end = time.monotonic() + seconds
-        while b"\0" not in self.buffer:
-            if not select.select([self.inp], [], [], max(0, end - time.monotonic()))[0]:
-                return None
-            data = os.read(self.inp, 1 << 20)
-            if not data:
-                raise SystemExit("the browser has ended")
-            self.buffer += data
-        text, self.buffer = self.buffer.split(b"\0", 1)
-        message = json.loads(text)
-        self.note(message)
-        return message
-
-    def note(self, message):
-        """Keeps what a page must not do."""
-        method, params = message.get("method"), message.get("params", {})
-        if method == "Runtime.exceptionThrown":
-            details = params["exceptionDetails"]
-            self.problems.append(details.get("exception", {}).get("description", details["text"]))
-        elif method == "Log.entryAdded" and params["entry"]["level"] in ("error", "warning"):
-            self.problems.append(params["entry"]["text"])
-        elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "warning"):
-            self.problems.append(str(params["args"]))
-        elif method == "Network.requestWillBeSent":
-            url = params["request"]["url"]
-            if not url.startswith(("file:", "data:")):
-                self.problems.append("asked for " + url[:80])
-
-    def call(self, method, **params):
-        self.serial += 1
-        message = {"id": self.serial, "method": method, "params": params}
-        if self.session:
-            message["sessionId"] = self.session
-        os.write(self.out, json.dumps(message).encode() + b"\0")
-        end = time.monotonic() + 60
-        while time.monotonic() < end:
-            answer = self.receive(60)
-            if answer and answer.get("id") == self.serial:
-                if "error" in answer:
-                    raise SystemExit(f"{method}: {answer['error']}")
-                return answer["result"]
-        raise SystemExit(method + ": no answer from the browser")
-
-    def open(self, path):
-        self.call("Page.navigate", url=path.as_uri())
-        self.wait_for("document.readyState === 'complete' && document.title.length > 0")
-
-    def evaluate(self, expression):
-        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
-        if "exceptionDetails" in result:
-            raise SystemExit(f"{expression}: {result['exceptionDetails']}")
-        return result["result"].get("value")
-
-    def wait_for(self, expression):
-        for _ in range(300):
-            if self.evaluate(expression):
-                return
-            self.receive(0.1)
-        raise SystemExit("this has not come true: " + expression)
-
-    def click(self, selector):
-        x, y = self.evaluate(
-            f"(() => {{ const e = document.querySelector('{selector}');"
-            " e.scrollIntoView({block: 'center'}); const r = e.getBoundingClientRect();"
-            " return [r.x + r.width / 2, r.y + r.height / 2]; })()")
-        for kind in ("mousePressed", "mouseReleased"):
-            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
-
-    def press(self, key, code):
-        for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code)
-
-    def close(self):
-        self.call("Browser.close")
-        self.process.wait(30)
-
-
 # Counts the charts in an element that have something drawn on them.
 DRAWN = """[...document.querySelectorAll('%s canvas')].filter(c => {
     const p = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
     return p.some(v => v > 0); }).length"""
-
-
-def check(condition, what):
-    if not condition:
-        raise SystemExit("FAILED: " + what)
-    print("ok:", what)
 
 
 def check_blocks(browser, name, charts):
@@ -148,25 +34,13 @@ def check_blocks(browser, name, charts):
     check(browser.evaluate(title).startswith("Block 4 "), name + ": a click chooses a block")
     check(browser.evaluate(DRAWN % "#block-charts") == charts, f"{name}: it has {charts} curves")
     browser.evaluate("document.querySelector('.stage svg').focus()")
-    browser.press("ArrowRight", 39)
+    browser.press("ArrowRight")
     check(browser.evaluate(title).startswith("Block 5 "), name + ": arrow keys choose the next")
-    browser.press("ArrowUp", 38)
+    browser.press("ArrowUp")
     check(browser.evaluate(title).startswith("Block 2 "), name + ": and the one above")
     check(browser.evaluate("[...document.images].filter(i => i.getAttribute('src'))"
                            ".every(i => i.complete && i.naturalWidth === 120)"),
           name + ": pictures are there")
-
-
-def check_widths(browser, name):
-    """Nothing of the page is beside a window of these widths, and a picture is large."""
-    for width in (1400, 700, 400):
-        browser.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
-        fits = "(e => e.scrollWidth <= e.clientWidth)(document.documentElement)"
-        browser.wait_for(f"innerWidth === {width} && {fits}")  # once it has heard of its width
-        print(f"ok: {name}: as wide as a window of {width} pixels")
-        share = browser.evaluate("(c => c ? c.clientWidth / document.documentElement.clientWidth : 1)(document.querySelector('.canvas'))")
-        check(share > 0.4, f"{name}: the picture takes {share:.2f} of that")
-    browser.call("Emulation.clearDeviceMetricsOverride")
 
 
 def choose(browser, label, value):
@@ -224,7 +98,7 @@ def check_two(browser):
     for kind, x in (("mousePressed", place[0]), ("mouseMoved", place[2]), ("mouseReleased", place[2])):
         browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=place[1], button="left", buttons=1, clickCount=1)
     check(abs(browser.evaluate("view.divide") - 0.25) < 0.01, "compare: the divider can be dragged")
-    browser.press("ArrowRight", 39)
+    browser.press("ArrowRight")
     check(abs(browser.evaluate("view.divide") - 0.27) < 0.01, "compare: and moved by keys")
     check("27%" in browser.evaluate(upper + ".style.clipPath"), "compare: it parts the images")
     choose(browser, "Show", "flicker")
@@ -235,7 +109,7 @@ def check_two(browser):
         choose(browser, "Show", mode)
 
 
-def main(lull, chromium):
+def test(browser, lull):
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory)
         (folder / "scene.pbrt").write_text(SCENE)
@@ -248,7 +122,6 @@ def main(lull, chromium):
             subprocess.run([lull, *command.split(), "--block", "40", "--quiet"], cwd=folder,
                            check=True, stdout=subprocess.DEVNULL)
 
-        browser = Browser(chromium, folder / "profile")
         browser.open(folder / "render.html")
         check_blocks(browser, "render", 3)
         check(browser.evaluate("document.title").startswith(folder.name), "render: its title is the scene")
@@ -279,10 +152,3 @@ def main(lull, chromium):
         check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: and again for another error")
         check_saved(browser, "bench", 2, 1)
         check_widths(browser, "bench")
-        check(not browser.problems, "no errors, nothing from the network " +
-              "; ".join(browser.problems))
-        browser.close()
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:3])

@@ -1,25 +1,8 @@
-#!/usr/bin/env python3
-"""Works through a study of `lull study` in a headless browser, as an observer who sees noise by a rule.
-
-simulated_observer.py CHROMIUM STUDY.html THRESHOLDS.csv ANSWERS_DIR NAME [--scatter OCTAVES] [--keys]
-
-The observer sees noise in a block below the spp that the only row of THRESHOLDS.csv has for it;
-each time a block is asked, the threshold is another, by a factor of two to the power of a normal
-deviate of OCTAVES. ANSWERS_DIR gets the file that the page saves.
-"""
-import argparse
+"""Works through a study of `lull study`, as an observer who sees noise by a rule."""
 import json
 import pathlib
 import random
-import sys
-import tempfile
 import time
-
-from report_page import Browser
-
-CODES = {"Enter": 13, "Tab": 9, " ": 32, "Backspace": 8, "ArrowLeft": 37, "ArrowUp": 38,
-         "ArrowRight": 39, "ArrowDown": 40, "u": 85, "p": 80}
-
 
 # A person takes time to look; a program that plays one says that it did. The cross between trials is
 # not waited for.
@@ -38,36 +21,29 @@ class Participant:
         browser.evaluate(self.time)
         self.levels, self.blocks = browser.evaluate("[study.levels, study.blocks]")
 
-    def key(self, key, shift=False):
-        text = {"Enter": "\r", " ": " "}.get(key, key if len(key) == 1 else "")
-        common = dict(key=key, code=key if len(key) > 1 else "", windowsVirtualKeyCode=CODES[key],
-                      modifiers=8 if shift else 0)
-        self.browser.call("Input.dispatchKeyEvent", type="keyDown", text=text, **common)
-        self.browser.call("Input.dispatchKeyEvent", type="keyUp", **common)
-
     def tab_to(self, selector):
         for _ in range(40):
             if self.browser.evaluate(f"document.activeElement.matches('{selector}')"):
                 return
-            self.key("Tab")
+            self.browser.press("Tab")
         raise SystemExit("Tab does not reach " + selector)
 
     def press(self, selector):
         """Presses a button."""
         if self.keys:
             self.tab_to(selector)
-            self.key("Enter")
+            self.browser.press("Enter")
         else:
             self.browser.click(selector)
 
     def begin(self, name):
         self.tab_to("#name")
         self.browser.call("Input.insertText", text=name)
-        self.key("Enter")
+        self.browser.press("Enter")
         self.expect("check")
         if self.keys:
             self.tab_to("input[name=tones]")
-            self.key(" ")
+            self.browser.press(" ")
         else:
             self.browser.click("input[name=tones]")
         self.press("#begin")
@@ -96,7 +72,7 @@ class Participant:
         if self.keys:
             self.tab_to(".cell")
             self.go_to(block)
-            self.key("Backspace" if back else "Enter")
+            self.browser.press("Backspace" if back else "Enter")
             return
         b = self.browser.evaluate(
             f"(() => {{ const r = adjustView.cells[{block}].noisy.cell.getBoundingClientRect();"
@@ -111,9 +87,9 @@ class Participant:
             at, to = (self.blocks[i] for i in (
                 self.browser.evaluate("+document.activeElement.dataset.block"), block))
             if at["x"] != to["x"]:
-                self.key("ArrowRight" if at["x"] < to["x"] else "ArrowLeft")
+                self.browser.press("ArrowRight" if at["x"] < to["x"] else "ArrowLeft")
             elif at["y"] != to["y"]:
-                self.key("ArrowDown" if at["y"] < to["y"] else "ArrowUp")
+                self.browser.press("ArrowDown" if at["y"] < to["y"] else "ArrowUp")
             else:
                 return
         raise SystemExit("arrow keys do not reach the block")
@@ -144,7 +120,7 @@ class Participant:
                 sees = self.sees(0, trial["block"], "asked", trial["level"])
                 side = trial["noisySide"] if sees else self.guesses.randrange(2)
                 if self.keys:
-                    self.key(("ArrowLeft", "ArrowRight")[side])
+                    self.browser.press(("ArrowLeft", "ArrowRight")[side])
                 else:
                     self.browser.click(("#left", "#right")[side])
                 given += 1
@@ -194,35 +170,3 @@ class Participant:
                     pass
             time.sleep(0.05)
         raise SystemExit("no answers were saved")
-
-
-def read_thresholds(path):
-    return [int(t) for t in pathlib.Path(path).read_text().splitlines()[0].split(";")[1:] if t]
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    for name in ("chromium", "study", "thresholds", "answers", "name"):
-        parser.add_argument(name)
-    parser.add_argument("--scatter", type=float, default=0.0)
-    parser.add_argument("--keys", action="store_true")
-    options = parser.parse_args()
-    thresholds, chance = read_thresholds(options.thresholds), random.Random(options.name)
-    pathlib.Path(options.answers).mkdir(exist_ok=True)
-    with tempfile.TemporaryDirectory() as profile:
-        browser = Browser(options.chromium, profile)
-        participant = Participant(
-            browser, pathlib.Path(options.study).resolve(),
-            lambda block, kind: thresholds[block] * 2 ** chance.gauss(0, options.scatter),
-            options.keys, chance)
-        participant.begin(options.name)
-        participant.look()
-        participant.expect("end")
-        print(participant.save(options.answers))
-        browser.close()
-    if browser.problems:
-        sys.exit("; ".join(browser.problems))
-
-
-if __name__ == "__main__":
-    main()

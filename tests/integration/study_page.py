@@ -1,20 +1,15 @@
-#!/usr/bin/env python3
-"""Lets observers whose thresholds are known work through studies of `lull study` in a headless browser.
-
-study_page.py LULL CHROMIUM SCENES: exits with 0 if what is collected is what they see, within a step
-of the ladder, by mouse and by keys, over a reload, with repeats that differ as theirs do.
-"""
+"""Lets observers whose thresholds are known work through studies of `lull study`: what is collected is what they see, within a
+step of the ladder, by mouse and by keys, over a reload, with repeats that differ as theirs do."""
 import csv
 import json
 import math
 import pathlib
 import random
 import subprocess
-import sys
 import tempfile
 import time
 
-from report_page import Browser, check, check_widths
+from browser import check, check_widths
 from simulated_observer import Participant
 
 STEPS = [20, 40, 60, 80, 100, 120, 160, 200, 240]  # the ladder up to the cap
@@ -72,7 +67,7 @@ def by_mouse(browser, page, folder):
     browser.evaluate(observer.time)
     browser.click("#go-on")
     observer.click_block(3, back=True)
-    observer.key("p")
+    browser.press("p")
     observer.expect("pause")
     check(browser.evaluate("byId('pause-why').hidden"), "a pause is a pause")
     browser.click("#go-on")
@@ -220,7 +215,7 @@ def check_windows(browser, page):
     observer = Participant(browser, page, lambda block, kind: 0)
     observer.tab_to("#name")
     browser.call("Input.insertText", text="wim")
-    observer.key("Enter")
+    browser.press("Enter")
     observer.expect("check")
     for width, height in (1400, 1000), (700, 900):
         resize(width, height)
@@ -292,7 +287,7 @@ def check_collected(lull, folder, files):
                                    - math.sqrt(sum(squares) / len(squares))) < 1e-3, "repeats differ as they should")
 
 
-def main(lull, chromium, scenes):
+def test(browser, lull, scenes):
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory)
         (folder / "answers").mkdir()
@@ -301,7 +296,6 @@ def main(lull, chromium, scenes):
         subprocess.run([*make, "-o", "study.html"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
         subprocess.run([*make, "--procedure", "staircase", "--answers", "12", "-o", "stairs.html"], cwd=folder,
                        check=True, stdout=subprocess.DEVNULL)
-        browser = Browser(chromium, folder / "profile")
         page = folder / "study.html"
         files = [by_mouse(browser, page, folder / "answers")]
         check_labels(browser)
@@ -345,9 +339,3 @@ def main(lull, chromium, scenes):
         check_widths(browser, "the report")
         browser.open(folder / "stairs.html")
         check_widths(browser, "the first screen")
-        check(not browser.problems, "no errors, nothing from the network " + "; ".join(browser.problems))
-        browser.close()
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:4])

@@ -5,13 +5,10 @@
 //       whole and of each block, row by row, in a line
 //   visible_difference without DISPLAY WIDTH HEIGHT   prints for each picture the visible
 //       difference of the whole without its worst pixels
-//   visible_difference moments DISPLAY WIDTH HEIGHT POWER...   prints for each picture the mean
-//       powers of the difference of the whole, in lines of a channel of a band, and an empty line
 //   visible_difference sensitivity   reads lines of cycles per degree, square degrees and cd/m2,
 //       and prints the sensitivities of the three channels
 #include <fmt/core.h>
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -82,22 +79,6 @@ static void PrintWithoutWorst(const DisplayModel& display, int width, int height
         });
 }
 
-static void PrintMoments(const DisplayModel& display, int width, int height,
-                         const std::vector<double>& powers) {
-    ForEachPicture(display, width, height, [&](const auto& picture, auto&, auto& prepared) {
-        for (const VisibleBand& band : FindVisibleDifference(picture, prepared).bands)
-            for (const Plane& plane : band.difference) {
-                for (const double power : powers) {
-                    double sum = 0;
-                    for (const float v : plane.values) sum += std::pow(double(v), power);
-                    fmt::print("{:.6g} ", sum / double(plane.values.size()));
-                }
-                fmt::print("\n");
-            }
-        fmt::print("\n");
-    });
-}
-
 int main(int count, char** arguments) {
     try {
         if (count == 2 && arguments[1] == std::string("sensitivity")) {
@@ -107,13 +88,6 @@ int main(int count, char** arguments) {
         if (count == 5 && arguments[1] == std::string("without")) {
             PrintWithoutWorst(ParseDisplay(arguments[2]), std::atoi(arguments[3]),
                               std::atoi(arguments[4]));
-            return 0;
-        }
-        if (count > 5 && arguments[1] == std::string("moments")) {
-            std::vector<double> powers;
-            for (int i = 5; i < count; ++i) powers.push_back(std::atof(arguments[i]));
-            PrintMoments(ParseDisplay(arguments[2]), std::atoi(arguments[3]),
-                         std::atoi(arguments[4]), powers);
             return 0;
         }
         if (count != 5) throw Error("see the first lines of visible_difference.cpp");

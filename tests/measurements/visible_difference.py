@@ -2,7 +2,6 @@
 
     python3 visible_difference.py sensitivity PROGRAM data_individual.csv    # castleCSF's data: thresholds of single people
     python3 visible_difference.py blocks PROGRAM FOLDER HUMAN.csv            # blocks with human thresholds
-    python3 visible_difference.py pooling PROGRAM FOLDER HUMAN.csv           # other exponents of the pooling
 
     lull render staircase2/scene.pbrt --resolution 800x800 --spp 64 --seed 1 --denoise --denoise-layers --estimator pbrt-v3 \\
         --sampler random -o FOLDER/staircase2-view0.exr
@@ -17,20 +16,18 @@ hyphen, so that views of one scene leave together), says where it is seen no mor
 import argparse
 import collections
 import csv
-import functools
 import glob
-import itertools
 import os
 import re
 import subprocess
 
 import numpy as np
 
+from measure import read
+
 CAP, PASS, SIDE = 10000, 20, 200
 LADDER = [250, 500, 1000, 2000, 4000, 7000, 9500]
-PLACES, BANDS = (1, 1.5, 2, 3), (1, 2, 4, np.inf)  # exponents of the pooling
 LIMIT = 3.1  # of `lull compare` and the rule `denoised`
-STILL = 0.577918291  # weight of still pictures in ColorVideoVDP
 
 
 def decibels(ratio):
@@ -64,15 +61,6 @@ def sensitivity(o):
         print()
 
 
-@functools.lru_cache(1)
-def read(path):
-    import OpenImageIO as oiio
-    image = oiio.ImageBuf(path)
-    names = image.spec().channelnames
-    pixels = np.asarray(image.get_pixels(oiio.FLOAT), np.float32)
-    return lambda *channels: pixels[:, :, [names.index(c) for c in channels]]
-
-
 def noise(difference, random, count=32):
     """Returns noise of the local covariance of `difference`, closer to normal than that."""
     h, w, _ = difference.shape
@@ -93,13 +81,13 @@ def load_blocks(o):
     blocks = []
     for path in sorted(glob.glob(os.path.join(glob.escape(o.folder), '*.exr'))):
         name, block = re.fullmatch(r'(.*-view\d+)(?:-(\d+))?', os.path.basename(path)[:-4]).groups()
+        images = [read(path, *layer) for layer in ((), ('halfA.',), ('halfB.',), ('', ['spp']))]
         for b in [int(block)] if block else range(16):
             x, y = (0, 0) if block else (b % 4 * SIDE, b // 4 * SIDE)
-            colour = lambda layer: read(path)(*(layer + c for c in 'RGB'))[y:y + SIDE, x:x + SIDE]
-            spp = read(path)('spp')[y:y + SIDE, x:x + SIDE]
-            difference = (colour('halfA.') - colour('halfB.')) / 2 * np.sqrt(spp)
+            colour, half_a, half_b, spp = (image[y:y + SIDE, x:x + SIDE] for image in images)
+            difference = (half_a - half_b) / 2 * np.sqrt(spp)
             random = np.random.default_rng([o.seed, b])
-            blocks.append((name, b, human[f'p3d_{name}_part6'][b], colour(''), noise(difference, random)))
+            blocks.append((name, b, human[f'p3d_{name}_part6'][b], colour, noise(difference, random)))
     return blocks
 
 
@@ -111,35 +99,14 @@ def viewpoints(blocks):
     return list(dict.fromkeys(b[0] for b in blocks))
 
 
-def measure(block, *command):
-    """Returns what a command prints of the clean picture of a block and of those at the spp of LADDER; WIDTH and HEIGHT in it
-    are those of the block."""
+def curve(o, viewing, block):
+    """Returns the logarithms of the visible differences from the clean picture of a block at the spp of LADDER."""
     _, _, _, clean, sample = block
     pictures = [clean + sample * np.sqrt(1 / n - 1 / CAP) for n in LADDER]
-    data = np.ascontiguousarray(np.stack([clean, *pictures]), np.float32)
-    size = {'WIDTH': str(clean.shape[1]), 'HEIGHT': str(clean.shape[0])}
-    return subprocess.run([size.get(word, word) for word in command], input=data.tobytes(), stdout=subprocess.PIPE,
-                          check=True).stdout.decode()
-
-
-def moments(o, block):
-    """Returns the mean powers, PLACES, of the difference at the spp of LADDER: spp x (bands, channels) x powers."""
-    out = measure(block, o.program, 'moments', o.viewing, 'WIDTH', 'HEIGHT', *map(str, PLACES))
-    return np.array([[line.split() for line in picture.split('\n')] for picture in out.strip().split('\n\n')], float)
-
-
-def pool(powers, place, band):
-    """Returns the logarithm of the difference, pooled by two exponents."""
-    means = STILL * powers[:, :, PLACES.index(place)] ** (1 / place)
-    return np.log(np.max(means, 1) if np.isinf(band) else np.sum(means ** band, 1) ** (1 / band))
-
-
-def curve(o, viewing, block):
-    """Returns the logarithms of the visible differences at the spp of LADDER."""
-    if o.without_worst:
-        out = measure(block, o.program, 'without', viewing, 'WIDTH', 'HEIGHT')
-    else:
-        out = measure(block, o.program, viewing, 'WIDTH', 'HEIGHT', str(SIDE))
+    height, width, _ = clean.shape
+    words = ['without', viewing, width, height] if o.without_worst else [viewing, width, height, SIDE]
+    out = subprocess.run([o.program, *map(str, words)], input=np.stack([clean, *pictures]).astype(np.float32).tobytes(),
+                         stdout=subprocess.PIPE, check=True).stdout.decode()
     return np.log([float(line.split()[0]) for line in out.splitlines()])
 
 
@@ -222,9 +189,6 @@ def report(o, viewing, blocks):
     for v, limit, error, r, h, s, a, _ in rows:
         print(f'    {v:<26} limit of the others {limit:.3g}: {error:.1f} %, correlation of logarithms within {r:.2f}, '
               f'people {h:.0f} spp, predicted {s:.0f}; accepted, median {a:.3g}', flush=True)
-    if o.blocks:
-        for b, c in zip(blocks, itertools.chain(*(curves[v] for v in views))):
-            print('   ', b[0], b[1], b[2], stop(c, limit), ' '.join(f'{v:.3g}' for v in np.exp(c)))
 
 
 def judge_blocks(o):
@@ -239,54 +203,17 @@ def judge_blocks(o):
         report(o, viewing, blocks)
 
 
-def jackknife(limits):
-    """Returns the standard error of the logarithm of a limit, of which there is one without each scene."""
-    logs = np.log(limits)
-    return np.sqrt((len(logs) - 1) * np.var(logs))
-
-
-def judge_pooling(o):
-    blocks = load_blocks(o)
-    powers = [moments(o, b) for b in blocks]
-    views = viewpoints(blocks)
-    scenes = sorted({scene(v) for v in views})
-    errors = {}  # of a viewpoint by limit
-    for exponents in itertools.product(PLACES, BANDS):
-        curves = [pool(m, *exponents) for m in powers]
-        limits = np.geomspace(0.2, 100, 120) * np.exp(np.median([c[3] for c in curves]) - 1)
-        mine = {v: np.mean([[critical_error([b[2]], [stop(c, limit)]) for limit in limits]
-                            for b, c in zip(blocks, curves) if b[0] == v], axis=0) for v in views}
-        errors[exponents] = limits, mine
-    def without(exponents, left):
-        limits, mine = errors[exponents]
-        total = np.mean([mine[v] for v in views if scene(v) != left], axis=0)
-        return int(np.argmin(total)), np.min(total)
-    print('| places | bands | left out, % | known, % | best limit | standard error of its logarithm |\n|' + '---|' * 6)
-    for exponents, (limits, mine) in errors.items():
-        left = np.mean([mine[v][without(exponents, scene(v))[0]] for v in views])
-        at, known = without(exponents, None)
-        doubt = jackknife([limits[without(exponents, s)[0]] for s in scenes])
-        print(f'| {exponents[0]} | {exponents[1]} | {100 * left:.1f} | {100 * known:.1f} | {limits[at]:.3g} | {doubt:.2f} |')
-    chosen = {s: min(errors, key=lambda e: without(e, s)[1]) for s in scenes}
-    nested = np.mean([errors[e][1][v][without(e, scene(v))[0]] for v in views for e in [chosen[scene(v)]]])
-    print(f'exponents chosen without the scene: {100 * nested:.1f} %, {chosen}')
-
-
 if __name__ == '__main__':
     p = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     commands = p.add_subparsers(required=True)
     s = commands.add_parser('sensitivity')
     s.add_argument('program'), s.add_argument('data')
     s.set_defaults(run=sensitivity)
-    everywhere = ';'.join(f'{cd}cd,{ppd}ppd,250lux' for ppd in (30, 40, 50, 60) for cd in (80, 100, 200))
-    for name, viewing, run in (('blocks', everywhere, judge_blocks), ('pooling', '100cd,40ppd,250lux', judge_pooling)):
-        s = commands.add_parser(name)
-        s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
-        s.add_argument('--viewing', default=viewing)
-        s.add_argument('--seed', type=int, default=1)
-        s.set_defaults(run=run)
-        if run == judge_blocks:
-            s.add_argument('--blocks', action='store_true', help='a line a block')
-            s.add_argument('--without-worst', action='store_true', help='leave out the worst pixels, as `denoised` does')
+    s = commands.add_parser('blocks')
+    s.add_argument('program'), s.add_argument('folder'), s.add_argument('human')
+    s.add_argument('--viewing', default=';'.join(f'{cd}cd,{ppd}ppd,250lux' for ppd in (30, 40, 50, 60) for cd in (80, 100, 200)))
+    s.add_argument('--seed', type=int, default=1)
+    s.add_argument('--without-worst', action='store_true', help='leave out the worst pixels, as `denoised` does')
+    s.set_defaults(run=judge_blocks)
     o = p.parse_args()
     o.run(o)

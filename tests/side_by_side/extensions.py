@@ -3,83 +3,51 @@
 
     tests/side_by_side/extensions.py FOLDER
 
-absorption.glb: KHR_materials_volume, anisotropy.glb, sheen.glb, variants.glb: the extensions of these
-names; pose.glb: a skin and morph targets, to be seen at 1 s; shutter.glb: things that move, to be seen
-while a shutter is open for 0.5 s from 0.5 s on.
+absorption.glb: KHR_materials_volume, anisotropy.glb, variants.glb: the extensions of these names;
+pose.glb: a skin and morph targets, to be seen at 1 s; shutter.glb: things that move, to be seen while a
+shutter is open for 0.5 s from 0.5 s on.
 """
 
-import json
 import math
-import os
+import pathlib
 import struct
 import sys
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / 'scenes'))
+import make  # noqa: E402
 
-class Glb:
+MATTE = {'KHR_materials_specular': {'specularFactor': 0}}
+
+
+class Glb(make.Glb):
     """Collects a scene: a matte floor and wall, a lamp above, a camera, and what is added."""
 
     def __init__(self):
-        self.root = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': []}],
-                     'nodes': [], 'meshes': [], 'materials': [], 'accessors': [],
-                     'bufferViews': [], 'extensionsUsed': []}
-        self.bytes = b''
-        grey = self.material('grey', (.6, .6, .6), matte=True)
+        super().__init__()
+        self.root['extensionsUsed'] = []
+        del self.root['extensionsRequired']
+        grey = self.material('grey', (.6, .6, .6), 0, 1, MATTE)
         self.node(mesh=self.quad(grey), scale=(6, 6, 1), rotation=turn((1, 0, 0), -90))
         self.node(mesh=self.quad(grey), scale=(6, 6, 1), translation=(0, 3, -3))
-        lamp = self.material('lamp', (0, 0, 0), matte=True, emissiveFactor=[1, 1, .9])
-        self.extension(lamp, 'KHR_materials_emissive_strength', emissiveStrength=6)
-        self.node(mesh=self.quad(lamp), scale=(1.5, 1.5, 1), translation=(0, 5, 2),
-                  rotation=turn((1, 0, 0), 100))
-        self.root['cameras'] = [{'type': 'perspective', 'perspective': {
-            'yfov': .5, 'aspectRatio': 1.6, 'znear': .1}}]
-        self.node(camera=0, translation=(0, 2.2, 7), rotation=turn((1, 0, 0), -12))
+        lamp = self.material('lamp', (0, 0, 0), 0, 1, {**MATTE, 'KHR_materials_emissive_strength': {'emissiveStrength': 6}},
+                             emissiveFactor=[1, 1, .9])
+        self.node(mesh=self.quad(lamp), scale=(1.5, 1.5, 1), translation=(0, 5, 2), rotation=turn((1, 0, 0), 100))
+        camera = self.add('cameras', type='perspective', perspective={'yfov': .5, 'aspectRatio': 1.6, 'znear': .1})
+        self.node(camera=camera, translation=(0, 2.2, 7), rotation=turn((1, 0, 0), -12))
 
     def accessor(self, values, kind, code='f', **more):
         """Adds numbers, in tuples, of type `kind`: 'f' floats, 'H' and 'B' whole numbers."""
         flat = [v for value in values for v in value]
-        self.bytes += b'\0' * (-len(self.bytes) % 4)
-        data = struct.pack('<%d%s' % (len(flat), code), *flat)
-        self.root['bufferViews'].append({'buffer': 0, 'byteOffset': len(self.bytes),
-                                         'byteLength': len(data)})
-        self.bytes += data
-        self.root['accessors'].append(dict(
-            bufferView=len(self.root['bufferViews']) - 1, count=len(values), type=kind,
-            componentType={'f': 5126, 'H': 5123, 'B': 5121}[code], **more))
-        return len(self.root['accessors']) - 1
-
-    def node(self, root=True, **what):
-        self.root['nodes'].append(what)
-        if root:
-            self.root['scenes'][0]['nodes'].append(len(self.root['nodes']) - 1)
-        return len(self.root['nodes']) - 1
-
-    def material(self, name, colour, metallic=0, roughness=1, matte=False, **more):
-        self.root['materials'].append(dict(
-            name=name, pbrMetallicRoughness={'baseColorFactor': [*colour, 1], 'metallicFactor':
-                                             metallic, 'roughnessFactor': roughness}, **more))
-        made = len(self.root['materials']) - 1
-        if matte:
-            self.extension(made, 'KHR_materials_specular', specularFactor=0)
-        return made
-
-    def use(self, name):
-        if name not in self.root['extensionsUsed']:
-            self.root['extensionsUsed'].append(name)
-
-    def extension(self, material, name, **values):
-        self.use(name)
-        self.root['materials'][material].setdefault('extensions', {})[name] = values
+        return self.add('accessors', bufferView=self.view(struct.pack(f'<{len(flat)}{code}', *flat)), count=len(values),
+                        type=kind, componentType={'f': 5126, 'H': 5123, 'B': 5121}[code], **more)
 
     def mesh(self, points, normals, uvs, triangles, material, attributes={}, **more):
-        positions = self.accessor(points, 'VEC3', min=[min(c) for c in zip(*points)],
-                                  max=[max(c) for c in zip(*points)])
+        positions = self.accessor(points, 'VEC3', min=[min(c) for c in zip(*points)], max=[max(c) for c in zip(*points)])
         attributes = dict(attributes, POSITION=positions, TEXCOORD_0=self.accessor(uvs, 'VEC2'))
         if normals:
             attributes['NORMAL'] = self.accessor(normals, 'VEC3')
         indices = self.accessor([(i,) for t in triangles for i in t], 'SCALAR', 'H')
-        self.root['meshes'].append({'primitives': [dict(attributes=attributes, indices=indices,
-                                                        material=material, **more)]})
-        return len(self.root['meshes']) - 1
+        return self.add('meshes', primitives=[dict(attributes=attributes, indices=indices, material=material, **more)])
 
     def quad(self, material):
         """From -1 to 1 in the plane z = 0, its front towards +z."""
@@ -124,25 +92,11 @@ class Glb:
         animation = {'samplers': [], 'channels': []}
         for node, path, times, values in channels:
             kind = {3: 'VEC3', 4: 'VEC4', 1: 'SCALAR'}[len(values[0])]
-            animation['channels'].append({'sampler': len(animation['samplers']),
-                                          'target': {'node': node, 'path': path}})
+            animation['channels'].append({'sampler': len(animation['samplers']), 'target': {'node': node, 'path': path}})
             animation['samplers'].append({
-                'input': self.accessor([(t,) for t in times], 'SCALAR', min=[times[0]],
-                                       max=[times[-1]]),
+                'input': self.accessor([(t,) for t in times], 'SCALAR', min=[times[0]], max=[times[-1]]),
                 'output': self.accessor(values, kind)})
         self.root['animations'] = [animation]
-
-    def write(self, path):
-        root = dict(self.root, buffers=[{'byteLength': len(self.bytes)}])
-        if not root['extensionsUsed']:
-            del root['extensionsUsed']
-        text = json.dumps(root).encode()
-        text += b' ' * (-len(text) % 4)
-        data = self.bytes + b'\0' * (-len(self.bytes) % 4)
-        with open(path, 'wb') as f:
-            f.write(struct.pack('<4s2I', b'glTF', 2, 28 + len(text) + len(data)))
-            f.write(struct.pack('<I4s', len(text), b'JSON') + text)
-            f.write(struct.pack('<I4s', len(data), b'BIN\0') + data)
 
 
 def turn(axis, degrees):
@@ -155,10 +109,9 @@ def absorption():
     """Boxes and spheres of coloured glass, thicker from left to right, and of two densities."""
     glb = Glb()
     for row, distance in enumerate((1, .3)):
-        glass = glb.material('glass %d' % row, (1, 1, 1), roughness=0)
-        glb.extension(glass, 'KHR_materials_transmission', transmissionFactor=1)
-        glb.extension(glass, 'KHR_materials_volume', thicknessFactor=1,
-                      attenuationDistance=distance, attenuationColor=[.2, .7, .9])
+        glass = glb.material(f'glass {row}', (1, 1, 1), 0, 0, {
+            'KHR_materials_transmission': {'transmissionFactor': 1},
+            'KHR_materials_volume': {'thicknessFactor': 1, 'attenuationDistance': distance, 'attenuationColor': [.2, .7, .9]}})
         shape = glb.sphere(glass) if row == 0 else glb.box(glass)
         for i, size in enumerate((.2, .35, .5)):
             glb.node(mesh=shape, scale=(size, size, size), rotation=turn((0, 1, 0), 30 * row),
@@ -170,9 +123,8 @@ def anisotropy():
     """White metal: spheres and panels, brushed along four directions and three strengths."""
     glb = Glb()
     for i, (strength, angle) in enumerate(((.4, 0), (.8, 0), (.8, 45), (1, 90))):
-        metal = glb.material('brushed %d' % i, (1, 1, 1), metallic=1, roughness=.3)
-        glb.extension(metal, 'KHR_materials_anisotropy', anisotropyStrength=strength,
-                      anisotropyRotation=math.radians(angle))
+        metal = glb.material(f'brushed {i}', (1, 1, 1), 1, .3, {'KHR_materials_anisotropy': {
+            'anisotropyStrength': strength, 'anisotropyRotation': math.radians(angle)}})
         x = -2.1 + 1.4 * i
         glb.node(mesh=glb.sphere(metal), scale=(.6, .6, .6), translation=(x, .61, .5))
         glb.node(mesh=glb.quad(metal), scale=(.6, .6, 1), translation=(x, 2.2, -.8),
@@ -180,29 +132,16 @@ def anisotropy():
     return glb
 
 
-def sheen():
-    """Dark and coloured cloth of four roughnesses."""
-    glb = Glb()
-    for row, colour in enumerate(((.02, .02, .05), (.5, .1, .1))):
-        for i, roughness in enumerate((.15, .3, .6, 1)):
-            cloth = glb.material('cloth %d %d' % (row, i), colour, matte=True)
-            glb.extension(cloth, 'KHR_materials_sheen', sheenColorFactor=[.9, .9, 1],
-                          sheenRoughnessFactor=roughness)
-            glb.node(mesh=glb.sphere(cloth), scale=(.6, .6, .6),
-                     translation=(-2.1 + 1.4 * i, .61 + 1.2 * row, .5 - 1.8 * row))
-    return glb
-
-
 def variants():
     """Two spheres in three sets of colours; the floor has none."""
     glb = Glb()
-    glb.use('KHR_materials_variants')
+    glb.root['extensionsUsed'].append('KHR_materials_variants')
     names = ('clay', 'brass', 'plastic')
     glb.root['extensions'] = {'KHR_materials_variants': {'variants': [{'name': n} for n in names]}}
-    sets = [(glb.material('clay', (.7, .4, .3), matte=True),) * 2,
-            (glb.material('brass', (.9, .7, .3), metallic=1, roughness=.3),
-             glb.material('steel', (.6, .6, .6), metallic=1, roughness=.2)),
-            (glb.material('blue', (.1, .2, .8), roughness=.3),) * 2]
+    sets = [(glb.material('clay', (.7, .4, .3), 0, 1, MATTE),) * 2,
+            (glb.material('brass', (.9, .7, .3), 1, .3),
+             glb.material('steel', (.6, .6, .6), 1, .2)),
+            (glb.material('blue', (.1, .2, .8), 0, .3),) * 2]
     for i in range(2):
         mappings = [{'material': s[i], 'variants': [v]} for v, s in enumerate(sets)]
         mesh = glb.sphere(sets[0][i])
@@ -215,8 +154,8 @@ def variants():
 def pose():
     """A strip that two joints bend, and a box that grows at a slant: both move until 1 s."""
     glb = Glb()
-    red = glb.material('red', (.7, .2, .1), matte=True)
-    blue = glb.material('blue', (.1, .3, .7), matte=True, doubleSided=True)
+    red = glb.material('red', (.7, .2, .1), 0, 1, MATTE)
+    blue = glb.material('blue', (.1, .3, .7), 0, 1, MATTE, doubleSided=True)
     steps = 24
     points, weights, joints = [], [], []
     for i in range(steps + 1):
@@ -232,11 +171,11 @@ def pose():
                      {'JOINTS_0': glb.accessor(joints, 'VEC4', 'B'),
                       'WEIGHTS_0': glb.accessor(weights, 'VEC4')})
     lower = glb.node(translation=(-1.2, 0, .3))
-    upper = glb.node(root=False, translation=(0, 1, 0))
+    upper = glb.add('nodes', translation=(0, 1, 0))
     glb.root['nodes'][lower]['children'] = [upper]
     identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
     bind = glb.accessor([identity, identity[:13] + [-1] + identity[14:]], 'MAT4')
-    glb.root['skins'] = [{'joints': [lower, upper], 'inverseBindMatrices': bind}]
+    glb.add('skins', joints=[lower, upper], inverseBindMatrices=bind)
     glb.node(mesh=strip, skin=0)
 
     block = glb.box(red)
@@ -257,9 +196,9 @@ def pose():
 def shutter():
     """A sphere that rolls by, a box that turns and a panel that grows."""
     glb = Glb()
-    red = glb.material('red', (.7, .2, .1), matte=True)
-    green = glb.material('green', (.2, .6, .2), matte=True)
-    blue = glb.material('blue', (.1, .3, .7), matte=True, doubleSided=True)
+    red = glb.material('red', (.7, .2, .1), 0, 1, MATTE)
+    green = glb.material('green', (.2, .6, .2), 0, 1, MATTE)
+    blue = glb.material('blue', (.1, .3, .7), 0, 1, MATTE, doubleSided=True)
     ball = glb.node(mesh=glb.sphere(red), scale=(.6, .6, .6), translation=(-2, .61, 1))
     box = glb.node(mesh=glb.box(green), scale=(.5, .5, .5), translation=(1.6, .8, .3))
     panel = glb.node(mesh=glb.quad(blue), translation=(0, 2.4, -1), scale=(.4, .4, 1))
@@ -269,11 +208,8 @@ def shutter():
     return glb
 
 
-def main():
-    os.makedirs(sys.argv[1], exist_ok=True)
-    for make in absorption, anisotropy, sheen, variants, pose, shutter:
-        make().write(os.path.join(sys.argv[1], make.__name__ + '.glb'))
-
-
 if __name__ == '__main__':
-    main()
+    folder = pathlib.Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    for scene in absorption, anisotropy, variants, pose, shutter:
+        scene().write(folder / f'{scene.__name__}.glb')

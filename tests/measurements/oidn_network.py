@@ -10,7 +10,7 @@ import struct
 
 import numpy as np
 
-from pictures import WEIGHTS
+from measure import WEIGHTS
 
 BRIGHTEST = 65504.0  # that the encoding maps to 1
 

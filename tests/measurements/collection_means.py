@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Renders the scenes of public collections with pbrt-v3 and lull, and prints the ratio of their means.
 
-    tests/side_by_side/collection_means.py FOLDER --lull LULL --pbrt PBRT > tests/measurements/collection_means.csv
+    tests/measurements/collection_means.py FOLDER --pbrt PBRT > tests/measurements/collection_means.csv
 
 FOLDER has checkouts of the collections, by the names in tests/measurements/collections.csv (owner/name). Scenes that load
 completely are rendered at 96 pixels on the longer side, by the integrator `path` (at most 5 bounces) where they have one
@@ -11,14 +11,14 @@ standard error from the differences of pixels. A scene that takes a program over
 
 import argparse
 import csv
-import os
+import pathlib
 import re
 import subprocess
 import tempfile
 
 import numpy as np
 
-from pictures import read
+from measure import lull, read, run
 
 SIDE, SPP, SECONDS = 96, 64, 40
 OTHER_INTEGRATORS = r'Integrator\s+"(whitted|directlighting|sppm|mlt|ao)"[^\n]*(\n[ \t]+"[^\n]*)*'
@@ -42,38 +42,35 @@ def small(text):
 
 def compare(path, o, folder):
     """Returns ratios of means and their standard errors, R, G and B."""
-    # Beside the original, as names of files are relative to the scene.
-    scene = os.path.join(os.path.dirname(path), 'collection_means.pbrt')
+    # In the folder of the original, as names of files are relative to the scene.
+    scene = path.with_name('collection_means.pbrt')
     try:
-        with open(path, errors='replace') as f, open(scene, 'w') as g:
-            g.write(small(f.read()))
-        a, b = os.path.join(folder, 'pbrt.exr'), os.path.join(folder, 'lull.exr')
+        scene.write_text(small(path.read_text(errors='replace')))
+        a, b = folder / 'pbrt.exr', folder / 'lull.exr'
         for command in ([o.pbrt, '--quiet', '--nthreads', '1', '--outfile', a, scene],
-                        [o.lull, 'render', scene, '--threads', '1', '--spp', str(SPP), '--seed', '3',
-                         '--quiet', '-o', b]):
-            subprocess.run(command, cwd=os.path.dirname(path), check=True, capture_output=True, timeout=SECONDS)
-        theirs, ours = read(a)[0], read(b)[0]
+                        [lull.program.find(), 'render', scene, '--threads', '1', '--spp', str(SPP), '--seed', '3', '--quiet',
+                         '-o', b]):
+            run(*command, cwd=path.parent, timeout=SECONDS)
+        theirs, ours = read(a), read(b)
         mean = np.maximum(theirs.mean((0, 1)), 1e-9)
         return ours.mean((0, 1)) / mean, np.sqrt(((theirs - ours) ** 2).mean((0, 1)) / theirs[..., 0].size) / mean
     finally:
-        os.remove(scene)
+        scene.unlink()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('folder')
-    parser.add_argument('--lull', required=True)
+    parser.add_argument('folder', type=pathlib.Path)
     parser.add_argument('--pbrt', required=True)
     o = parser.parse_args()
-    table = os.path.join(os.path.dirname(__file__), '../measurements/collections.csv')
     print('collection,file,R,G,B,standard error of R,of G,of B')
-    with tempfile.TemporaryDirectory() as folder, open(table) as f:
+    with tempfile.TemporaryDirectory() as folder, open(pathlib.Path(__file__).with_name('collections.csv')) as f:
         for row in csv.DictReader(f):
-            path = os.path.join(os.path.abspath(o.folder), row['collection'], row['file'])
-            if row['loaded'] != 'complete' or not os.path.exists(path):
+            path = o.folder.resolve() / row['collection'] / row['file']
+            if row['loaded'] != 'complete' or not path.exists():
                 continue
             try:
-                ratio, error = compare(path, o, folder)
+                ratio, error = compare(path, o, pathlib.Path(folder))
                 figures = ','.join(f'{v:.4f}' for v in (*ratio, *error))
             except (subprocess.SubprocessError, ValueError):
                 figures = 'not compared,,,,,'
