@@ -29,7 +29,7 @@ CLI::Option* AddCautionOption(CLI::App& app, double* caution) {
         ->capture_default_str();
 }
 
-void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
+void AddRenderSettings(CLI::App& app, RenderSettings* s) {
     AddSceneOptions(app, &s->scene);
     app.add_option("--cap", s->cap, "Stop every block at N spp at the latest [10000]")
         ->group(kCommonOptions)
@@ -46,11 +46,10 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
         ->type_name("N")
         ->capture_default_str();
 
-    if (withSampler)
-        AddChoiceOption(app, "--sampler", &s->sampler,
-                        "Choose the sampler [the scene's; render, unless by --estimator pbrt-v3:\n"
-                        "sobol-halves]")
-            ->group("Sampling");
+    AddChoiceOption(app, "--sampler", &s->sampler,
+                    "Choose the sampler [the scene's; render, unless by --estimator pbrt-v3:\n"
+                    "sobol-halves]")
+        ->group("Sampling");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Seed the random numbers")
         ->group("Sampling")
@@ -95,9 +94,9 @@ Rule ReadRuleOption(const std::string& option, const std::string& rule,
                     const RenderSettings& settings, const PixelRect& region,
                     std::map<std::string, SignalMeasure> measures) try {
     if (IsRule(rule, kDenoisedRuleName) && measures.empty())
-        throw Error(option + " " + rule +
-                    ": needs --denoise of lull render; lull compare and lull bench add a denoised "
-                    "image with --denoise");
+        throw Error(
+            option + " " + rule +
+            ": needs --denoise of lull render; lull compare --denoise adds a denoised image");
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = schedule.passLength,
                               .blockCount = int(MakeBlocks(region, schedule).size()),

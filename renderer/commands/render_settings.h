@@ -19,9 +19,9 @@ struct RenderSettings {
     bool quiet = false, jsonProgress = false;
 };
 
-// Adds the options of the scene, --cap, --pass, --block, --sampler (unless it is not wanted),
-// --estimator, --seed, --quiet and --json-progress.
-void AddRenderSettings(CLI::App& app, RenderSettings* settings, bool withSampler = true);
+// Adds the options of the scene, --cap, --pass, --block, --sampler, --estimator, --seed, --quiet
+// and --json-progress.
+void AddRenderSettings(CLI::App& app, RenderSettings* settings);
 
 // Adds --estimator, which stays as it is where the user says nothing.
 void AddEstimatorOption(CLI::App& app, Estimator* estimator);

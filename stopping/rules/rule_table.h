@@ -21,7 +21,7 @@ enum class Replay {
 // Settings with which a rule is compared with others.
 struct RuleSweep {
     // For benchmarks, from where it stops at once to where it hardly ever does; empty: none.
-    std::span<const double> bench = {};
+    std::span<const double> curve = {};
     // For the choice of the best one: all between them in steps of 1 %, or those at which it
     // RanAlong. Both 0: none is chosen.
     double largest = 0, least = 0;

@@ -92,8 +92,6 @@ TEST(Outputs, OfOtherCommandsAreNoInputs) {
         {"evaluate --human human.csv --predicted p.csv --csv p.csv", "--csv", "--predicted"},
         {"record scene.pbrt --name a -o mesh.ply --blocks 0", "-o", "a file of the scene"},
         {"denoise a.exr -o a.exr", "-o", "IN"},
-        {"bench scene.pbrt --cap 40 -o b --report b.csv.html --reference b.csv", "-o",
-         "--reference"},
         {"compare --automatic a.exr --reference r.html -o c --report r.html", "--report",
          "--reference"},
         {"compare scene.pbrt --snapshots --cap 40 --block 8 --checkpoint c.reference.exr -o c "
@@ -222,10 +220,10 @@ TEST(Outputs, PagesThatCannotBeWrittenGoElsewhere) {
     const Inputs directory;
     const std::string study =
         "LULL study scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --quiet -o ";
-    const std::string bench =
-        "LULL bench scene.pbrt --cap 20 --samplers random --quiet -o b --report ";
+    const std::string compare =
+        "LULL compare scene.pbrt --snapshots --curves --cap 20 --quiet -o b --report ";
     fs::create_symlink("/dev/full", directory.File("full.html"));
-    for (const std::string& command : {study, bench}) {
+    for (const std::string& command : {study, compare}) {
         const Outcome outcome = RunShell(directory, "TMPDIR=. " + command + "full.html");
         EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
         EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;

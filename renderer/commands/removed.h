@@ -1,0 +1,17 @@
+// Commands and options of earlier versions, each refused by name with what to use instead.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace lull {
+
+struct Removed {
+    std::string_view command, option, instead;  // no option: the command itself
+};
+
+inline constexpr std::array kRemoved = {
+    Removed{"bench", "", "use lull compare --curves"},
+};
+
+}  // namespace lull
