@@ -12,6 +12,9 @@ struct Removed {
 
 inline constexpr std::array kRemoved = {
     Removed{"bench", "", "use lull compare --curves"},
+    Removed{"evaluate", "--figure", "draw from the CSV file of --curves"},
+    Removed{"train", "--bnorm", "use --snorm, as the paper"},
+    Removed{"train", "--noisy-weight", "use lull render --caution"},
 };
 
 }  // namespace lull

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "stopping/signals/lightness_noise.h"
-
 namespace lull {
 
 namespace {
@@ -39,9 +37,6 @@ BlockMeasures RecordedMeasures(int spp, const RecordedValues& values,
         if (feature == Feature::VisibleDrop) {
             put(Feature::H, EntropyChannel(Feature::H, settings.m));
             measures.lightness = RecordedLightness(values);
-        } else if (feature == Feature::DetailMaskedNoise) {
-            measures.Of(feature) =
-                DetailMaskedNoise(values("half_noise"), values("deviation"), values("texture"));
         } else if (IsEntropy(feature)) {
             put(feature, EntropyChannel(feature, settings.m));
         } else {

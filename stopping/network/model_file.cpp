@@ -104,7 +104,7 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
         saysM = group.HasAttribute("m");
         s.m = read("m", s.m);
         s.snorm = read("snorm", s.snorm) != 0;
-        s.bnorm = read("bnorm", s.bnorm) != 0;
+        if (read("bnorm", 0) != 0) throw std::runtime_error("bnorm = 1 is not supported");
         s.votes = read("votes", s.votes);
         s.voteSpacing = read("vote_spacing", s.voteSpacing);
         auto readReal = [&](const char* name, double standard) {
@@ -118,7 +118,12 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
                         .nearness = readReal("nearness", s.visibility.nearness)};
         s.peakLimit = readReal("peak_limit", s.peakLimit);
         if (group.HasAttribute("feature")) s.features = ParseFeatures(group.String("feature"));
-        if (group.HasAttribute("pool")) s.pools = ParsePools(group.String("pool"));
+        if (group.HasAttribute("pool")) {
+            if (group.String("pool") != "mean")
+                throw std::runtime_error("pool '" + group.String("pool") +
+                                         "' is not supported; mean is");
+            s.takesMean = true;
+        }
     }
     if (!saysM) s.m = int(inputs);
     CheckSettings(s);
@@ -159,9 +164,8 @@ void WriteSettings(Hdf5Group group, const ModelSettings& s) {
     group.SetInt("n", s.n);
     group.SetInt("m", s.m);
     group.SetString("feature", FeatureNames(s.features));
-    if (!s.pools.empty()) group.SetString("pool", PoolNames(s.pools));
+    if (s.takesMean) group.SetString("pool", "mean");
     group.SetInt("snorm", s.snorm);
-    group.SetInt("bnorm", s.bnorm);
     group.SetInt("votes", s.votes);
     group.SetInt("vote_spacing", s.voteSpacing);
     if (s.spacing == Spacing::Geometric) {
@@ -217,13 +221,11 @@ Model ReadModel(const std::string& path) {
             file.HasAttribute("keras_version") ? file.String("keras_version") : "";
         const KerasModel config = ParseKerasConfig(file.String("model_config"), version);
         const Hdf5Group root = file.Group("model_weights");
-        const int64_t values = LayerReader(root, config.layers.front().name).Inputs();
-        const int64_t inputs = config.isFlat ? values / config.timeSteps : values;
-        if ((config.inputs > 0 && config.inputs != inputs) ||
-            (config.isFlat && values != inputs * config.timeSteps))
+        const int64_t inputs = LayerReader(root, config.layers.front().name).Inputs();
+        if (config.inputs > 0 && config.inputs != inputs)
             throw std::runtime_error("the first kernel does not have the shape of the input");
         model.settings = ReadSettings(file, config.timeSteps, inputs);
-        model.network = ReadNetwork(root, config, values);
+        model.network = ReadNetwork(root, config, inputs);
         model.logRatios = ReadLogRatios(file);
         CheckNetwork(model.network);
     } catch (const std::exception& error) {

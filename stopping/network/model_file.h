@@ -19,13 +19,13 @@ struct Model {
     std::vector<double> logRatios = {};  // see human_range.h; empty: not known
 };
 
-// Reads a Sequential model of LSTM, Dropout and Dense layers, or Flatten and Dense layers, as Keras
-// 2 or tf.keras 2 save it. The settings are attributes of the group /lull: integers k, n, m, snorm,
-// bnorm, votes, vote_spacing, reference, the real numbers ratio, mask, flare, nearness, peak_limit,
-// and the strings spacing, feature and pool, the last two lists with commas. Absent ones (all, in a
-// published model) have their defaults, but k and m follow the shape of the network's input. Throws
-// std::runtime_error beginning with the path and naming the parts that are missing, not supported,
-// of the wrong shape, NaN or infinite.
+// Reads a Sequential model of LSTM, Dropout and Dense layers, as Keras 2 or tf.keras 2 save it. The
+// settings are attributes of the group /lull: integers k, n, m, snorm, votes, vote_spacing,
+// reference, the real numbers ratio, mask, flare, nearness, peak_limit, and the strings spacing,
+// feature (a list with commas) and pool ("mean"). Absent ones (all, in a published model) have
+// their defaults, but k and m follow the shape of the network's input. Throws std::runtime_error
+// beginning with the path and naming the parts that are missing, not supported, of the wrong shape,
+// NaN or infinite.
 Model ReadModel(const std::string& path);
 
 // Writes a model so that ReadModel() returns it and Keras 2 can load it; a new file replaces an old

@@ -66,7 +66,7 @@ class Stopper:
 
         Args:
             width, height: pixels of the image, 40 to 65,536.
-            model: an installed model ("entropy", the default, "noise", "paper") or a file.
+            model: an installed model ("entropy", the default, "paper") or a file.
             rule: any other rule of `lull render --stop`, instead of a model.
             models: folder of installed models.
             block: side of the blocks in pixels.

@@ -268,7 +268,7 @@ void BindStopper(py::module_& module) {
         "Decides on the blocks of a picture, from its first samples to its last.\n\n"
         "Args:\n"
         "    width, height: pixels of the picture, from 40 to 65,536 each.\n"
-        "    model: the name of an installed model ('entropy', the default; 'noise', 'paper') or "
+        "    model: the name of an installed model ('entropy', the default; 'paper') or "
         "a\n"
         "        file.\n"
         "    rule: any other rule of `lull render --stop`, in place of a model.\n"

@@ -73,7 +73,7 @@ Rule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSp
 
 Rule ReadEntropy(const std::string& argument, const RuleContext& context) {
     const double threshold = ParseThreshold(argument) / context.caution;
-    const NoiseVisibility visibility = VisibilityAt(context.cap, context.visibility);
+    const NoiseVisibility visibility = VisibilityAt(context.cap, {});
     Rule rule = EntropyRule(threshold, visibility, context.passSpp);
     rule.trend = TrendOfFalls(visibility);
     rule.peak = {.most = kPeakOverThreshold * threshold, .visibility = visibility};

@@ -48,8 +48,7 @@ class LearnedStatistic final : public Statistic {
         if (!votes.AreDue(spp)) return {};
         const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
         if (!window) return {};
-        if (isToldNoiseOnly)
-            noise = NoiseOfInput((*window)(0, window->cols() - 1), model->settings);
+        if (isToldNoiseOnly) noise = NoiseOfInput((*window)(0, window->cols() - 1));
         return NoisyProbability(model->network, *window);
     }
     std::optional<double> Noise() const override { return noise; }
@@ -70,7 +69,7 @@ void CheckFits(const Model& model, int passSpp) {
     const ModelSettings& settings = model.settings;
     CheckSettings(settings);
     CheckNetwork(model.network);
-    if (!Takes(model.network, InputCount(settings), settings.k))
+    if (model.network.lstm.front().Inputs() != InputCount(settings))
         throw std::invalid_argument("the network does not take " + std::to_string(settings.k) +
                                     " steps of " + std::to_string(InputCount(settings)) +
                                     " values, as its settings have it");
@@ -104,7 +103,7 @@ Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
             .votes = model->settings.votes,
             .peak = {.most = model->settings.peakLimit / model->settings.caution,
                      .visibility = model->settings.visibility},
-            .need = NeedOf(model->settings),
+            .need = ViewNeed::Mean,
             .measure = [model](const BlockView& view,
                                const BlockInfo&) { return MeasureBlock(view, model->settings); },
             .recall =

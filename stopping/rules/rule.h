@@ -170,7 +170,6 @@ struct RuleContext {
     // Whether views come with half means. Otherwise rules whose number needs none ask for none, and
     // limit peak noise only where a view has one.
     bool hasHalves = true;
-    NoiseVisibility visibility = {};  // to the rule `entropy`
     // Measurements of the program that a BlockView does not contain, by the name of the rule. A
     // rule that needs one is refused where it is missing.
     std::map<std::string, SignalMeasure> measures = {};

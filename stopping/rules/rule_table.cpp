@@ -41,7 +41,7 @@ constexpr RuleEntry kRules[] = {
      .compares = RuleTrend::Error,
      .takesCaution = true,
      .replay = Replay::Decides,
-     .sweep = {.curve = kNoiseLevels, .largest = 50, .least = 0.01, .choosesMask = true},
+     .sweep = {.curve = kNoiseLevels, .largest = 50, .least = 0.01},
      .read = ReadEntropy},
     {.name = "dammertz",
      .argument = "[:T[:area]]",

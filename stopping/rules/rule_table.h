@@ -25,7 +25,6 @@ struct RuleSweep {
     // For the choice of the best one: all between them in steps of 1 %, or those at which it
     // RanAlong. Both 0: none is chosen.
     double largest = 0, least = 0;
-    bool choosesMask = false;  // and again with a chosen NoiseVisibility::mask
 };
 
 struct RuleEntry {

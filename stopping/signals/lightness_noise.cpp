@@ -210,16 +210,4 @@ LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int wi
     return result;
 }
 
-std::vector<double> DetailMaskedNoise(std::span<const float> halfNoise,
-                                      std::span<const float> deviation,
-                                      std::span<const float> texture) {
-    auto square = [](double x) { return x * x; };
-    std::vector<double> masked;
-    for (size_t i = 0; i < halfNoise.size(); ++i) {
-        const double detail = square(deviation[i]) - square(texture[i]) - square(halfNoise[i]);
-        masked.push_back(halfNoise[i] / (1 + std::sqrt(std::max(detail, 0.0)) / 4));
-    }
-    return masked;
-}
-
 }  // namespace lull

@@ -140,7 +140,7 @@ class StopperTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "different types"):
             stopper.observe(image, 40, half=np.uint8(image))
         with self.assertRaisesRegex(ValueError, "half buffer"):
-            lull.Stopper(WIDTH, HEIGHT, model="noise").observe(image, 40)
+            lull.Stopper(WIDTH, HEIGHT, rule="lnoise").observe(image, 40)
         for wrong, message in ((255 * image, "brighter than 4 times"), (np.nan * image, "not finite"), (-image, "negative")):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")

@@ -78,7 +78,7 @@ TEST(Install, RunsWhereItIsMoved) {
     Do(tree, "TREE/bin/lull render scene.pbrt --spp 1 --quiet -o out.exr");
     for (const char* file :
          {"include/lull/stopping.h", "include/lull/denoising.h", "share/lull/models/entropy.h5",
-          "share/lull/models/noise.h5", "share/lull/models/paper.h5", "share/doc/lull/copyright"})
+          "share/lull/models/paper.h5", "share/doc/lull/copyright"})
         EXPECT_TRUE(tree.Has(file)) << file;
 }
 

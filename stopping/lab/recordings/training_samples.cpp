@@ -63,25 +63,6 @@ BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSett
     return RecordedMeasures(recording.spp[size_t(i)], ValuesOf(recording, i), settings);
 }
 
-std::vector<Feature> MissingFeatures(const BlockRecording& recording,
-                                     const ModelSettings& settings) {
-    std::vector<Feature> missing;
-    for (const Feature feature : settings.features) {
-        if ((feature == Feature::DetailMaskedNoise && !HasHalves(recording)) ||
-            (feature == Feature::Attributes26 && recording.absent[ChannelIndex("attributes26")]))
-            missing.push_back(feature);
-    }
-    return missing;
-}
-
-std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
-                                        const ModelSettings& settings) {
-    std::vector<LabelledBlock> kept;
-    for (const LabelledBlock& block : blocks)
-        if (MissingFeatures(*block.recording, settings).empty()) kept.push_back(block);
-    return kept;
-}
-
 std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
                                      std::span<const ThresholdsRow> human,
                                      std::vector<std::string>* unknown) {

@@ -35,15 +35,6 @@ std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoi
                                      std::span<const ThresholdsRow> human,
                                      std::vector<std::string>* unknown);
 
-// Returns the features that a block was recorded without: older recordings have no attributes,
-// pictures no noise of halves.
-std::vector<Feature> MissingFeatures(const BlockRecording& recording,
-                                     const ModelSettings& settings);
-
-// Returns the blocks that were recorded with all that the settings ask for.
-std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
-                                        const ModelSettings& settings);
-
 // Windows, one after the other.
 struct TrainingSamples {
     ModelSettings settings;

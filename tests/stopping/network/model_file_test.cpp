@@ -71,7 +71,6 @@ TEST(ModelFile, ReadsWhatItWrites) {
                                     .m = 25,
                                     .features = {Feature::H2},
                                     .snorm = false,
-                                    .bnorm = true,
                                     .votes = 2,
                                     .voteSpacing = 120};
     const ScratchFile file(".h5");
@@ -83,27 +82,22 @@ TEST(ModelFile, ReadsWhatItWrites) {
     EXPECT_EQ(model.settings.m, 25);
     EXPECT_EQ(model.settings.features, std::vector<Feature>{Feature::H2});
     EXPECT_FALSE(model.settings.snorm);
-    EXPECT_TRUE(model.settings.bnorm);
     EXPECT_EQ(model.settings.votes, 2);
     EXPECT_EQ(model.settings.voteSpacing, 120);
     EXPECT_EQ(model.checksum, FileChecksum(file.path));
     EXPECT_FALSE(std::filesystem::exists(file.path + ".new"));
 }
 
-TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
-    ModelSettings settings = {.k = 3,
-                              .features = ParseFeatures("detail_masked_noise,visible_drop")};
-    settings.pools = ParsePools("rms,p4");
-    Network network;
-    network.dense.push_back(
-        {"dense_1", Eigen::MatrixXf::Random(4, 12), Eigen::VectorXf::Random(4)});
-    network.dense.push_back({"dense_2", Eigen::MatrixXf::Random(1, 4), Eigen::VectorXf::Random(1)});
+TEST(ModelFile, KeepsFeaturesAndRecords) {
+    const ModelSettings settings = {
+        .k = 3, .features = {Feature::VisibleDrop, Feature::H}, .takesMean = true};
+    const Network network = RandomNetwork(2, {4}, 1);
     const ScratchFile file(".h5");
     WriteModel(file.path, network, settings, {{"seed", "7"}, {"viewpoints", "a: 0 1\nb: 2"}});
     const Model model = ReadModel(file.path);
     EXPECT_TRUE(Equal(model.network, network));
     EXPECT_EQ(model.settings.features, settings.features);
-    EXPECT_EQ(model.settings.pools, settings.pools);
+    EXPECT_TRUE(model.settings.takesMean);
     EXPECT_EQ(model.settings.k, 3);
     const Hdf5Group record = Hdf5Group::Open(file.path).Group("lull").Group("training");
     EXPECT_EQ(record.String("viewpoints"), "a: 0 1\nb: 2");
@@ -128,7 +122,7 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
     const ModelSettings settings{
         .k = 3,
         .features = {Feature::VisibleDrop},
-        .pools = {{1}},
+        .takesMean = true,
         .spacing = Spacing::Geometric,
         .ratio = 1.4,
         .visibility = {.mask = 30, .flare = 0.02, .reference = 5000, .nearness = 0.25},

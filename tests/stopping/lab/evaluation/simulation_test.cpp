@@ -73,7 +73,7 @@ TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
                {.k = 2,
                 .n = 40,
                 .features = {Feature::VisibleDrop},
-                .pools = {{1}},
+                .takesMean = true,
                 .voteSpacing = 40,
                 .spacing = Spacing::Geometric,
                 .ratio = 1.5});
