@@ -182,8 +182,6 @@ READERS = [
     Reader("model", "model.h5", RENDER.format("scene.pbrt --stop learned:model.h5")
            .replace("--spp 1", "--cap 20")),
     Reader("dataset", "d.h5", "evaluate d.h5 --human v.csv --stop fixed:20"),
-    Reader("texts", "t.md", "study plain.pbrt --text t.md --name v --resolution 8x8 --cap 60 "
-           "--threads 1 --quiet -o s.html"),
     Reader("checkpoint", "c.h5", RENDER.format("scene.pbrt --checkpoint c.h5 --resume")
            .replace("--spp 1", "--spp 4000")),
 ]

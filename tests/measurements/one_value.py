@@ -56,7 +56,6 @@ QUANTITIES = [
     ('units of the default', RULES, 'layers of 8 and # units', r'\| 8, #; 533'),
     ('epochs', TRAINING, r'epochs \| #, samples', '# epochs, no dropout'),
     ('rate of RMSprop', TRAINING, 'RMSprop with a rate of #, ρ', 'viewpoints balanced; batches of 64, RMSprop, rate #'),
-    ('answers of a staircase', REFERENCE, r'Ask N times per block of a staircase \(2 to 100\) #', 'Staircases ask # times'),
     ('published error', PAPER, r'svd-entropy-rnn 40 640 0 0 # ', 'blocks of the published # %'),
     ('ranges', RULES, 'the human threshold in # of 100', 'intended to contain # % of the human'),
     ('threshold of denoised', RULES, r'the true one is probably below T \(#\)', 'the true image is below #', 'below T, by default #',
