@@ -21,7 +21,6 @@ struct Provenance {
     SamplerKind sampler = SamplerKind::Sobol;
     Estimator estimator = Estimator::Combined;
     std::string criterion, checksum;  // the stopping rule; of its file, if any
-    std::vector<double> logRatios;    // of the rule, see network/human_range.h; empty: not known
     RuleTrend trend = {};             // of the rule
     ScheduleOptions schedule;
     int maxDepth = 0;

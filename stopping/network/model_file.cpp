@@ -12,7 +12,6 @@
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
-#include "stopping/network/human_range.h"
 #include "stopping/network/keras_config.h"
 
 namespace lull {
@@ -135,16 +134,6 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
     return s;
 }
 
-std::vector<double> ReadLogRatios(const Hdf5Group& file) {
-    if (!file.HasGroup("lull") || !file.Group("lull").HasArray("log_ratios")) return {};
-    std::vector<double> ratios =
-        file.Group("lull").Array<double>("log_ratios", std::array{int64_t(kLogRatios)});
-    if (!std::ranges::all_of(ratios, [](double v) { return std::abs(v) < 100; }) ||
-        !std::ranges::is_sorted(ratios))
-        throw std::runtime_error("/lull/log_ratios holds no quantiles");
-    return ratios;
-}
-
 // Writes the weights of one layer, transposed back; those of one column get one dimension.
 void WriteLayer(Hdf5Group root, const std::string& layer,
                 const std::vector<std::pair<std::string, Eigen::MatrixXf>>& weights) {
@@ -182,7 +171,7 @@ void WriteSettings(Hdf5Group group, const ModelSettings& s) {
 }
 
 void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
-           const std::map<std::string, std::string>& record, std::span<const double> logRatios) {
+           const std::map<std::string, std::string>& record) {
     file.SetString("model_config", WriteKerasConfig(network, s.k));
     Hdf5Group root = file.MakeGroup("model_weights");
     for (Hdf5Group* group : {&file, &root}) {
@@ -203,9 +192,6 @@ void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
 
     Hdf5Group group = file.MakeGroup("lull");
     WriteSettings(group, s);
-    if (!logRatios.empty())
-        group.AddArray<double>("log_ratios", std::array{int64_t(logRatios.size())}, logRatios);
-    if (record.empty()) return;
     Hdf5Group training = group.MakeGroup("training");
     for (const auto& [name, text] : record) training.SetString(name, text);
 }
@@ -226,7 +212,6 @@ Model ReadModel(const std::string& path) {
             throw std::runtime_error("the first kernel does not have the shape of the input");
         model.settings = ReadSettings(file, config.timeSteps, inputs);
         model.network = ReadNetwork(root, config, inputs);
-        model.logRatios = ReadLogRatios(file);
         CheckNetwork(model.network);
     } catch (const std::exception& error) {
         throw std::runtime_error(path + ": " + error.what());
@@ -253,14 +238,13 @@ std::map<std::string, std::vector<int>> ReadTrainingBlocks(const std::string& pa
 }
 
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
-                const std::map<std::string, std::string>& record,
-                std::span<const double> logRatios) {
+                const std::map<std::string, std::string>& record) {
     CheckNetwork(network);
     CheckSettings(settings);
     const std::string newPath = path + ".new";
     try {
         Hdf5Group file = Hdf5Group::Create(newPath);
-        Write(file, network, settings, record, logRatios);
+        Write(file, network, settings, record);
         file.Flush();
     } catch (const std::exception& error) {
         throw std::runtime_error(newPath + ": " + error.what());

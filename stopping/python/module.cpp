@@ -221,8 +221,6 @@ void BindBlockAnswer(py::module_& module) {
         .def_readonly("next_spp", &lull_answer::next_spp)
         .def_readonly("votes", &lull_answer::votes)
         .def_readonly("votes_needed", &lull_answer::votes_needed)
-        .def_readonly("people_low", &lull_answer::people_low)
-        .def_readonly("people_high", &lull_answer::people_high)
         .def_readonly("value", &lull_answer::value)
         .def_readonly("threshold", &lull_answer::threshold)
         .def_property_readonly("probability",
@@ -246,10 +244,6 @@ void BindAnswer(py::module_& module) {
                                [](const Answer& a) { return a.Of<int>(&lull_answer::next_spp); })
         .def_property_readonly("votes",
                                [](const Answer& a) { return a.Of<int>(&lull_answer::votes); })
-        .def_property_readonly("people_low",
-                               [](const Answer& a) { return a.Of<int>(&lull_answer::people_low); })
-        .def_property_readonly("people_high",
-                               [](const Answer& a) { return a.Of<int>(&lull_answer::people_high); })
         .def_property_readonly("value",
                                [](const Answer& a) { return a.Of<double>(&lull_answer::value); })
         .def_property_readonly(

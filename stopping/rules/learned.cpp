@@ -159,9 +159,6 @@ Rule ReadLearned(const std::string& argument, const RuleContext& context) {
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(path + ": " + error.what());
     }
-    // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
-    rule.logRatios = model->logRatios;
-    for (double& ratio : rule.logRatios) ratio -= 2 * std::log(context.caution);
     rule.checksum = model->checksum;
     rule.trend = TrendOf(*model);
     return rule;

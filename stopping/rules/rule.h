@@ -81,8 +81,6 @@ struct PeakLimit {
 struct Rule {
     std::string text = {};      // as it was given, for headers and reports
     std::string checksum = {};  // of the file that it reads; empty if it reads none
-    // Quantiles of log(human threshold / stop), see network/human_range.h; empty: unknown.
-    std::vector<double> logRatios = {};
     RuleTrend trend = {};
     // Pixels a side below which a block is not checked, but follows a neighbour (block_grid.h).
     int smallestSide = kSmallestVotingSide;

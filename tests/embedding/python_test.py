@@ -51,7 +51,6 @@ class StopperTest(unittest.TestCase):
         self.assertTrue(answer.stop)
         self.assertLess(answer.probability[0, 0], 0.5)
         self.assertEqual(answer.spp[0, 0], spp)
-        self.assertGreater(answer.people_high[0, 0], answer.people_low[0, 0])
         self.assertIsNone(answer.visible_noise)
         self.assertFalse(stopper.active.any())
         self.assertEqual(numbers(stopper.answer())[3:], numbers(answer)[3:])

@@ -111,15 +111,14 @@ TEST(Outputs, InterruptedRendersLeaveNoOlderThresholds) {
     const std::string render =
         "LULL render scene.pbrt --resolution 100x90 --block 40 --quiet -o out.exr ";
     ExpectSuccess(RunShell(directory, render + "--cap 40"));
-    const std::vector<std::string> others = {directory.File("out.thresholds.csv"),
-                                             directory.File("out.ranges.csv")};
-    for (const std::string& file : others) ASSERT_TRUE(fs::exists(file)) << file;
+    const std::string thresholds = directory.File("out.thresholds.csv");
+    ASSERT_TRUE(fs::exists(thresholds));
 
     const Outcome outcome = RunAndSignal(
         directory, render + "--stop dammertz:0.00001 --checkpoint c.h5 --checkpoint-interval 0.1",
         SIGTERM, "c.h5");
     EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
-    for (const std::string& file : others) EXPECT_FALSE(fs::exists(file)) << file;
+    EXPECT_FALSE(fs::exists(thresholds));
     EXPECT_EQ(outcome.out, "out.exr\nout.png\nout.spp.png\n");
 }
 
@@ -181,16 +180,6 @@ TEST(Outputs, PreviewsThatCannotBeWrittenAreWarnings) {
                  "--checkpoint-interval 0.1 --preview 0.3");
     EXPECT_TRUE(Contains(outcome.err, "warning: no preview: ")) << outcome.err;
     EXPECT_TRUE(fs::exists(directory.File("out.png")));
-}
-
-// Rules that know nothing of people have no ranges of theirs.
-TEST(Outputs, RendersLeaveNoOlderRanges) {
-    const Inputs directory;
-    ExpectSuccess(directory, "render scene.pbrt --quiet -o out.exr --cap 40");
-    ASSERT_TRUE(fs::exists(directory.File("out.ranges.csv")));
-    ExpectSuccess(directory, "render scene.pbrt --quiet -o out.exr --spp 40");
-    EXPECT_FALSE(fs::exists(directory.File("out.ranges.csv")));
-    EXPECT_TRUE(fs::exists(directory.File("out.thresholds.csv")));
 }
 
 // /dev/full is a disk that is always full.

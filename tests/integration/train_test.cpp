@@ -1,7 +1,5 @@
 // Trains models as a user would.
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "renderer/files/file_io.h"
 #include "stopping/network/model_file.h"
@@ -77,25 +75,6 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     const Model model = ReadModel(directory.File("model.h5"));
     EXPECT_EQ(FeatureNames(model.settings.features), "H,visible_drop");
     ExpectSuccess(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5");
-    // How far people are from its stops is known then, and renders say so.
-    EXPECT_TRUE(Contains(outcome.out, "80 % of the human thresholds are "));
-    EXPECT_EQ(model.logRatios.size(), 11u);
-    directory.Write("scene.pbrt", SceneText(kSphere));
-    const Outcome render =
-        ExpectSuccess(directory,
-                      "render scene.pbrt --resolution 88x44 --block 44 --cap 200 --quiet "
-                      "--stop learned:model.h5 -o i.exr --report i.json");
-    EXPECT_TRUE(Contains(render.out, "i.ranges.csv\n")) << render.out;
-    const std::string ranges = ReadBytes(directory.File("i.ranges.csv"));
-    EXPECT_TRUE(
-        ranges.starts_with("block,x,y,width,height,spp,stopped,people_from,people_to\n"
-                           "0,0,0,44,44,"))
-        << ranges;
-    EXPECT_EQ(std::ranges::count(ranges, '\n'), 3);
-    const auto report = nlohmann::json::parse(ReadBytes(directory.File("i.json")));
-    const int from = report["blocks"][1]["people"]["from"], spp = report["blocks"][1]["spp"];
-    EXPECT_NEAR(from, spp * std::exp(model.logRatios[1]), 1);
-
     // Left out, it is judged by the same network as when each is left out in turn.
     const Outcome single = ExpectSuccess(directory, options + "-o one.h5 --leave-out barn-b");
     const size_t at = single.out.find("barn-b"), end = single.out.find('\n', at);

@@ -32,8 +32,7 @@ The same options and seed give the same weights for any number of threads. An in
 with -o leaves MODEL.h5.checkpoint and continues with --resume.
 
 --cross-validate evaluates each viewpoint by a network trained on all others. With -o, it also writes
-a network trained on all viewpoints, and stores the held-out ratios of human thresholds to stops, from
-which renders derive confidence ranges. For the columns of the tables see lull evaluate --help.
+a network trained on all viewpoints. For the columns of the tables see lull evaluate --help.
 
 Examples:
   lull train data.h5 --human human.csv -o model.h5

@@ -12,7 +12,6 @@
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/evaluation/statistics.h"
 #include "stopping/lab/recordings/extension.h"
-#include "stopping/network/human_range.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

@@ -14,6 +14,9 @@
 
 namespace lull {
 
+// The spp at which the human thresholds end: observers were shown no more.
+inline constexpr int kMostShownSpp = 10000;
+
 // Names numbers that are recorded of a block: one for each of `count` sub-blocks, row-major, or, of
 // the whole block, one or a list.
 struct Channel {

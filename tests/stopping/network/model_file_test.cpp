@@ -13,7 +13,6 @@
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
-#include "stopping/network/human_range.h"
 #include "stopping/network/keras_config.h"
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/network/random_network.h"
@@ -142,28 +141,6 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
     const Hdf5Group group = Hdf5Group::Open(file.path).Group("lull");
     for (const char* name : {"spacing", "ratio", "mask", "flare", "reference", "nearness"})
         EXPECT_FALSE(group.HasAttribute(name)) << name;
-}
-
-TEST(ModelFile, KeepsTheDistanceFromPeople) {
-    std::vector<double> ratios;
-    for (int i = 0; i < kLogRatios; ++i) ratios.push_back(0.1 * i - 0.4);
-    const ScratchFile file(".h5");
-    const auto write = [&] {
-        WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 4}, {}, ratios);
-    };
-    write();
-    EXPECT_EQ(ReadModel(file.path).logRatios, ratios);
-    ratios[3] = 2;  // they would decrease
-    write();
-    EXPECT_THROW(ReadModel(file.path), std::runtime_error);
-    ratios.assign(kLogRatios, std::numeric_limits<double>::quiet_NaN());
-    write();
-    EXPECT_THROW(ReadModel(file.path), std::runtime_error);
-    ratios.assign(3, 0.0);
-    write();
-    EXPECT_THROW(ReadModel(file.path), std::runtime_error);
-    WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 4});
-    EXPECT_TRUE(ReadModel(file.path).logRatios.empty());
 }
 
 TEST(ModelFile, WritesNoBrokenModel) {

@@ -104,15 +104,12 @@ typedef struct lull_rect {
 
 /* State of a block. No number is NaN. */
 typedef struct lull_answer {
-    int stop;         /* 1: needs no more samples; final */
-    int checked;      /* 1: the call checked the block; 0: the numbers are older */
-    int spp;          /* of the last picture, or of the one that stopped the block */
-    int next_spp;     /* smallest spp of the next check; 0: none */
-    int votes;        /* consecutive votes to stop */
-    int votes_needed; /* votes that stop the block; 1 for rules without votes */
-    /* Of a stopped block: range of spp intended to contain the human threshold in 80 of 100 cases,
-     * if the model has one; 0: unknown. */
-    int people_low, people_high;
+    int stop;             /* 1: needs no more samples; final */
+    int checked;          /* 1: the call checked the block; 0: the numbers are older */
+    int spp;              /* of the last picture, or of the one that stopped the block */
+    int next_spp;         /* smallest spp of the next check; 0: none */
+    int votes;            /* consecutive votes to stop */
+    int votes_needed;     /* votes that stop the block; 1 for rules without votes */
     double value;         /* value of the rule, */
     double threshold;     /* and its threshold */
     double probability;   /* that an observer sees noise (models); 1 before the first estimate;
