@@ -95,7 +95,6 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();
     provenance->grades = NamesOf(p.grades);
-    provenance->trend = p.rule.trend;
     provenance->guide = p.request.guide.mode;
     provenance->guideMegabytes = p.request.guide.megabytes;
 }

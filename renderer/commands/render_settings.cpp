@@ -119,7 +119,6 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
             .estimator = settings.estimator,
             .criterion = "",
             .checksum = "",
-            .trend = {},
             .schedule = settings.schedule,
             .maxDepth = MaxDepth(scene.integrator),
             .integrator = std::holds_alternative<PathIntegrator>(scene.integrator)

@@ -13,7 +13,7 @@ void WriteSppMap(const std::string& file, const Provenance& provenance,
                  const RenderResult& result) {
     const ScheduleOptions& schedule = provenance.schedule;
     std::vector<SppBlock> blocks;
-    const bool isNoisyAtCap = provenance.trend.kind != RuleTrend::Samples;
+    const bool isNoisyAtCap = result.trend.kind != RuleTrend::Samples;
     for (const BlockResult& b : result.blocks)
         blocks.push_back({b.block.pixels, b.block.spp, isNoisyAtCap && b.block.IsAtCap()});
     const int lowest = std::min(schedule.passLength, schedule.cap);

@@ -44,7 +44,7 @@ void AddShortfall(const Provenance& provenance, const RenderResult& result, Json
 
 // Adds at which spp blocks at the cap would probably have stopped, and which cap would do.
 void AddCapped(const Provenance& provenance, const RenderResult& result, Json* report) {
-    const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
+    const std::vector<CappedBlock> capped = FindCapped(result);
     for (const CappedBlock& c : capped)
         if (c.neededSpp > 0) (*report)["blocks"][size_t(c.block)]["neededSpp"] = c.neededSpp;
     if (capped.empty()) return;

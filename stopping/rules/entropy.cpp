@@ -37,11 +37,6 @@ class EntropyStatistic final : public Statistic {
     History<float> history;
 };
 
-// Returns the measurements: entropies, and the lightness that makes their falls visible.
-ModelSettings MeasuredSettings() {
-    return {.m = kEntropySubBlocks, .features = {Feature::VisibleDrop}};
-}
-
 }  // namespace
 
 Checks EntropyChecks(int passSpp) {
@@ -61,13 +56,7 @@ Rule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSp
             .threshold = threshold,
             .votes = 3,
             .need = ViewNeed::Mean,
-            .measure = [settings = MeasuredSettings()](
-                           const BlockView& view,
-                           const BlockInfo&) { return MeasureBlock(view, settings); },
-            .recall =
-                [settings = MeasuredSettings()](int spp, const RecordedValues& values) {
-                    return RecordedMeasures(spp, values, settings);
-                },
+            .inputs = ModelSettings{.m = kEntropySubBlocks, .features = {Feature::VisibleDrop}},
             .makeStatistic = [=] { return std::make_unique<EntropyStatistic>(visibility); }};
 }
 

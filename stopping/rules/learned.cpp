@@ -104,12 +104,7 @@ Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
             .peak = {.most = model->settings.peakLimit / model->settings.caution,
                      .visibility = model->settings.visibility},
             .need = ViewNeed::Mean,
-            .measure = [model](const BlockView& view,
-                               const BlockInfo&) { return MeasureBlock(view, model->settings); },
-            .recall =
-                [model](int spp, const RecordedValues& values) {
-                    return RecordedMeasures(spp, values, model->settings);
-                },
+            .inputs = model->settings,
             .makeStatistic = [=] { return std::make_unique<LearnedStatistic>(model, passSpp); },
             .valueBefore = 1,  // noisy until there is a vote
             .spacing = model->settings.n};

@@ -17,7 +17,6 @@
 
 #include "stopping/base/state.h"
 #include "stopping/features/model_inputs.h"
-#include "stopping/features/recorded_measures.h"
 #include "stopping/rules/criterion.h"
 #include "stopping/rules/trend.h"
 
@@ -90,10 +89,10 @@ struct Rule {
     double threshold = 0;
     int votes = 0;  // checks in a row below it that stop a block; 0: one does, and none is counted
     PeakLimit peak = {};
-    ViewNeed need = ViewNeed::MeanAndHalf;  // of `measure`
+    ViewNeed need = ViewNeed::MeanAndHalf;  // of the measurement
+    // Measures by MeasureBlock() with these settings or, where there are none, by `measure`.
+    std::optional<ModelSettings> inputs = {};
     SignalMeasure measure = {};
-    // Returns the result of `measure` from a recording; empty: that is not recorded.
-    std::function<Signals(int spp, const RecordedValues& values)> recall = {};
     // Empty: the number is the measurement itself.
     std::function<std::unique_ptr<Statistic>()> makeStatistic = {};
     double valueBefore = 0;  // the number of a block that has none yet

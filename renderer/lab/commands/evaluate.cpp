@@ -17,6 +17,7 @@
 #include "renderer/lab/commands/picture_options.h"
 #include "stopping/lab/evaluation/constants.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
+#include "stopping/lab/evaluation/recorded_rules.h"
 #include "stopping/lab/recordings/block_split.h"
 #include "stopping/rules/rule_table.h"
 
@@ -153,9 +154,11 @@ void AddOptions(CLI::App& app, Options* o) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("RULE");
     AddCautionOption(app, &o->caution);
-    app.add_flag("--rivals", o->rivals,
-                 "Evaluate the baselines, which have one setting:\n" +
-                     RuleNames([](const RuleEntry& rule) { return rule.sweep.largest > 0; }));
+    app.add_flag(
+        "--rivals", o->rivals,
+        "Evaluate the baselines, which have one setting:\n" + RuleNames([](const RuleEntry& rule) {
+            return FindRecordedRule(rule.name)->largest > 0;
+        }));
     app.add_flag("--constants", o->constants, "Evaluate constant spp, too");
     AddChoiceOption(app, "--choose-by", &o->chooseBy,
                     "Choose settings of baselines by the least error, or critical error at 2 %");

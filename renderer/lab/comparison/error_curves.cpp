@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "stopping/base/parallel.h"
-#include "stopping/rules/rule_table.h"
+#include "stopping/lab/evaluation/recorded_rules.h"
 
 namespace lull {
 
@@ -37,8 +37,8 @@ std::vector<std::string> CurveRules(int passLength, int cap) {
     std::vector<std::string> rules;
     for (const int spp : FixedLadder(passLength, cap))
         rules.push_back(fmt::format("fixed:{}", spp));
-    for (const RuleEntry& rule : RuleTable())
-        for (const double setting : rule.sweep.curve)
+    for (const RecordedRule& rule : RecordedRules())
+        for (const double setting : rule.curve)
             rules.push_back(fmt::format("{}:{}", rule.name, setting));
     return rules;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "stopping/lab/evaluation/recorded_rules.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -12,12 +13,12 @@ namespace lull {
 namespace {
 
 // Returns the rules with one threshold that can be run on the recorded data of the blocks.
-std::vector<const RuleEntry*> RivalRules(std::span<const LabelledBlock> blocks) {
+std::vector<const RecordedRule*> RivalRules(std::span<const LabelledBlock> blocks) {
     const bool haveHalves = std::ranges::all_of(
         blocks, [](const LabelledBlock& block) { return HasHalves(*block.recording); });
-    std::vector<const RuleEntry*> rivals;
-    for (const RuleEntry& rule : RuleTable()) {
-        if (rule.sweep.largest == 0) continue;
+    std::vector<const RecordedRule*> rivals;
+    for (const RecordedRule& rule : RecordedRules()) {
+        if (rule.largest == 0) continue;
         const bool comparesHalves =
             rule.replay == Replay::RanAlong ||
             ParseRule(std::string(rule.name) + ":1", {.hasHalves = false}).need >=
@@ -41,13 +42,12 @@ struct Setting {
     std::string text = {};
 };
 
-std::vector<Setting> SettingsOf(const RuleEntry& rule) {
+std::vector<Setting> SettingsOf(const RecordedRule& rule) {
     std::vector<Setting> settings;
     if (rule.replay == Replay::RanAlong)
         for (const double t : kCyclesThresholds) settings.push_back({t, Text(t)});
     else
-        for (double t = rule.sweep.largest; t >= rule.sweep.least; t /= 1.01)
-            settings.push_back({t, Text(t)});
+        for (double t = rule.largest; t >= rule.least; t /= 1.01) settings.push_back({t, Text(t)});
     return settings;
 }
 
@@ -102,7 +102,7 @@ Rival EvaluateRival(const std::string& name, std::span<const LabelledBlock> bloc
 }
 
 // Runs a rule over recordings, each of which it reads once.
-Run MakeRun(std::span<const LabelledBlock> blocks, const RuleEntry& entry) {
+Run MakeRun(std::span<const LabelledBlock> blocks, const RecordedRule& entry) {
     if (entry.replay == Replay::RanAlong)
         return [=](size_t index, const Setting& setting, bool brief) {
             return SimulateCycles(blocks[index], setting.threshold, brief);
@@ -135,7 +135,7 @@ std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseB
     begins.push_back(blocks.size());
 
     std::vector<Rival> rivals;
-    for (const RuleEntry* rule : RivalRules(blocks))
+    for (const RecordedRule* rule : RivalRules(blocks))
         rivals.push_back(EvaluateRival(std::string(rule->name), blocks, begins, SettingsOf(*rule),
                                        MakeRun(blocks, *rule), chooseBy, grid));
     return rivals;

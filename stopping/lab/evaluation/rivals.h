@@ -27,7 +27,7 @@ struct Rival {
 
 // Runs the rules over recorded blocks (grouped by viewpoint), each viewpoint
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. Thresholds are RuleSweep's. Rules that compare halves are left out where a block was
+// samples. Thresholds are RecordedRule's. Rules that compare halves are left out where a block was
 // recorded without (HasHalves()). Throws std::invalid_argument if there are fewer than two
 // viewpoints.
 std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
