@@ -12,6 +12,11 @@
 
 namespace lull {
 
+SamplerKind DefaultSampler(Purpose purpose, Estimator estimator, const Scene& scene) {
+    if (purpose == Purpose::Recording) return SamplerKind::Random;
+    return estimator == Estimator::Combined ? SamplerKind::SobolHalves : scene.sampler;
+}
+
 void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
     AddChoiceOption(app, "--estimator", estimator,
                     "Estimate light with least noise, or with the noise of pbrt-v3")
@@ -47,8 +52,8 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s) {
         ->capture_default_str();
 
     AddChoiceOption(app, "--sampler", &s->sampler,
-                    "Choose the sampler [the scene's; render, unless by --estimator pbrt-v3:\n"
-                    "sobol-halves]")
+                    "Choose the sampler [sobol-halves; by --estimator pbrt-v3 the scene's; study:\n"
+                    "random]")
         ->group("Sampling");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Seed the random numbers")
@@ -115,7 +120,8 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
     return {.version = LULL_VERSION,
             .scene = settings.scene.file,
             .seed = settings.seed,
-            .sampler = settings.sampler.value_or(scene.sampler),
+            .sampler = settings.sampler.value_or(
+                DefaultSampler(settings.purpose, settings.estimator, scene)),
             .estimator = settings.estimator,
             .criterion = "",
             .checksum = "",

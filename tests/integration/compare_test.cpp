@@ -38,7 +38,7 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
         EXPECT_TRUE(std::filesystem::exists(directory.File(file))) << file;
     }
 
-    const std::string render = std::string("render scene.pbrt --sampler random") + kSize;
+    const std::string render = std::string("render scene.pbrt") + kSize;
     RunLull(directory, render + "--stop dammertz:0.02 --cap 160 -o a.exr");
     RunLull(directory, render + "--stop thresholds:human.csv:a --cap 160 -o h.exr");
     RunLull(directory, render + "--spp 160 -o r.exr");
@@ -92,8 +92,8 @@ TEST(Compare, MakesTheDenoisedImageOfARender) {
     ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize +
                                  "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
                                  "room.html");
-    RunLull(directory, std::string("render scene.pbrt") + kSize +
-                           "--sampler random --denoise --cap 300 -o clean.exr");
+    RunLull(directory,
+            std::string("render scene.pbrt") + kSize + "--denoise --cap 300 -o clean.exr");
     EXPECT_EQ(Green(directory, "room.denoised.exr"), Green(directory, "clean.exr"));
     EXPECT_EQ(ReadExr(directory.File("room.denoised.exr")).Find("spp")->values,
               ReadExr(directory.File("clean.exr")).Find("spp")->values);
@@ -113,8 +113,8 @@ TEST(Compare, TakesPicturesForDisplays) {
     const SceneDirectory directory;
     const std::string part = " --crop 0.25,1,0,1 ";
     for (const char* spp : {"20", "160"})
-        RunLull(directory, std::string("render scene.pbrt --sampler random") + kSize + part +
-                               "--spp " + spp + " -o at" + spp + ".exr");
+        RunLull(directory, std::string("render scene.pbrt") + kSize + part + "--spp " + spp +
+                               " -o at" + spp + ".exr");
     const std::string files = "compare --block 40 ";
     const Outcome exr =
         ExpectSuccess(directory, files + "--automatic at20.exr --reference at160.exr -o exr");
