@@ -21,11 +21,6 @@ bool IsDisplayed(float x) { return x > 0 && x < 1; }
 
 double FourthPower(double x) { return (x * x) * (x * x); }
 
-float Luminance(float r, float g, float b) {
-    return float(kLuminanceWeights[0]) * r + float(kLuminanceWeights[1]) * g +
-           float(kLuminanceWeights[2]) * b;
-}
-
 // The luminance of white can round to more than 1.
 LightnessSlope<float> DisplayedLightness(float y) {
     const LightnessSlope<float> at = LightnessAt(y);
