@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <numeric>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/removed.h"
 #include "renderer/commands/talk.h"
 #include "renderer/mpi/job.h"
 
@@ -23,7 +25,7 @@ namespace lull {
 namespace {
 
 // The subcommands that several ranks can share.
-constexpr std::array kSharedCommands = {"render", "compare", "bench", "record"};
+constexpr std::array kSharedCommands = {"render", "compare", "record"};
 
 // Lists the options of a command that has common ones: by --help these, and those that no other
 // command has, by --help-all all of them by subject.
@@ -109,6 +111,21 @@ std::string NearestName(const std::string& word, const std::vector<std::string>&
     return isNear ? *nearest : "";
 }
 
+// Returns what to use instead of a command or an option that there is no longer; "" where all
+// are known, or not known at all.
+std::string ProblemOfRemoved(std::span<const char* const> words) {
+    for (const std::string_view word : words.subspan(1))
+        for (const Removed& removed : kRemoved)
+            if (words[1] == removed.command &&
+                (removed.option.empty() || word.substr(0, word.find('=')) == removed.option))
+                return fmt::format("there is no {} any more; {}",
+                                   removed.option.empty()
+                                       ? fmt::format("command '{}'", removed.command)
+                                       : fmt::format("option {}", removed.option),
+                                   removed.instead);
+    return "";
+}
+
 // Returns which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
@@ -167,13 +184,12 @@ ExitCode Main(MpiJob* job, int argc, char** argv) {
     entropy::AddCommand(app, &command);
     selftest::AddCommand(app, &command);
     compare::AddCommand(app, &command, job);
-    bench::AddCommand(app, &command, job);
     study::AddCommand(app, &command);
     for (CLI::App* each : app.get_subcommands({})) SetHelp(each);
     std::vector<const char*> words(argv, argv + argc);
-    if (const std::string problem = argc > 1 ? ProblemOfCommand(app, words[1]) : "";
-        !problem.empty())
-        return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
+    std::string problem = argc > 1 ? ProblemOfRemoved(words) : "";
+    if (argc > 1 && problem.empty()) problem = ProblemOfCommand(app, words[1]);
+    if (!problem.empty()) return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
     try {
         app.parse(argc, words.data());
     } catch (const CLI::ParseError& e) {
@@ -187,8 +203,7 @@ ExitCode Main(MpiJob* job, int argc, char** argv) {
     if (job->Count() > 1 && std::ranges::none_of(kSharedCommands, isShared))
         command = []() -> ExitCode {
             throw Error(
-                "only render, compare, bench and record run on several ranks; start this one "
-                "without "
+                "only render, compare and record run on several ranks; start this one without "
                 "mpirun");
         };
     return Run(job, command);

@@ -2,13 +2,12 @@
 #pragma once
 
 #include "renderer/base/math.h"
+#include "stopping/base/luminance.h"
 
 namespace lull {
 
-// Returns the luminance Y of linear sRGB, with pbrt-v3's weights.
-inline float Luminance(const Rgb& c) {
-    return 0.212671f * c.x() + 0.715160f * c.y() + 0.072169f * c.z();
-}
+// Returns the luminance Y of linear sRGB.
+inline float Luminance(const Rgb& c) { return Luminance(c.x(), c.y(), c.z()); }
 
 // Maps linear [0, 1] to the sRGB transfer curve (IEC 61966-2-1).
 inline float SrgbFromLinear(float v) {

@@ -35,9 +35,6 @@ void AddCommand(CLI::App& app, Command* command, MpiJob* job);
 namespace compare {
 void AddCommand(CLI::App& app, Command* command, MpiJob* job);
 }
-namespace bench {
-void AddCommand(CLI::App& app, Command* command, MpiJob* job);
-}
 namespace info {
 void AddCommand(CLI::App& app, Command* command);
 }

@@ -37,7 +37,7 @@ std::string SettingsOf(const PreparedRender& p) {
 
 bool IsFinished(const PreparedRender& p) {
     const RenderFiles& files = p.files;
-    if (!IsThere(files.exr) || !AreWhole(files, p.render.provenance, p.blocks.size())) return false;
+    if (!IsThere(files.exr) || !AreWhole(files)) return false;
     std::string found;
     try {
         const ExrImage image = ReadExr(files.exr);

@@ -82,7 +82,6 @@ FilmOptions FilmOf(const PreparedRender& p) {
 }
 
 void SetProvenance(const PreparedRender& p, Provenance* provenance) {
-    provenance->sampler = ChooseSampler(p.request.render, *p.render.scene);
     if (provenance->sampler != p.render.scene->sampler &&
         p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
         !p.request.render.quiet && p.render.Leads())
@@ -95,8 +94,6 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();
     provenance->grades = NamesOf(p.grades);
-    provenance->logRatios = p.rule.logRatios;
-    provenance->trend = p.rule.trend;
     provenance->guide = p.request.guide.mode;
     provenance->guideMegabytes = p.request.guide.megabytes;
 }
@@ -118,11 +115,6 @@ int64_t BytesBeside(const RenderRequest& request) {
 }
 
 }  // namespace
-
-SamplerKind ChooseSampler(const RenderSettings& settings, const Scene& scene) {
-    if (settings.sampler) return *settings.sampler;
-    return settings.estimator == Estimator::Combined ? SamplerKind::SobolHalves : scene.sampler;
-}
 
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
     auto p = std::make_unique<PreparedRender>(request, ranks);

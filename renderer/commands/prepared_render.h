@@ -31,8 +31,4 @@ struct PreparedRender {
 // be wrong before the work begins.
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks);
 
-// Returns the sampler of an image, unless the user has chosen one: that of least noise with
-// independent halves, from which noise is estimated. pbrt-v3's noise needs the scene's.
-SamplerKind ChooseSampler(const RenderSettings& settings, const Scene& scene);
-
 }  // namespace lull::render

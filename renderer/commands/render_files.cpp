@@ -19,9 +19,6 @@ namespace {
 
 using std::filesystem::path;
 
-// Returns whether a render that ends by itself has a file of ranges.
-bool HasRanges(const Provenance& provenance) { return !provenance.logRatios.empty(); }
-
 // Returns whether a file is there and was not cut short.
 bool IsWhole(const std::string& file) try {
     if (!IsThere(file)) return false;
@@ -30,12 +27,6 @@ bool IsWhole(const std::string& file) try {
                             : file.ends_with(".html") ? "</html>\n"
                                                       : "\n";
     return ReadFile(file).View().ends_with(end);
-} catch (const Error&) {
-    return false;
-}
-
-bool HasLines(const std::string& file, size_t count) try {
-    return IsThere(file) && size_t(std::ranges::count(ReadFile(file).View(), '\n')) == count;
 } catch (const Error&) {
     return false;
 }
@@ -57,21 +48,18 @@ RenderFiles NameFiles(const std::string& output, const std::string& report) {
     auto with = [&](const char* extension) {
         return path(output).replace_extension(extension).string();
     };
-    return {with(".exr"),        with(".png"), with(".spp.png"), with(".thresholds.csv"),
-            with(".ranges.csv"), report};
+    return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
 }
 
 std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
     std::vector<NamedFile> outputs;
-    for (const std::string& file :
-         {files.exr, files.png, files.sppMap, files.thresholds, files.ranges})
+    for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds})
         outputs.push_back({"-o", file});
     outputs.push_back({"--report", files.report});
     return outputs;
 }
 
-bool AreWhole(const RenderFiles& files, const Provenance& provenance, size_t blockCount) {
-    if (HasRanges(provenance) && !HasLines(files.ranges, 1 + blockCount)) return false;
+bool AreWhole(const RenderFiles& files) {
     const std::initializer_list<std::string> others = {files.png, files.sppMap, files.thresholds,
                                                        files.report};
     return std::ranges::all_of(
@@ -107,11 +95,6 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
         results.Write(files.thresholds, [&](const std::string& file) {
             WriteThresholdsOf(file, provenance.scene, ThresholdsOf(provenance, result));
         });
-    if (result.cancelled || !HasRanges(provenance))
-        ResultFiles::RemoveOld(files.ranges);
-    else
-        results.Write(files.ranges,
-                      [&](const std::string& file) { WriteRanges(file, provenance, result); });
     if (files.report.ends_with(".html"))
         results.WriteText(files.report, MakeRenderPage(provenance, result, film, render.histories,
                                                        render.warnings.Counts(), render.denoised));

@@ -12,7 +12,7 @@ inline constexpr const char* kSettingsAttribute = "settings";
 
 // Names the files; a report that is not wanted is empty.
 struct RenderFiles {
-    std::string exr, png, sppMap, thresholds, ranges, report;
+    std::string exr, png, sppMap, thresholds, report;
 };
 
 // Returns the names for `output`, a name that ends in .exr or .png; all are in one folder.
@@ -28,9 +28,8 @@ bool HasImageExtension(const std::string& output);
 // Returns all files that may be written or removed, for CheckOutputs().
 std::vector<NamedFile> OutputsOf(const RenderFiles&);
 
-// Returns whether all files but the EXR that a render of so many blocks ends with are there, none
-// of them cut short.
-bool AreWhole(const RenderFiles&, const Provenance&, size_t blockCount);
+// Returns whether all files but the EXR that a render ends with are there, none of them cut short.
+bool AreWhole(const RenderFiles&);
 
 // A finished render; `histories` have the curves for a page.
 struct FinishedRender {

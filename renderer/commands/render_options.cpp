@@ -24,8 +24,6 @@ constexpr const char* kFooter =
   OUT.png             the same image for displays, 8-bit sRGB
   OUT.spp.png         samples per pixel of each block in false colours
   OUT.thresholds.csv  samples per pixel at which each block stopped, row by row
-  OUT.ranges.csv      range of samples per pixel of each block intended to contain the human
-                      threshold in 80 of 100 cases, if the model provides it; also in the report
 
 Examples:
   lull render scene.pbrt -o image.exr

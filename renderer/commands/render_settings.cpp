@@ -12,6 +12,11 @@
 
 namespace lull {
 
+SamplerKind DefaultSampler(Purpose purpose, Estimator estimator, const Scene& scene) {
+    if (purpose == Purpose::Recording) return SamplerKind::Random;
+    return estimator == Estimator::Combined ? SamplerKind::SobolHalves : scene.sampler;
+}
+
 void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
     AddChoiceOption(app, "--estimator", estimator,
                     "Estimate light with least noise, or with the noise of pbrt-v3")
@@ -29,7 +34,7 @@ CLI::Option* AddCautionOption(CLI::App& app, double* caution) {
         ->capture_default_str();
 }
 
-void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
+void AddRenderSettings(CLI::App& app, RenderSettings* s) {
     AddSceneOptions(app, &s->scene);
     app.add_option("--cap", s->cap, "Stop every block at N spp at the latest [10000]")
         ->group(kCommonOptions)
@@ -46,11 +51,10 @@ void AddRenderSettings(CLI::App& app, RenderSettings* s, bool withSampler) {
         ->type_name("N")
         ->capture_default_str();
 
-    if (withSampler)
-        AddChoiceOption(app, "--sampler", &s->sampler,
-                        "Choose the sampler [the scene's; render, unless by --estimator pbrt-v3:\n"
-                        "sobol-halves]")
-            ->group("Sampling");
+    AddChoiceOption(app, "--sampler", &s->sampler,
+                    "Choose the sampler [sobol-halves; by --estimator pbrt-v3 the scene's; study:\n"
+                    "random]")
+        ->group("Sampling");
     AddEstimatorOption(app, &s->estimator);
     app.add_option("--seed", s->seed, "Seed the random numbers")
         ->group("Sampling")
@@ -95,9 +99,9 @@ Rule ReadRuleOption(const std::string& option, const std::string& rule,
                     const RenderSettings& settings, const PixelRect& region,
                     std::map<std::string, SignalMeasure> measures) try {
     if (IsRule(rule, kDenoisedRuleName) && measures.empty())
-        throw Error(option + " " + rule +
-                    ": needs --denoise of lull render; lull compare and lull bench add a denoised "
-                    "image with --denoise");
+        throw Error(
+            option + " " + rule +
+            ": needs --denoise of lull render; lull compare --denoise adds a denoised image");
     const ScheduleOptions& schedule = settings.schedule;
     const RuleContext context{.passSpp = schedule.passLength,
                               .blockCount = int(MakeBlocks(region, schedule).size()),
@@ -116,12 +120,11 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
     return {.version = LULL_VERSION,
             .scene = settings.scene.file,
             .seed = settings.seed,
-            .sampler = settings.sampler.value_or(scene.sampler),
+            .sampler = settings.sampler.value_or(
+                DefaultSampler(settings.purpose, settings.estimator, scene)),
             .estimator = settings.estimator,
             .criterion = "",
             .checksum = "",
-            .logRatios = {},
-            .trend = {},
             .schedule = settings.schedule,
             .maxDepth = MaxDepth(scene.integrator),
             .integrator = std::holds_alternative<PathIntegrator>(scene.integrator)

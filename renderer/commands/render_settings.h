@@ -7,11 +7,20 @@
 
 namespace lull {
 
+// What a render is for: an image of little noise, or the noise of the images that observers judged.
+enum class Purpose { Image, Recording };
+
+// Returns the sampler where the user names none. Images have that of least noise with independent
+// halves, from which noise is estimated; with pbrt-v3's noise, the scene's. Recordings have
+// independent samples.
+SamplerKind DefaultSampler(Purpose, Estimator, const Scene&);
+
 struct RenderSettings {
     SceneOptions scene;
+    Purpose purpose = Purpose::Image;
     std::optional<int> cap;
     ScheduleOptions schedule;
-    std::optional<SamplerKind> sampler;  // else the scene's
+    std::optional<SamplerKind> sampler;  // else DefaultSampler()
     Estimator estimator = Estimator::Combined;
     uint64_t seed = 0;
     CheckpointOptions checkpoint;
@@ -19,9 +28,9 @@ struct RenderSettings {
     bool quiet = false, jsonProgress = false;
 };
 
-// Adds the options of the scene, --cap, --pass, --block, --sampler (unless it is not wanted),
-// --estimator, --seed, --quiet and --json-progress.
-void AddRenderSettings(CLI::App& app, RenderSettings* settings, bool withSampler = true);
+// Adds the options of the scene, --cap, --pass, --block, --sampler, --estimator, --seed, --quiet
+// and --json-progress.
+void AddRenderSettings(CLI::App& app, RenderSettings* settings);
 
 // Adds --estimator, which stays as it is where the user says nothing.
 void AddEstimatorOption(CLI::App& app, Estimator* estimator);

@@ -68,9 +68,9 @@ std::string SharesOf(const std::vector<double>& shares) {
 // Returns the blocks at the cap, their rule's value there, and a sufficient cap.
 std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t kShown = 8;
-    const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
+    const std::vector<CappedBlock> capped = FindCapped(result);
     if (capped.empty()) return "";
-    const bool isOdds = provenance.trend.kind == RuleTrend::Probability;
+    const bool isOdds = result.trend.kind == RuleTrend::Probability;
     std::string text = fmt::format("blocks at the cap, with their {}:\n",
                                    isOdds ? "probability of visible noise" : "value of the rule");
     for (size_t i = 0; i < std::min(kShown, capped.size()); ++i) {
@@ -125,7 +125,7 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
     if (settings.quiet) return;
     WarnOfRejected(rejected, TalkOf(settings));
     if (settings.jsonProgress) return;
-    Say("{}{}{}{}", SummaryOf(result, settings.schedule.cap, provenance.trend.kind),
+    Say("{}{}{}{}", SummaryOf(result, settings.schedule.cap, result.trend.kind),
         SharesOf(result.shares), result.timeUp ? ShortfallOf(provenance, result) : "",
         CappedOf(provenance, result));
 }

@@ -15,7 +15,6 @@ function showBlock(data, i) {
   add("CPU time", b => b.seconds > 0, b => (b.estimated ? "~" : "") + showSeconds(b.seconds));
   add("CPU time of the rule", b => b.ruleSeconds > 0, b => showSeconds(b.ruleSeconds));
   if (page.blockRows) page.blockRows(i, images, add, rows);
-  if (block.people) rows.push(["human threshold, 80 % range", (isNumber(block.people.to) ? `${showCount(block.people.from)} to ${showCount(block.people.to)}` : `${showCount(block.people.from)} or more`) + " spp"]);
   if (block.end) rows.push(["end", blockEnds[block.end]]);
   if (isNumber(block.visibleNoise)) rows.push(["masked noise, L*", block.visibleNoise.toFixed(2)]);
   const error = block.visibleDifference;

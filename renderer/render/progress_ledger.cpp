@@ -92,6 +92,7 @@ const std::vector<BlockResult>& ProgressLedger::Blocks(const Schedule& schedule)
 
 RenderResult ProgressLedger::Result(const Schedule& schedule) {
     RenderResult result;
+    if (options.trend) result.trend = *options.trend;
     result.blocks = Blocks(schedule);
     result.progress = Progress(schedule);
     if (options.events.onProgress) options.events.onProgress(result.progress);

@@ -10,7 +10,6 @@
 #include "renderer/learning/learning.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
-#include "stopping/rules/trend.h"
 
 namespace lull {
 
@@ -21,8 +20,6 @@ struct Provenance {
     SamplerKind sampler = SamplerKind::Sobol;
     Estimator estimator = Estimator::Combined;
     std::string criterion, checksum;  // the stopping rule; of its file, if any
-    std::vector<double> logRatios;    // of the rule, see network/human_range.h; empty: not known
-    RuleTrend trend = {};             // of the rule
     ScheduleOptions schedule;
     int maxDepth = 0;
     std::string integrator = {};  // empty: paths from the camera alone

@@ -101,6 +101,7 @@ struct RenderResult {
     bool timeUp = false;              // the clock ended it before every block had stopped
     int threads = 0;                  // that it could use
     std::vector<double> shares = {};  // of the tiles, that ranks had in the end; empty: one rank
+    RuleTrend trend = {};             // of the rule, where the options have it
 };
 
 // Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.

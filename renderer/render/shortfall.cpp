@@ -63,7 +63,8 @@ std::vector<NoisyBlock> FindShortfall(const Provenance& provenance, const Render
     return noisy;
 }
 
-std::vector<CappedBlock> FindCapped(const RenderResult& result, const RuleTrend& trend) {
+std::vector<CappedBlock> FindCapped(const RenderResult& result) {
+    const RuleTrend& trend = result.trend;
     constexpr int kMostCap = 1 << 24;
     if (trend.kind == RuleTrend::Samples) return {};
     std::vector<StopTrend> trends(result.blocks.size(), StopTrend(trend));

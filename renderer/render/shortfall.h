@@ -29,7 +29,7 @@ struct CappedBlock {
 
 // Returns the blocks at the cap, the furthest from stopping first: none for a rule that counts
 // samples. The value of the rule is extrapolated (forecast.h).
-std::vector<CappedBlock> FindCapped(const RenderResult&, const RuleTrend&);
+std::vector<CappedBlock> FindCapped(const RenderResult&);
 
 // Returns a cap at which all of them have probably stopped, above the one they had, in round
 // numbers; 0: not to be told.

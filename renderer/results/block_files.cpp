@@ -1,13 +1,10 @@
 #include "renderer/results/block_files.h"
 
-#include <fmt/format.h>
-
 #include <sstream>
 
 #include "renderer/files/file_io.h"
 #include "renderer/film/spp_map.h"
 #include "renderer/image/image_io.h"
-#include "stopping/network/human_range.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
@@ -16,7 +13,7 @@ void WriteSppMap(const std::string& file, const Provenance& provenance,
                  const RenderResult& result) {
     const ScheduleOptions& schedule = provenance.schedule;
     std::vector<SppBlock> blocks;
-    const bool isNoisyAtCap = provenance.trend.kind != RuleTrend::Samples;
+    const bool isNoisyAtCap = result.trend.kind != RuleTrend::Samples;
     for (const BlockResult& b : result.blocks)
         blocks.push_back({b.block.pixels, b.block.spp, isNoisyAtCap && b.block.IsAtCap()});
     const int lowest = std::min(schedule.passLength, schedule.cap);
@@ -36,21 +33,6 @@ std::vector<int> ThresholdsOf(const Provenance& provenance, const RenderResult& 
         spp.push_back(b.block.stoppedByVote || !b.block.stopped ? b.block.spp
                                                                 : provenance.schedule.cap);
     return spp;
-}
-
-void WriteRanges(const std::string& file, const Provenance& provenance,
-                 const RenderResult& result) {
-    std::string csv = "block,x,y,width,height,spp,stopped,people_from,people_to\n";
-    for (size_t i = 0; i < result.blocks.size(); ++i) {
-        const Block& block = result.blocks[i].block;
-        const PixelRect& r = block.pixels;
-        const HumanRange people =
-            RangeOfPeople(block.spp, block.stoppedByVote, provenance.logRatios);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", i, r.min.x(), r.min.y(), r.Width(),
-                           r.Height(), block.spp, int(block.stoppedByVote), people.low,
-                           people.high ? std::to_string(*people.high) : "");
-    }
-    WriteFileAtomically(file, csv);
 }
 
 }  // namespace lull

@@ -18,8 +18,4 @@ void WriteThresholdsOf(const std::string& file, const std::string& scene, std::v
 // Returns the thresholds that repeat a render.
 std::vector<int> ThresholdsOf(const Provenance&, const RenderResult&);
 
-// Writes of each block between which spp people would have stopped to see noise; an upper end that
-// is not known is left empty.
-void WriteRanges(const std::string& file, const Provenance&, const RenderResult&);
-
 }  // namespace lull

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "renderer/denoise/scales.h"
+#include "renderer/denoise/visible_error.h"
 #include "renderer/render/film_picture.h"
-#include "renderer/vision/visible_difference.h"
 
 namespace lull {
 
@@ -74,7 +74,7 @@ std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
         "visible difference from the true image probably at most {:.2g} in half of the {}blocks{} "
         "and {:.2g} in all (accepted: {})",
         upper[upper.size() / 2], isKnown ? "" : fmt::format("{} ", upper.size()),
-        isKnown ? "" : " of which it is known", upper.back(), kVisibilityThreshold);
+        isKnown ? "" : " of which it is known", upper.back(), kAcceptedBound);
     if (worstPixels == 1)
         text += fmt::format(", except for a pixel that may be wrong by {:.0f} in L*", worst);
     if (worstPixels > 1)

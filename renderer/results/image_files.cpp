@@ -56,7 +56,7 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
             "of the others depend on the machine; --stop thresholds: with the file beside the "
             "image repeats it",
             stopped, result.progress.blocks, atCap);
-    else if (atCap > 0 && provenance.trend.kind != RuleTrend::Samples)
+    else if (atCap > 0 && result.trend.kind != RuleTrend::Samples)
         exr.attributes["note"] =
             fmt::format("{} of {} blocks went to the cap of {} spp, and had not stopped there",
                         atCap, result.progress.blocks, provenance.schedule.cap);

@@ -4,7 +4,6 @@
 
 #include "renderer/render/shortfall.h"
 #include "renderer/results/report_json.h"
-#include "stopping/network/human_range.h"
 
 namespace lull {
 
@@ -15,20 +14,12 @@ const char* EndOf(const Block& block, bool timeUp) {
     return block.stoppedByVote ? "stopped" : "cap";
 }
 
-// Returns between which spp people would have stopped to see noise; null: more than is known.
-Json RangeJson(const Block& block, const std::vector<double>& logRatios) {
-    const HumanRange range = RangeOfPeople(block.spp, block.stoppedByVote, logRatios);
-    return {{"from", range.low}, {"to", range.high ? Json(*range.high) : Json(nullptr)}};
-}
-
-Json BlockJson(const BlockResult& result, int cap, bool timeUp,
-               const std::vector<double>& logRatios) {
+Json BlockJson(const BlockResult& result, int cap, bool timeUp) {
     const Block& block = result.block;
     Json json = RectJson(block.pixels);
     json["spp"] = block.spp;
     json["threshold"] = block.stoppedByVote || (timeUp && !block.stopped) ? block.spp : cap;
     json["end"] = EndOf(block, timeUp);
-    if (!logRatios.empty() && block.stopped) json["people"] = RangeJson(block, logRatios);
     if (std::isfinite(block.noise)) json["visibleNoise"] = block.noise;
     if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
     json["seconds"] = result.seconds;
@@ -53,7 +44,7 @@ void AddShortfall(const Provenance& provenance, const RenderResult& result, Json
 
 // Adds at which spp blocks at the cap would probably have stopped, and which cap would do.
 void AddCapped(const Provenance& provenance, const RenderResult& result, Json* report) {
-    const std::vector<CappedBlock> capped = FindCapped(result, provenance.trend);
+    const std::vector<CappedBlock> capped = FindCapped(result);
     for (const CappedBlock& c : capped)
         if (c.neededSpp > 0) (*report)["blocks"][size_t(c.block)]["neededSpp"] = c.neededSpp;
     if (capped.empty()) return;
@@ -152,8 +143,7 @@ Json ReportJson(const Provenance& provenance, const RenderResult& result, int64_
     report["totals"] = TotalsJson(provenance, result, rejectedSamples);
     report["blocks"] = Json::array();
     for (const BlockResult& block : result.blocks)
-        report["blocks"].push_back(
-            BlockJson(block, provenance.schedule.cap, result.timeUp, provenance.logRatios));
+        report["blocks"].push_back(BlockJson(block, provenance.schedule.cap, result.timeUp));
     if (denoised)
         for (size_t i = 0; i < result.blocks.size(); ++i)
             if (const auto& error = denoised->blocks[i])

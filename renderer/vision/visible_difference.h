@@ -54,8 +54,9 @@ VisibleDifference FindVisibleDifference(std::span<const float> image,
                                         const DisplayModel&);
 VisibleDifference FindVisibleDifference(std::span<const float> image, const VisibleReference&);
 
-// Visible difference above which a block differs visibly. The one number that agrees best with the
-// human thresholds of 102 blocks is 3.45 (95 %: 2.0 to 5.1; docs/denoising.md).
+// Visible difference of all pixels of a block above which it differs visibly. The one number that
+// agrees best with the human thresholds of 102 blocks is 3.45 (95 %: 2.0 to 5.1;
+// docs/denoising.md).
 inline constexpr double kVisibilityThreshold = 3.1;
 
 // Returns the visible difference of a part of the picture, in pixels; not empty. This is the

@@ -14,7 +14,6 @@
 #include "stopping/base/state.h"
 #include "stopping/embedding/model_folder.h"
 #include "stopping/embedding/picture.h"
-#include "stopping/network/human_range.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 
@@ -264,11 +263,6 @@ void Stopper::Check(int block, const lull_picture& picture, const lull_rect& par
     answer.next_spp = answer.stop || spp == std::numeric_limits<int>::max()
                           ? 0
                           : NextCheck(*state.criterion, spp + 1);
-    if (answer.stop && !rule->logRatios.empty()) {
-        const HumanRange people = RangeOfPeople(spp, true, rule->logRatios);
-        answer.people_low = people.low;
-        answer.people_high = people.high.value_or(0);
-    }
     NoteSpacing(&state);
 }
 

@@ -1,5 +1,5 @@
 #!/bin/bash
-# A perception laboratory's day: from a folder of pictures to thresholds of people, a table and a figure.
+# A perception laboratory's day: from a folder of pictures to thresholds of people and tables.
 #
 #   laboratory.sh PICTURES ANSWERS OUT [BLOCK]
 #
@@ -41,10 +41,10 @@ fi
 $lull record --images "$pictures" --block "$block" -o "$out/data.h5"
 $lull train "$out/data.h5" --human "$human" -o "$out/own.h5" --quiet >"$out/training.txt"
 
-# 4. The table: how far rules stop from people; and the figure: how their numbers fall in each block.
+# 4. The tables: how far rules stop from people, and how their numbers fall in each block.
 $lull evaluate "$out/data.h5" --human "$human" --stop learned --stop "learned:$out/own.h5" \
-    --csv "$out/table.csv" --blocks "$out/blocks.csv" --curves "$out/curves.csv" \
-    --figure "$out/figure.svg" | tee "$out/table.txt"
+    --csv "$out/table.csv" --blocks "$out/blocks.csv" --curves "$out/curves.csv" |
+    tee "$out/table.txt"
 
 # 5. The images that the rule and the observers leave, compared with the last picture.
 $lull compare --images "$pictures" --human "$human" --block "$block" -o "$out/" \

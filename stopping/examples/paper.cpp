@@ -3,8 +3,8 @@
 // pixel: kitchen_20.png, kitchen_40.png, ... The last line of the output is that of a thresholds
 // file: the spp at which each block stopped, row by row.
 //
-// The library runs the method, and no more. Its inputs (sub-blocks, H, H1 or H2, k, n, bnorm,
-// snorm) are fixed by the model; lull_svd_entropy() returns the entropies. It trains nothing, and
+// The library runs the method, and no more. Its inputs (sub-blocks, H, H1 or H2, k, n, snorm)
+// are fixed by the model; lull_svd_entropy() returns the entropies. It trains nothing, and
 // it does not compare with people: `lull train --preset paper` and `lull evaluate` do, or paper.py
 // in this folder. The model "paper" is lull's own small network: the authors' weights are not part
 // of lull; a file with weights of Keras can be named instead.

@@ -8,7 +8,7 @@ name is its spp: kitchen_20.png, kitchen_40.png, ... The result is a line of a t
 each block stopped, row by row. With --human also the critical error, by human thresholds.
 
 docs/paper.md has each step, the function behind it and its test. MODEL is "paper", lull's own small network, or a
-file of `lull train --preset paper` or of Keras. It fixes k, n, the sub-blocks, H, H1 or H2, bnorm and snorm.
+file of `lull train --preset paper` or of Keras. It fixes k, n, the sub-blocks, H, H1 or H2, and snorm.
 """
 import argparse
 import pathlib

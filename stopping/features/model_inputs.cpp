@@ -8,7 +8,6 @@
 
 #include "stopping/signals/attributes26.h"
 #include "stopping/signals/lightness.h"
-#include "stopping/signals/lightness_noise.h"
 #include "stopping/signals/svd_entropy.h"
 
 namespace lull {
@@ -42,44 +41,19 @@ void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
     }
 }
 
-void MeasureStatistics(const BlockView& view, BlockMeasures* measures) {
-    const LightnessNoiseStatistics s = SubBlockStatistics(ComputeLightnessNoise(view), view.width,
-                                                          view.height, kMeasuredSubBlocks);
-    measures->Of(Feature::DetailMaskedNoise) =
-        DetailMaskedNoise(s.halfNoise, s.deviation, s.texture);
-}
-
 int ValueCount(const ModelSettings& settings, Feature feature) {
     if (feature == Feature::Attributes26) return kAttributes;
     return IsEntropy(feature) ? settings.m : kMeasuredSubBlocks;
 }
 
-double Pooled(const Pool& pool, const std::vector<double>& values) {
-    const Eigen::Map<const Eigen::ArrayXd> v(values.data(), Eigen::Index(values.size()));
-    return pool.exponent == 1 ? v.mean()
-                              : std::pow(v.abs().pow(pool.exponent).mean(), 1.0 / pool.exponent);
-}
-
-// Returns the constant added to noise before its logarithm is taken.
-double LeastNoise(Feature feature) { return feature == Feature::VisibleDrop ? 0.1 : 0.001; }
-
-// Brings values near the unit interval, or to where differences mean the same everywhere.
-double Scaled(Feature feature, double value) {
-    if (IsNormalized(feature)) return value;
-    return std::log(std::max(value, 0.0) + LeastNoise(feature));
-}
+constexpr double kLeastNoise = 0.1;  // is added to noise before its logarithm is taken
 
 }  // namespace
 
-ViewNeed NeedOf(const ModelSettings& settings) {
-    return Needs(settings, Feature::DetailMaskedNoise) ? ViewNeed::MeanAndHalf : ViewNeed::Mean;
-}
-
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
-    CheckView(view, NeedOf(settings));
+    CheckView(view, ViewNeed::Mean);
     BlockMeasures measures{.spp = view.spp, .variance = view.variance};
     MeasureDisplayed(view, settings, &measures);
-    if (Needs(settings, Feature::DetailMaskedNoise)) MeasureStatistics(view, &measures);
     if (Needs(settings, Feature::VisibleDrop))
         measures.lightness = MeasureLightness(view, kMeasuredSubBlocks);
     return measures;
@@ -89,8 +63,8 @@ std::vector<InputRange> InputRanges(const ModelSettings& settings) {
     std::vector<InputRange> ranges;
     int begin = 0;
     for (Feature feature : settings.features) {
-        const bool pooled = !settings.pools.empty() && HasSubBlocks(feature);
-        const int count = pooled ? int(settings.pools.size()) : ValueCount(settings, feature);
+        const bool isMean = settings.takesMean && HasSubBlocks(feature);
+        const int count = isMean ? 1 : ValueCount(settings, feature);
         ranges.push_back({feature, begin, count});
         begin += count;
     }
@@ -110,13 +84,15 @@ std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettin
         if (values.size() != size_t(ValueCount(settings, feature)))
             throw std::invalid_argument("the measures of " + FeatureNames({&feature, 1}) +
                                         " do not have as many values as there must be");
-        const double factor = IsNoise(feature) ? settings.caution : 1;
-        if (settings.pools.empty() || !HasSubBlocks(feature)) {
-            for (double v : values) inputs.push_back(Scaled(feature, factor * v));
-            continue;
+        const auto scaled = [&](double value) {
+            return IsNoise(feature) ? InputOfNoise(settings.caution * value) : value;
+        };
+        if (settings.takesMean && HasSubBlocks(feature)) {
+            const Eigen::Map<const Eigen::ArrayXd> v(values.data(), Eigen::Index(values.size()));
+            inputs.push_back(scaled(v.mean()));
+        } else {
+            for (const double v : values) inputs.push_back(scaled(v));
         }
-        for (const Pool& pool : settings.pools)
-            inputs.push_back(Scaled(feature, factor * Pooled(pool, values)));
     }
     return inputs;
 }
@@ -126,12 +102,8 @@ bool LooksAtNoiseOnly(const ModelSettings& settings) {
            InputCount(settings) == 1;
 }
 
-double InputOfNoise(double noise, const ModelSettings& settings) {
-    return Scaled(settings.features.at(0), noise);
-}
+double InputOfNoise(double noise) { return std::log(std::max(noise, 0.0) + kLeastNoise); }
 
-double NoiseOfInput(double input, const ModelSettings& settings) {
-    return std::max(0.0, std::exp(input) - LeastNoise(settings.features.at(0)));
-}
+double NoiseOfInput(double input) { return std::max(0.0, std::exp(input) - kLeastNoise); }
 
 }  // namespace lull

@@ -26,9 +26,6 @@ struct BlockMeasures {
     const std::vector<double>& Of(Feature feature) const { return values[size_t(feature)]; }
 };
 
-// Returns the inputs of MeasureBlock().
-ViewNeed NeedOf(const ModelSettings& settings);
-
 // Measures the features of the settings; for drops, which BlockMemory completes, their entropies
 // and lightness. Throws as CheckView() and SubBlockEntropies() do.
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings);
@@ -44,16 +41,15 @@ std::vector<InputRange> InputRanges(const ModelSettings& settings);
 int InputCount(const ModelSettings& settings);
 
 // Returns the input of one step, InputCount() values, before it is normalised over a window:
-// entropies and attributes as they are; noise, times the caution, as log(v + 0.001), visible as
-// log(v + 0.1). Values are pooled before their logarithm is taken. Throws std::invalid_argument if
-// the measures of a feature have a wrong length.
+// entropies and attributes as they are; noise, times the caution, as log(v + 0.1), of its mean if
+// that is taken. Throws std::invalid_argument if the measures of a feature have a wrong length.
 std::vector<double> InputVector(const BlockMeasures& measures, const ModelSettings& settings);
 
-// Returns whether noise, pooled to one number, is the only input of a network.
+// Returns whether the mean noise is the only input of a network.
 bool LooksAtNoiseOnly(const ModelSettings& settings);
 
 // Convert that noise, >= 0, times the caution, to the network's input, and back.
-double InputOfNoise(double noise, const ModelSettings& settings);
-double NoiseOfInput(double input, const ModelSettings& settings);
+double InputOfNoise(double noise);
+double NoiseOfInput(double input);
 
 }  // namespace lull

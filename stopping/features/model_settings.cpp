@@ -12,11 +12,10 @@ namespace lull {
 
 namespace {
 
-constexpr std::array<std::pair<Feature, const char*>, 6> kFeatureNames = {
+constexpr std::array<std::pair<Feature, const char*>, 5> kFeatureNames = {
     {{Feature::H, "H"},
      {Feature::H1, "H1"},
      {Feature::H2, "H2"},
-     {Feature::DetailMaskedNoise, "detail_masked_noise"},
      {Feature::VisibleDrop, "visible_drop"},
      {Feature::Attributes26, "attributes26"}}};
 
@@ -29,59 +28,27 @@ Feature ParseFeature(const std::string& name) {
     throw std::invalid_argument("feature '" + name + "' is not known; there are " + known);
 }
 
-std::string FeatureName(Feature feature) { return kFeatureNames[size_t(feature)].second; }
-
-Pool ParsePool(const std::string& name) {
-    if (name == "mean") return {1};
-    if (name == "rms") return {2};
-    if (name.size() == 2 && name[0] == 'p' && name[1] >= '3' && name[1] <= '9')
-        return {name[1] - '0'};
-    throw std::invalid_argument("pooling '" + name +
-                                "' is not known; there are mean, rms and p3 to p9");
-}
-
-std::string PoolName(const Pool& pool) {
-    return pool.exponent == 1   ? "mean"
-           : pool.exponent == 2 ? "rms"
-                                : "p" + std::to_string(pool.exponent);
-}
-
-template <typename T>
-std::vector<T> ParseList(const std::string& names, T (*parse)(const std::string&)) {
-    std::vector<T> list;
-    for (size_t begin = 0; begin <= names.size();) {
-        const size_t end = std::min(names.find(',', begin), names.size());
-        const std::string name = names.substr(begin, end - begin);
-        const T item = parse(name);
-        if (std::find(list.begin(), list.end(), item) != list.end())
-            throw std::invalid_argument("'" + name + "' comes twice in '" + names + "'");
-        list.push_back(item);
-        begin = end + 1;
-    }
-    return list;
-}
-
-template <typename T, typename Name>
-std::string JoinNames(std::span<const T> list, Name name) {
-    std::string names;
-    for (const T& item : list) names.append(names.empty() ? "" : ",").append(name(item));
-    return names;
-}
-
 }  // namespace
 
 std::string FeatureNames(std::span<const Feature> features) {
-    return JoinNames(features, FeatureName);
+    std::string names;
+    for (const Feature feature : features)
+        names.append(names.empty() ? "" : ",").append(kFeatureNames[size_t(feature)].second);
+    return names;
 }
 
 std::vector<Feature> ParseFeatures(const std::string& names) {
-    return ParseList(names, ParseFeature);
-}
-
-std::string PoolNames(std::span<const Pool> pools) { return JoinNames(pools, PoolName); }
-
-std::vector<Pool> ParsePools(const std::string& names) {
-    return names.empty() ? std::vector<Pool>() : ParseList(names, ParsePool);
+    std::vector<Feature> list;
+    for (size_t begin = 0; begin <= names.size();) {
+        const size_t end = std::min(names.find(',', begin), names.size());
+        const std::string name = names.substr(begin, end - begin);
+        const Feature feature = ParseFeature(name);
+        if (std::ranges::find(list, feature) != list.end())
+            throw std::invalid_argument("'" + name + "' comes twice in '" + names + "'");
+        list.push_back(feature);
+        begin = end + 1;
+    }
+    return list;
 }
 
 std::string SpacingName(Spacing spacing) {

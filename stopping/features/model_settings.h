@@ -10,41 +10,24 @@
 namespace lull {
 
 // Measurements of a block: the entropies of each of m sub-blocks (the paper's features, see
-// svd_entropy.h), the noise of each of 10 x 10 sub-blocks, masked by detail (lightness_noise.h) or
-// made visible by the fall of the entropies H since half as many samples (entropy_drop.h; for
-// m = 100), and the differences to filtered versions of the whole block (attributes26.h).
-enum class Feature { H, H1, H2, DetailMaskedNoise, VisibleDrop, Attributes26 };
+// svd_entropy.h), the visible noise of each of 10 x 10 sub-blocks, from the fall of the entropies H
+// since half as many samples (entropy_drop.h; for m = 100), and the differences to filtered
+// versions of the whole block (attributes26.h).
+enum class Feature { H, H1, H2, VisibleDrop, Attributes26 };
 
-// Convert to and from names: "H", "H1", "H2", "detail_masked_noise", "visible_drop" and
-// "attributes26"; a list is separated by commas. ParseFeatures() throws std::invalid_argument for
-// others, and for duplicates.
+// Convert to and from names: "H", "H1", "H2", "visible_drop" and "attributes26"; a list is
+// separated by commas. ParseFeatures() throws std::invalid_argument for others, and for duplicates.
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);
 inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
 // Returns whether a feature is the standard deviation of noise in lightness, which `caution`
 // scales.
-inline bool IsNoise(Feature feature) {
-    return feature == Feature::DetailMaskedNoise || feature == Feature::VisibleDrop;
-}
+inline bool IsNoise(Feature feature) { return feature == Feature::VisibleDrop; }
 // Returns whether this feature is normalised over a window, as the paper does with both of its
 // features.
 inline bool IsNormalized(Feature feature) { return !IsNoise(feature); }
 // Returns whether there is a value for each sub-block.
 inline bool HasSubBlocks(Feature feature) { return feature != Feature::Attributes26; }
-
-// Summarises the values of all sub-blocks in one number, a power mean. Visibility adds up over a
-// picture with exponents of 3 to 4 (probability summation; Quick 1974, Watson 1979).
-struct Pool {
-    int exponent = 1;  // 1: the mean, 2: the root mean square
-
-    bool operator==(const Pool&) const = default;
-};
-
-// Convert to and from names: "mean", "rms", and "p3" to "p9" for larger exponents; a list is
-// separated by commas and may be empty. ParsePools() throws std::invalid_argument as
-// ParseFeatures() does.
-std::string PoolNames(std::span<const Pool> pools);
-std::vector<Pool> ParsePools(const std::string& names);
 
 // How far apart the steps of a window are: n spp, or each at `ratio` times the spp of the
 // previous one, or the nearest that is kept (see history.h).
@@ -58,12 +41,10 @@ struct ModelSettings {
     int n = 40;   // spp between them; with geometric spacing between those that are looked at
     int m = 100;  // sub-blocks that entropies are computed of, a square number
     std::vector<Feature> features = {Feature::H};
-    std::vector<Pool> pools = {};  // empty: the network receives the value of each sub-block
-    // Normalise entropies and attributes over the window, each by itself (snorm), and before that
-    // those of a step together (bnorm).
-    bool snorm = true, bnorm = false;
-    int votes = 3;        // noiseless votes in a row that stop a block
-    int voteSpacing = 0;  // spp between votes; 0: vote after every pass
+    bool takesMean = false;  // of the sub-blocks' values, instead of each
+    bool snorm = true;       // normalise entropies and attributes over the window, each by itself
+    int votes = 3;           // noiseless votes in a row that stop a block
+    int voteSpacing = 0;     // spp between votes; 0: vote after every pass
     Spacing spacing = Spacing::Fixed;
     double ratio = 2;                 // of geometric spacing, > 1
     NoiseVisibility visibility = {};  // of visible_drop

@@ -24,15 +24,6 @@ const BlockState<double>* FindStep(const History<double>& history, const ModelSe
     return history.Nearest(spp / std::pow(settings.ratio, stepsBefore), std::sqrt(settings.ratio));
 }
 
-void NormalizeRange(const ModelSettings& settings, Eigen::Ref<Eigen::ArrayXXd> window) {
-    if (settings.bnorm)
-        for (int step = 0; step < settings.k; ++step)
-            window.col(step) = Normalize(window.col(step));
-    if (settings.snorm)
-        for (Eigen::Index i = 0; i < window.rows(); ++i)
-            window.row(i) = Normalize(window.row(i).transpose()).transpose();
-}
-
 }  // namespace
 
 Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values) {
@@ -63,8 +54,9 @@ std::optional<Eigen::MatrixXf> WindowOf(const History<double>& history,
     }
     // Normalise in double: late in a rendering the values of a window differ by little.
     for (const InputRange& range : InputRanges(settings))
-        if (IsNormalized(range.feature))
-            NormalizeRange(settings, window.middleRows(range.begin, range.count));
+        if (settings.snorm && IsNormalized(range.feature))
+            for (int i = range.begin; i < range.begin + range.count; ++i)
+                window.row(i) = Normalize(window.row(i).transpose()).transpose();
     return window.matrix().cast<float>();
 }
 

@@ -101,19 +101,12 @@ KerasModel Parse(const Json& json, const std::string& version) {
         const std::string kind = entry.at("class_name").get<std::string>();
         const Json& config = entry.at("config");
         const std::string name = config.at("name").get<std::string>();
-        if (kind == "InputLayer" && (model.isFlat || !model.layers.empty()))
+        if (kind == "InputLayer" && !model.layers.empty())
             Refuse(name, "InputLayer is modelled at the start");
-        if (kind == "LSTM" || kind == "InputLayer" || kind == "Flatten") ParseShape(config, &model);
+        if (kind == "LSTM" || kind == "InputLayer") ParseShape(config, &model);
         if (kind == "Dropout" || kind == "InputLayer") continue;  // nothing to do when not training
-        if (kind == "Flatten") {
-            if (!model.layers.empty() || model.timeSteps < 1)
-                Refuse(name, "Flatten is modelled at the start, for a known number of time steps");
-            model.isFlat = true;
-            givesSequence = false;
-            continue;
-        }
         if (kind != "LSTM" && kind != "Dense")
-            Refuse(name, kind + " is not supported; LSTM, Dropout, Flatten and Dense are");
+            Refuse(name, kind + " is not supported; LSTM, Dropout and Dense are");
         if ((kind == "LSTM") != givesSequence)
             Refuse(name, givesSequence ? "Dense on every time step is not supported"
                                        : "an LSTM layer needs one with return_sequences before it");
@@ -138,16 +131,6 @@ KerasModel ParseKerasConfig(const std::string& json, const std::string& version)
 
 std::string WriteKerasConfig(const Network& network, int timeSteps) {
     Json layers = Json::array();
-    if (network.lstm.empty()) {
-        const Eigen::Index inputs = network.dense.front().kernel.cols() / timeSteps;
-        layers.push_back({{"class_name", "Flatten"},
-                          {"config",
-                           {{"name", "flatten_1"},
-                            {"trainable", true},
-                            {"dtype", "float32"},
-                            {"data_format", "channels_last"},
-                            {"batch_input_shape", {nullptr, timeSteps, inputs}}}}});
-    }
     for (const LstmLayer& layer : network.lstm) {
         Json config = {{"name", layer.name},
                        {"trainable", true},

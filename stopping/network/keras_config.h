@@ -19,9 +19,8 @@ struct KerasLayer {
 };
 
 struct KerasModel {
-    std::vector<KerasLayer> layers;  // LSTM layers, then Dense ones; without Dropout and Flatten
+    std::vector<KerasLayer> layers;  // LSTM layers, then Dense ones; without Dropout
     int timeSteps = 0, inputs = 0;   // the shape of the input; 0: not said
-    bool isFlat = false;  // begins with Flatten and has no LSTM layer; the time steps are known
 };
 
 // Parses `model_config`. `version` is the file's `keras_version`, empty if it has none. Throws

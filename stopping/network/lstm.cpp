@@ -56,19 +56,12 @@ void Check(bool isRight, const std::string& layer, const char* message) {
     if (!isRight) throw std::invalid_argument("layer '" + layer + "': " + message);
 }
 
-// Returns how many values the first layer takes: those of one time step if it is an LSTM layer,
-// and of all time steps if not.
-Eigen::Index FirstInputs(const Network& network) {
-    return network.lstm.empty() ? network.dense.front().kernel.cols()
-                                : network.lstm.front().Inputs();
-}
-
 }  // namespace
 
 void CheckNetwork(const Network& network) {
-    if (network.lstm.empty() && network.dense.empty())
-        throw std::invalid_argument("a network needs at least one layer");
-    Eigen::Index inputs = FirstInputs(network);
+    if (network.lstm.empty())
+        throw std::invalid_argument("a network needs at least one LSTM layer");
+    Eigen::Index inputs = network.lstm.front().Inputs();
     for (const LstmLayer& l : network.lstm) {
         const Eigen::Index u = l.Units();
         Check(u > 0 && l.Inputs() > 0, l.name, "has no units or no inputs");
@@ -88,20 +81,12 @@ void CheckNetwork(const Network& network) {
     }
 }
 
-bool Takes(const Network& network, Eigen::Index inputs, Eigen::Index steps) {
-    return steps > 0 && FirstInputs(network) == (network.lstm.empty() ? inputs * steps : inputs);
-}
-
 Eigen::VectorXf RunNetwork(const Network& network, const Eigen::MatrixXf& sequence) {
-    if (!Takes(network, sequence.rows(), sequence.cols()))
+    if (sequence.cols() == 0 || sequence.rows() != network.lstm.front().Inputs())
         throw std::invalid_argument("the sequence does not have the size of the network's input");
     Eigen::MatrixXf states = sequence;
     for (const LstmLayer& layer : network.lstm) states = RunLstm(layer, states);
-    Eigen::VectorXf x;
-    if (network.lstm.empty())
-        x = states.reshaped();
-    else
-        x = states.rightCols(1);
+    Eigen::VectorXf x = states.rightCols(1);
     for (const DenseLayer& layer : network.dense) {
         x = (layer.kernel * x + layer.bias).eval();
         Activate(layer.activation, x);

@@ -33,21 +33,15 @@ struct DenseLayer {
 };
 
 // LSTM layers, each of which hands its output at every time step to the next one, followed by
-// dense layers on the output of the last time step. Without LSTM layers the dense layers receive
-// the values of all time steps, the first step first (Keras' Flatten): a single one is then a
-// logistic regression.
+// dense layers on the output of the last time step.
 struct Network {
     std::vector<LstmLayer> lstm;
-    std::vector<DenseLayer> dense;  // may be none if there are LSTM layers
+    std::vector<DenseLayer> dense;  // may be none
 };
 
-// Checks that there is a layer, that the shapes fit together and that all weights are finite.
+// Checks that there is an LSTM layer, that the shapes fit together and that all weights are finite.
 // Throws std::invalid_argument naming the layer.
 void CheckNetwork(const Network& network);
-
-// Returns whether the network, which has passed CheckNetwork(), can be run on sequences of `inputs`
-// values at each of `steps` time steps.
-bool Takes(const Network& network, Eigen::Index inputs, Eigen::Index steps);
 
 // Runs the network, which has passed CheckNetwork(), on a sequence: one column per time step, at
 // least one. Throws std::invalid_argument if the network does not take sequences of this size.

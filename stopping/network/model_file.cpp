@@ -12,7 +12,6 @@
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
-#include "stopping/network/human_range.h"
 #include "stopping/network/keras_config.h"
 
 namespace lull {
@@ -104,7 +103,7 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
         saysM = group.HasAttribute("m");
         s.m = read("m", s.m);
         s.snorm = read("snorm", s.snorm) != 0;
-        s.bnorm = read("bnorm", s.bnorm) != 0;
+        if (read("bnorm", 0) != 0) throw std::runtime_error("bnorm = 1 is not supported");
         s.votes = read("votes", s.votes);
         s.voteSpacing = read("vote_spacing", s.voteSpacing);
         auto readReal = [&](const char* name, double standard) {
@@ -118,7 +117,12 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
                         .nearness = readReal("nearness", s.visibility.nearness)};
         s.peakLimit = readReal("peak_limit", s.peakLimit);
         if (group.HasAttribute("feature")) s.features = ParseFeatures(group.String("feature"));
-        if (group.HasAttribute("pool")) s.pools = ParsePools(group.String("pool"));
+        if (group.HasAttribute("pool")) {
+            if (group.String("pool") != "mean")
+                throw std::runtime_error("pool '" + group.String("pool") +
+                                         "' is not supported; mean is");
+            s.takesMean = true;
+        }
     }
     if (!saysM) s.m = int(inputs);
     CheckSettings(s);
@@ -128,16 +132,6 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
                                  (timeSteps > 0 ? std::to_string(timeSteps) : "any number of") +
                                  " steps of " + std::to_string(inputs) + " values");
     return s;
-}
-
-std::vector<double> ReadLogRatios(const Hdf5Group& file) {
-    if (!file.HasGroup("lull") || !file.Group("lull").HasArray("log_ratios")) return {};
-    std::vector<double> ratios =
-        file.Group("lull").Array<double>("log_ratios", std::array{int64_t(kLogRatios)});
-    if (!std::ranges::all_of(ratios, [](double v) { return std::abs(v) < 100; }) ||
-        !std::ranges::is_sorted(ratios))
-        throw std::runtime_error("/lull/log_ratios holds no quantiles");
-    return ratios;
 }
 
 // Writes the weights of one layer, transposed back; those of one column get one dimension.
@@ -159,9 +153,8 @@ void WriteSettings(Hdf5Group group, const ModelSettings& s) {
     group.SetInt("n", s.n);
     group.SetInt("m", s.m);
     group.SetString("feature", FeatureNames(s.features));
-    if (!s.pools.empty()) group.SetString("pool", PoolNames(s.pools));
+    if (s.takesMean) group.SetString("pool", "mean");
     group.SetInt("snorm", s.snorm);
-    group.SetInt("bnorm", s.bnorm);
     group.SetInt("votes", s.votes);
     group.SetInt("vote_spacing", s.voteSpacing);
     if (s.spacing == Spacing::Geometric) {
@@ -178,7 +171,7 @@ void WriteSettings(Hdf5Group group, const ModelSettings& s) {
 }
 
 void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
-           const std::map<std::string, std::string>& record, std::span<const double> logRatios) {
+           const std::map<std::string, std::string>& record) {
     file.SetString("model_config", WriteKerasConfig(network, s.k));
     Hdf5Group root = file.MakeGroup("model_weights");
     for (Hdf5Group* group : {&file, &root}) {
@@ -199,9 +192,6 @@ void Write(Hdf5Group file, const Network& network, const ModelSettings& s,
 
     Hdf5Group group = file.MakeGroup("lull");
     WriteSettings(group, s);
-    if (!logRatios.empty())
-        group.AddArray<double>("log_ratios", std::array{int64_t(logRatios.size())}, logRatios);
-    if (record.empty()) return;
     Hdf5Group training = group.MakeGroup("training");
     for (const auto& [name, text] : record) training.SetString(name, text);
 }
@@ -217,14 +207,11 @@ Model ReadModel(const std::string& path) {
             file.HasAttribute("keras_version") ? file.String("keras_version") : "";
         const KerasModel config = ParseKerasConfig(file.String("model_config"), version);
         const Hdf5Group root = file.Group("model_weights");
-        const int64_t values = LayerReader(root, config.layers.front().name).Inputs();
-        const int64_t inputs = config.isFlat ? values / config.timeSteps : values;
-        if ((config.inputs > 0 && config.inputs != inputs) ||
-            (config.isFlat && values != inputs * config.timeSteps))
+        const int64_t inputs = LayerReader(root, config.layers.front().name).Inputs();
+        if (config.inputs > 0 && config.inputs != inputs)
             throw std::runtime_error("the first kernel does not have the shape of the input");
         model.settings = ReadSettings(file, config.timeSteps, inputs);
-        model.network = ReadNetwork(root, config, values);
-        model.logRatios = ReadLogRatios(file);
+        model.network = ReadNetwork(root, config, inputs);
         CheckNetwork(model.network);
     } catch (const std::exception& error) {
         throw std::runtime_error(path + ": " + error.what());
@@ -251,14 +238,13 @@ std::map<std::string, std::vector<int>> ReadTrainingBlocks(const std::string& pa
 }
 
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
-                const std::map<std::string, std::string>& record,
-                std::span<const double> logRatios) {
+                const std::map<std::string, std::string>& record) {
     CheckNetwork(network);
     CheckSettings(settings);
     const std::string newPath = path + ".new";
     try {
         Hdf5Group file = Hdf5Group::Create(newPath);
-        Write(file, network, settings, record, logRatios);
+        Write(file, network, settings, record);
         file.Flush();
     } catch (const std::exception& error) {
         throw std::runtime_error(newPath + ": " + error.what());

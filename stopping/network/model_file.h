@@ -3,7 +3,6 @@
 #pragma once
 
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,28 +14,25 @@ namespace lull {
 struct Model {
     Network network;
     ModelSettings settings;
-    std::string checksum;                // of the file it was read from, see FileChecksum()
-    std::vector<double> logRatios = {};  // see human_range.h; empty: not known
+    std::string checksum;  // of the file it was read from, see FileChecksum()
 };
 
-// Reads a Sequential model of LSTM, Dropout and Dense layers, or Flatten and Dense layers, as Keras
-// 2 or tf.keras 2 save it. The settings are attributes of the group /lull: integers k, n, m, snorm,
-// bnorm, votes, vote_spacing, reference, the real numbers ratio, mask, flare, nearness, peak_limit,
-// and the strings spacing, feature and pool, the last two lists with commas. Absent ones (all, in a
-// published model) have their defaults, but k and m follow the shape of the network's input. Throws
-// std::runtime_error beginning with the path and naming the parts that are missing, not supported,
-// of the wrong shape, NaN or infinite.
+// Reads a Sequential model of LSTM, Dropout and Dense layers, as Keras 2 or tf.keras 2 save it. The
+// settings are attributes of the group /lull: integers k, n, m, snorm, votes, vote_spacing,
+// reference, the real numbers ratio, mask, flare, nearness, peak_limit, and the strings spacing,
+// feature (a list with commas) and pool ("mean"). Absent ones (all, in a published model) have
+// their defaults, but k and m follow the shape of the network's input. Throws std::runtime_error
+// beginning with the path and naming the parts that are missing, not supported, of the wrong shape,
+// NaN or infinite.
 Model ReadModel(const std::string& path);
 
 // Writes a model so that ReadModel() returns it and Keras 2 can load it; a new file replaces an old
 // one only when complete. `record` says how it was trained; each of its texts (64 KiB at the most)
-// becomes an attribute of the group /lull/training. `logRatios` is empty or holds the quantiles of
-// human_range.h, which become the array /lull/log_ratios. Throws std::invalid_argument for a
-// network that CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error if it
-// cannot be written.
+// becomes an attribute of the group /lull/training. Throws std::invalid_argument for a network that
+// CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error if it cannot be
+// written.
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
-                const std::map<std::string, std::string>& record = {},
-                std::span<const double> logRatios = {});
+                const std::map<std::string, std::string>& record = {});
 
 // Returns the blocks that a model was trained on, by viewpoint, as `record` had them in
 // `training_blocks`: a line "VIEWPOINT: BLOCK BLOCK ..." for each. Empty where the file does not

@@ -10,7 +10,7 @@ class BlockAnswer:
     """State of one block.
 
     `value` is compared with `threshold`; `probability` (models) is that of an observer seeing noise;
-    `visible_noise` is in L*. `people_low` and `people_high` are spp, 0 if unknown.
+    `visible_noise` is in L*.
     """
     stop: bool
     checked: bool
@@ -18,8 +18,6 @@ class BlockAnswer:
     next_spp: int
     votes: int
     votes_needed: int
-    people_low: int
-    people_high: int
     value: float
     threshold: float
     probability: float | None
@@ -38,8 +36,6 @@ class Answer:
     spp: np.ndarray
     next_spp: np.ndarray
     votes: np.ndarray
-    people_low: np.ndarray
-    people_high: np.ndarray
     value: np.ndarray
     threshold: np.ndarray
     probability: np.ndarray | None
@@ -66,7 +62,7 @@ class Stopper:
 
         Args:
             width, height: pixels of the image, 40 to 65,536.
-            model: an installed model ("entropy", the default, "noise", "paper") or a file.
+            model: an installed model ("entropy", the default, "paper") or a file.
             rule: any other rule of `lull render --stop`, instead of a model.
             models: folder of installed models.
             block: side of the blocks in pixels.

@@ -222,8 +222,6 @@ void BindBlockAnswer(py::module_& module) {
         .def_readonly("next_spp", &lull_answer::next_spp)
         .def_readonly("votes", &lull_answer::votes)
         .def_readonly("votes_needed", &lull_answer::votes_needed)
-        .def_readonly("people_low", &lull_answer::people_low)
-        .def_readonly("people_high", &lull_answer::people_high)
         .def_readonly("value", &lull_answer::value)
         .def_readonly("threshold", &lull_answer::threshold)
         .def_property_readonly("probability",
@@ -247,10 +245,6 @@ void BindAnswer(py::module_& module) {
                                [](const Answer& a) { return a.Of<int>(&lull_answer::next_spp); })
         .def_property_readonly("votes",
                                [](const Answer& a) { return a.Of<int>(&lull_answer::votes); })
-        .def_property_readonly("people_low",
-                               [](const Answer& a) { return a.Of<int>(&lull_answer::people_low); })
-        .def_property_readonly("people_high",
-                               [](const Answer& a) { return a.Of<int>(&lull_answer::people_high); })
         .def_property_readonly("value",
                                [](const Answer& a) { return a.Of<double>(&lull_answer::value); })
         .def_property_readonly(
@@ -269,7 +263,7 @@ void BindStopper(py::module_& module) {
         "Decides on the blocks of a picture, from its first samples to its last.\n\n"
         "Args:\n"
         "    width, height: pixels of the picture, from 40 to 65,536 each.\n"
-        "    model: the name of an installed model ('entropy', the default; 'noise', 'paper') or "
+        "    model: the name of an installed model ('entropy', the default; 'paper') or "
         "a\n"
         "        file.\n"
         "    rule: any other rule of `lull render --stop`, in place of a model.\n"

@@ -95,13 +95,6 @@ Checks CyclesChecks(double threshold) {
             .every = kCyclesSpacing};
 }
 
-// Reads one number of the block.
-std::function<Signals(int, const RecordedValues&)> RecordedNumber(const char* channel) {
-    return [channel](int, const RecordedValues& values) -> Signals {
-        return double(values(channel)[0]);
-    };
-}
-
 }  // namespace
 
 Rule FixedRule(int spp) {
@@ -121,11 +114,9 @@ double DammertzError(const BlockView& view) {
 Rule DammertzRule(double threshold, bool byArea) {
     return {.tag = kDammertzTag,
             .threshold = threshold,
-            .measure =
-                [byArea](const BlockView& view, const BlockInfo& block) {
-                    return DammertzError(view) * (byArea ? std::sqrt(block.areaFraction) : 1);
-                },
-            .recall = byArea ? nullptr : RecordedNumber("dammertz")};
+            .measure = [byArea](const BlockView& view, const BlockInfo& block) {
+                return DammertzError(view) * (byArea ? std::sqrt(block.areaFraction) : 1);
+            }};
 }
 
 double CyclesPixelError(const float* mean, const float* halfMean) {
@@ -167,8 +158,7 @@ Rule LuxTileRule(double threshold) {
     return {.tag = kLuxTileTag,
             .checks = {.first = kLuxMinimumSpp},
             .threshold = threshold,
-            .measure = [](const BlockView& view, const BlockInfo&) { return LuxTileError(view); },
-            .recall = RecordedNumber("luxtile")};
+            .measure = [](const BlockView& view, const BlockInfo&) { return LuxTileError(view); }};
 }
 
 Rule ReadFixed(const std::string& argument, const RuleContext&) {

@@ -6,8 +6,6 @@
 // d = |I_R - A_R| + |I_G - A_G| + |I_B - A_B| and s = I_R + I_G + I_B.
 #pragma once
 
-#include <array>
-
 #include "stopping/rules/rule.h"
 
 namespace lull {
@@ -29,7 +27,7 @@ double DammertzError(const BlockView& view);
 // Stops a block when DammertzError() < threshold, > 0, or, `byArea`, that times
 // sqrt(block area / image area), as in the paper, whose recursive splitting so compares blocks of
 // different sizes. Our blocks are not split, and with that factor the same noise would be tolerated
-// more in a larger image. (Recordings do not know how large it was.)
+// more in a larger image.
 Rule DammertzRule(double threshold, bool byArea = false);
 
 // Returns the error of a pixel as in Cycles' adaptive sampling: d / (0.0001 + g(s)), where g is
@@ -43,16 +41,11 @@ int CyclesMinimumSpp(double threshold);
 // the active pixels (at first all). One is converged if its error is < 5 * threshold; the pixels
 // around one that is not are active again (3 x 3 dilation, which makes a test of single pixels
 // safe, as it has 75 % relative spread). The block stops when none is active. The decision's value
-// is the largest error of the pixels tested / 5. It remembers pixels, so that recordings have only
-// where it stopped, at kCyclesThresholds.
+// is the largest error of the pixels tested / 5.
 Rule CyclesRule(double threshold);
 
 // Returns the pixel errors that it tests: CyclesPixelError() / 5.
 PixelErrors CyclesErrors(const BlockView& view);
-
-// The thresholds at which the rule runs along while blocks are recorded.
-inline constexpr std::array<double, 13> kCyclesThresholds = {
-    0.64, 0.32, 0.16, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015, 0.01, 0.0075, 0.005, 0.0025};
 
 // Returns the largest difference, over pixels and components, between the display values of both
 // means, clamp(x, 0, 1)^(1/2.2), as in LuxCore's tile test.

@@ -37,11 +37,6 @@ class EntropyStatistic final : public Statistic {
     History<float> history;
 };
 
-// Returns the measurements: entropies, and the lightness that makes their falls visible.
-ModelSettings MeasuredSettings() {
-    return {.m = kEntropySubBlocks, .features = {Feature::VisibleDrop}};
-}
-
 }  // namespace
 
 Checks EntropyChecks(int passSpp) {
@@ -61,19 +56,13 @@ Rule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSp
             .threshold = threshold,
             .votes = 3,
             .need = ViewNeed::Mean,
-            .measure = [settings = MeasuredSettings()](
-                           const BlockView& view,
-                           const BlockInfo&) { return MeasureBlock(view, settings); },
-            .recall =
-                [settings = MeasuredSettings()](int spp, const RecordedValues& values) {
-                    return RecordedMeasures(spp, values, settings);
-                },
+            .inputs = ModelSettings{.m = kEntropySubBlocks, .features = {Feature::VisibleDrop}},
             .makeStatistic = [=] { return std::make_unique<EntropyStatistic>(visibility); }};
 }
 
 Rule ReadEntropy(const std::string& argument, const RuleContext& context) {
     const double threshold = ParseThreshold(argument) / context.caution;
-    const NoiseVisibility visibility = VisibilityAt(context.cap, context.visibility);
+    const NoiseVisibility visibility = VisibilityAt(context.cap, {});
     Rule rule = EntropyRule(threshold, visibility, context.passSpp);
     rule.trend = TrendOfFalls(visibility);
     rule.peak = {.most = kPeakOverThreshold * threshold, .visibility = visibility};

@@ -48,8 +48,7 @@ class LearnedStatistic final : public Statistic {
         if (!votes.AreDue(spp)) return {};
         const std::optional<Eigen::MatrixXf> window = memory.WindowAt(spp);
         if (!window) return {};
-        if (isToldNoiseOnly)
-            noise = NoiseOfInput((*window)(0, window->cols() - 1), model->settings);
+        if (isToldNoiseOnly) noise = NoiseOfInput((*window)(0, window->cols() - 1));
         return NoisyProbability(model->network, *window);
     }
     std::optional<double> Noise() const override { return noise; }
@@ -70,7 +69,7 @@ void CheckFits(const Model& model, int passSpp) {
     const ModelSettings& settings = model.settings;
     CheckSettings(settings);
     CheckNetwork(model.network);
-    if (!Takes(model.network, InputCount(settings), settings.k))
+    if (model.network.lstm.front().Inputs() != InputCount(settings))
         throw std::invalid_argument("the network does not take " + std::to_string(settings.k) +
                                     " steps of " + std::to_string(InputCount(settings)) +
                                     " values, as its settings have it");
@@ -104,13 +103,8 @@ Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp) {
             .votes = model->settings.votes,
             .peak = {.most = model->settings.peakLimit / model->settings.caution,
                      .visibility = model->settings.visibility},
-            .need = NeedOf(model->settings),
-            .measure = [model](const BlockView& view,
-                               const BlockInfo&) { return MeasureBlock(view, model->settings); },
-            .recall =
-                [model](int spp, const RecordedValues& values) {
-                    return RecordedMeasures(spp, values, model->settings);
-                },
+            .need = ViewNeed::Mean,
+            .inputs = model->settings,
             .makeStatistic = [=] { return std::make_unique<LearnedStatistic>(model, passSpp); },
             .valueBefore = 1,  // noisy until there is a vote
             .spacing = model->settings.n};
@@ -160,9 +154,6 @@ Rule ReadLearned(const std::string& argument, const RuleContext& context) {
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(path + ": " + error.what());
     }
-    // Noise falls with the root of the spp: a caution of X takes X^2 times as many.
-    rule.logRatios = model->logRatios;
-    for (double& ratio : rule.logRatios) ratio -= 2 * std::log(context.caution);
     rule.checksum = model->checksum;
     rule.trend = TrendOf(*model);
     return rule;

@@ -30,10 +30,7 @@ Rule LightnessNoiseRule(double threshold) {
     return {.tag = kLightnessNoiseTag,
             .threshold = threshold,
             .votes = 3,
-            .measure = [](const BlockView& view, const BlockInfo&) { return VisibleNoise(view); },
-            .recall = [](int, const RecordedValues& values) -> Signals {
-                return PooledRms(values("masked_noise"));
-            }};
+            .measure = [](const BlockView& view, const BlockInfo&) { return VisibleNoise(view); }};
 }
 
 Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context) {

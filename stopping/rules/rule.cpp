@@ -81,7 +81,8 @@ Decision RuleCriterion::Observe(const BlockView& view) {
     if (!IsDue(view.spp)) return Decide(view.spp, {});
     const bool showsPeak = rule->peak.most > 0 && !view.halfMean.empty();
     const double noise = showsPeak ? PeakNoise(ComputeLightnessNoise(view)) : 0;
-    return Decide(view.spp, rule->measure(view, block),
+    return Decide(view.spp,
+                  rule->inputs ? MeasureBlock(view, *rule->inputs) : rule->measure(view, block),
                   PeakOverLimit(*rule, noise, view.spp, view.variance));
 }
 

@@ -17,7 +17,6 @@
 
 #include "stopping/base/state.h"
 #include "stopping/features/model_inputs.h"
-#include "stopping/features/recorded_measures.h"
 #include "stopping/rules/criterion.h"
 #include "stopping/rules/trend.h"
 
@@ -81,8 +80,6 @@ struct PeakLimit {
 struct Rule {
     std::string text = {};      // as it was given, for headers and reports
     std::string checksum = {};  // of the file that it reads; empty if it reads none
-    // Quantiles of log(human threshold / stop), see network/human_range.h; empty: unknown.
-    std::vector<double> logRatios = {};
     RuleTrend trend = {};
     // Pixels a side below which a block is not checked, but follows a neighbour (block_grid.h).
     int smallestSide = kSmallestVotingSide;
@@ -92,10 +89,10 @@ struct Rule {
     double threshold = 0;
     int votes = 0;  // checks in a row below it that stop a block; 0: one does, and none is counted
     PeakLimit peak = {};
-    ViewNeed need = ViewNeed::MeanAndHalf;  // of `measure`
+    ViewNeed need = ViewNeed::MeanAndHalf;  // of the measurement
+    // Measures by MeasureBlock() with these settings or, where there are none, by `measure`.
+    std::optional<ModelSettings> inputs = {};
     SignalMeasure measure = {};
-    // Returns the result of `measure` from a recording; empty: that is not recorded.
-    std::function<Signals(int spp, const RecordedValues& values)> recall = {};
     // Empty: the number is the measurement itself.
     std::function<std::unique_ptr<Statistic>()> makeStatistic = {};
     double valueBefore = 0;  // the number of a block that has none yet
@@ -170,7 +167,6 @@ struct RuleContext {
     // Whether views come with half means. Otherwise rules whose number needs none ask for none, and
     // limit peak noise only where a view has one.
     bool hasHalves = true;
-    NoiseVisibility visibility = {};  // to the rule `entropy`
     // Measurements of the program that a BlockView does not contain, by the name of the rule. A
     // rule that needs one is refused where it is missing.
     std::map<std::string, SignalMeasure> measures = {};

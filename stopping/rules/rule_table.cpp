@@ -18,11 +18,6 @@ namespace lull {
 
 namespace {
 
-constexpr double kNoiseLevels[] = {8, 4, 2, 1, 0.7, 0.5, 0.35, 0.25};
-constexpr double kDammertzErrors[] = {0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005, 0.0025};
-constexpr double kCyclesErrors[] = {0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005};
-constexpr double kLuxErrors[] = {0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.04, 0.02};
-
 constexpr RuleEntry kRules[] = {
     {.name = "learned",
      .argument = "[:NAME|:MODEL.h5]",
@@ -30,8 +25,6 @@ constexpr RuleEntry kRules[] = {
      .stops = "when a network finds no visible noise at three consecutive checks",
      .compares = RuleTrend::Probability,
      .takesCaution = true,
-     .replay = Replay::Decides,
-     .sweep = {},
      .read = ReadLearned},
     {.name = "entropy",
      .argument = "[:T]",
@@ -40,8 +33,6 @@ constexpr RuleEntry kRules[] = {
               "below T@ at three consecutive checks",
      .compares = RuleTrend::Error,
      .takesCaution = true,
-     .replay = Replay::Decides,
-     .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01, .choosesMask = true},
      .read = ReadEntropy},
     {.name = "dammertz",
      .argument = "[:T[:area]]",
@@ -49,8 +40,6 @@ constexpr RuleEntry kRules[] = {
      .stops = "when its mean error in square-root brightness is below T@",
      .compares = RuleTrend::Error,
      .takesCaution = false,
-     .replay = Replay::Decides,
-     .sweep = {.bench = kDammertzErrors, .largest = 1, .least = 1e-4},
      .read = ReadDammertz},
     {.name = "cycles",
      .argument = ":T",
@@ -58,10 +47,6 @@ constexpr RuleEntry kRules[] = {
      .stops = "when no pixel has an error of T or more, as in Blender's Cycles",
      .compares = RuleTrend::Error,
      .takesCaution = false,
-     .replay = Replay::RanAlong,
-     .sweep = {.bench = kCyclesErrors,
-               .largest = kCyclesThresholds.front(),
-               .least = kCyclesThresholds.back()},
      .read = ReadCycles},
     {.name = "luxtile",
      .argument = ":T",
@@ -69,8 +54,6 @@ constexpr RuleEntry kRules[] = {
      .stops = "when its largest display error is below T, as in LuxCore",
      .compares = RuleTrend::Error,
      .takesCaution = false,
-     .replay = Replay::Decides,
-     .sweep = {.bench = kLuxErrors, .largest = 1, .least = 1e-4},
      .read = ReadLuxTile},
     {.name = kLightnessNoiseName,
      .argument = "[:T]",
@@ -78,8 +61,6 @@ constexpr RuleEntry kRules[] = {
      .stops = "when its noise in L*, masked by texture, is below T@ at three consecutive checks",
      .compares = RuleTrend::Error,
      .takesCaution = true,
-     .replay = Replay::Decides,
-     .sweep = {.bench = kNoiseLevels, .largest = 50, .least = 0.01},
      .read = ReadLightnessNoise},
     {.name = kDenoisedRuleName,
      .argument = "[:T]",
@@ -89,8 +70,6 @@ constexpr RuleEntry kRules[] = {
               "with --denoise",
      .compares = RuleTrend::Error,
      .takesCaution = true,
-     .replay = Replay::Unknown,
-     .sweep = {},
      .read = ReadDenoised},
     {.name = "thresholds",
      .argument = ":FILE[:NAME]",
@@ -98,8 +77,6 @@ constexpr RuleEntry kRules[] = {
      .stops = "at the spp that a row of a thresholds file has for it",
      .compares = RuleTrend::Samples,
      .takesCaution = false,
-     .replay = Replay::Counts,
-     .sweep = {},
      .read = ReadThresholdsRule},
     {.name = "fixed",
      .argument = ":N",
@@ -107,8 +84,6 @@ constexpr RuleEntry kRules[] = {
      .stops = "at N spp",
      .compares = RuleTrend::Samples,
      .takesCaution = false,
-     .replay = Replay::Counts,
-     .sweep = {},
      .read = ReadFixed}};
 
 // Joins texts as "a, b and c".

@@ -1,5 +1,5 @@
-// Lists the stopping rules: their names, descriptions, readers and replay on recordings. Help,
-// benchmarks, baselines and documents have them from here.
+// Lists the stopping rules: their names, descriptions and readers. Help and documents have them
+// from here.
 #pragma once
 
 #include <span>
@@ -10,24 +10,6 @@
 
 namespace lull {
 
-// Contents of a recording that a rule needs.
-enum class Replay {
-    Decides,   // its measurements, from which it decides again (Rule::recall)
-    Counts,    // none: it only counts samples
-    RanAlong,  // its stops at kCyclesThresholds
-    Unknown    // not recorded
-};
-
-// Settings with which a rule is compared with others.
-struct RuleSweep {
-    // For benchmarks, from where it stops at once to where it hardly ever does; empty: none.
-    std::span<const double> bench = {};
-    // For the choice of the best one: all between them in steps of 1 %, or those at which it
-    // RanAlong. Both 0: none is chosen.
-    double largest = 0, least = 0;
-    bool choosesMask = false;  // and again with a chosen NoiseVisibility::mask
-};
-
 struct RuleEntry {
     std::string_view name;
     std::string_view argument;  // after the name, as in help
@@ -36,8 +18,6 @@ struct RuleEntry {
     std::string_view stops;
     RuleTrend::Kind compares;  // kind of its number
     bool takesCaution;         // whether it measures visible noise, which caution scales
-    Replay replay;
-    RuleSweep sweep;
     // Returns all but the rule's text, and the kind and votes of its trend. Throws as ParseRule()
     // does.
     Rule (*read)(const std::string& argument, const RuleContext& context);

@@ -15,8 +15,7 @@ RuleTrend TrendOfFalls(const NoiseVisibility& visibility) {
 RuleTrend TrendOf(const Model& model) {
     const double undecided = UndecidedNoise(model);
     // Otherwise its odds are followed, whatever it sees.
-    const bool followsFalls = undecided > 0 && Needs(model.settings, Feature::VisibleDrop);
-    RuleTrend trend = followsFalls ? TrendOfFalls(model.settings.visibility) : RuleTrend();
+    RuleTrend trend = undecided > 0 ? TrendOfFalls(model.settings.visibility) : RuleTrend();
     trend.kind = RuleTrend::Probability;
     trend.votes = model.settings.votes;
     trend.undecided = undecided;
@@ -32,7 +31,7 @@ double UndecidedNoise(const Model& model) {
     const auto isNoisy = [&](double noise) {
         Eigen::MatrixXf window(1, settings.k);
         for (int step = settings.k - 1; step >= 0; --step, noise *= stepBefore)
-            window(0, step) = float(InputOfNoise(noise, settings));
+            window(0, step) = float(InputOfNoise(noise));
         return NoisyProbability(model.network, window) >= 0.5;
     };
     double clean = 1e-3, noisy = 1e3;

@@ -8,10 +8,9 @@
 #include <span>
 #include <vector>
 
-namespace lull {
+#include "stopping/base/luminance.h"
 
-// The shares of linear R, G and B (Rec. 709 primaries) in the luminance Y, which is 1 at white.
-inline constexpr double kLuminanceWeights[3] = {0.212671, 0.715160, 0.072169};
+namespace lull {
 
 // Clamps a linear component to the range of a display, [0, 1]; 0 for NaN.
 inline float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }

@@ -21,11 +21,6 @@ bool IsDisplayed(float x) { return x > 0 && x < 1; }
 
 double FourthPower(double x) { return (x * x) * (x * x); }
 
-float Luminance(float r, float g, float b) {
-    return float(kLuminanceWeights[0]) * r + float(kLuminanceWeights[1]) * g +
-           float(kLuminanceWeights[2]) * b;
-}
-
 // The luminance of white can round to more than 1.
 LightnessSlope<float> DisplayedLightness(float y) {
     const LightnessSlope<float> at = LightnessAt(y);
@@ -208,18 +203,6 @@ LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise& pixels, int wi
             result.peak.push_back(float(std::sqrt(std::sqrt(sums.fourth / sums.count))));
         }
     return result;
-}
-
-std::vector<double> DetailMaskedNoise(std::span<const float> halfNoise,
-                                      std::span<const float> deviation,
-                                      std::span<const float> texture) {
-    auto square = [](double x) { return x * x; };
-    std::vector<double> masked;
-    for (size_t i = 0; i < halfNoise.size(); ++i) {
-        const double detail = square(deviation[i]) - square(texture[i]) - square(halfNoise[i]);
-        masked.push_back(halfNoise[i] / (1 + std::sqrt(std::max(detail, 0.0)) / 4));
-    }
-    return masked;
 }
 
 }  // namespace lull

@@ -61,11 +61,4 @@ struct LightnessNoiseStatistics {
 LightnessNoiseStatistics SubBlockStatistics(const LightnessNoise&, int width, int height,
                                             int subBlocks);
 
-// Returns h / (1 + d / 4) of sub-blocks, where h is halfNoise, which sees fireflies that saturate
-// the display, and d^2 = deviation^2 - t^2 - h^2 (0 if below 0) is the variation too fine to be in
-// t: detail of the size of noise hides noise best. All three have the same length.
-std::vector<double> DetailMaskedNoise(std::span<const float> halfNoise,
-                                      std::span<const float> deviation,
-                                      std::span<const float> texture);
-
 }  // namespace lull

@@ -42,7 +42,7 @@ TEST(StopperErrors, RefusesBadSettings) {
     add(LULL_BAD_ARGUMENT, "'-3' is not a threshold").rule = "entropy:-3";
     add(LULL_BAD_FILE, "nowhere.h5").rule = "learned:nowhere.h5";
     add(LULL_BAD_FILE, "nowhere.csv").rule = "thresholds:nowhere.csv";
-    lull_settings& unknown = add(LULL_BAD_FILE, "there are entropy, noise, paper");
+    lull_settings& unknown = add(LULL_BAD_FILE, "there are entropy, paper");
     unknown.rule = nullptr;
     unknown.model = "unknown";
     unknown.models = LULL_MODELS_DIR;
@@ -238,7 +238,7 @@ TEST(StopperState, RefusesWhatIsDamagedOrAnothers) {
 
 TEST(StopperModels, AreFoundByTheEnvironmentAndBesideTheLibrary) {
     lull_settings settings = SettingsOf(60, 50, nullptr);
-    for (const char* model : {"entropy", "noise", "paper"}) {
+    for (const char* model : {"entropy", "paper"}) {
         settings.model = model;
         MakeStopper(settings);  // beside the library
     }
@@ -248,8 +248,8 @@ TEST(StopperModels, AreFoundByTheEnvironmentAndBesideTheLibrary) {
     setenv("LULL_MODELS", LULL_MODELS_DIR, 1);
     MakeStopper(settings);
     unsetenv("LULL_MODELS");
-    settings.model = LULL_MODELS_DIR "/noise.h5";
-    EXPECT_EQ(lull_stopper_needs_half(MakeStopper(settings).get()), 1);
+    settings.model = LULL_MODELS_DIR "/paper.h5";
+    EXPECT_EQ(lull_stopper_needs_half(MakeStopper(settings).get()), 0);
 }
 
 }  // namespace

@@ -57,8 +57,7 @@ inline BlockImage ImageAt(int spp, int width = 60, int height = 50, double noise
 inline bool SameAnswer(const lull_answer& a, const lull_answer& b) {
     return a.stop == b.stop && a.checked == b.checked && a.spp == b.spp &&
            a.next_spp == b.next_spp && a.votes == b.votes && a.votes_needed == b.votes_needed &&
-           a.people_low == b.people_low && a.people_high == b.people_high && a.value == b.value &&
-           a.threshold == b.threshold && a.probability == b.probability &&
+           a.value == b.value && a.threshold == b.threshold && a.probability == b.probability &&
            a.visible_noise == b.visible_noise;
 }
 

@@ -4,7 +4,7 @@
 Every case of every reader has a number, and is the same for the same seed. It counts as fine (exit
 code 0), clear (exit code 1 and lines of error that each name a file, at most ten of them and how
 many more there are) or as anything else: a crash, a hang, an error without a name. Those are kept in
-the folder --keep, with the command. A killed render, comparison, bench or recording has to come to
+the folder --keep, with the command. A killed render, comparison or recording has to come to
 the same results in the end but for times, with no more than one temporary file left meanwhile of
 each that it writes.
 With --write FOLDER the damaged files are only written, for the fuzzers (tests/fuzz).
@@ -182,8 +182,6 @@ READERS = [
     Reader("model", "model.h5", RENDER.format("scene.pbrt --stop learned:model.h5")
            .replace("--spp 1", "--cap 20")),
     Reader("dataset", "d.h5", "evaluate d.h5 --human v.csv --stop fixed:20"),
-    Reader("texts", "t.md", "study plain.pbrt --text t.md --name v --resolution 8x8 --cap 60 "
-           "--threads 1 --quiet -o s.html"),
     Reader("checkpoint", "c.h5", RENDER.format("scene.pbrt --checkpoint c.h5 --resume")
            .replace("--spp 1", "--spp 4000")),
 ]
@@ -309,10 +307,8 @@ KILLED = [
     Killed(f"render {COMMON} --resolution 60x60 --spp 300 --checkpoint c.h5 -o out.exr", "--resume",
            ["out.png", "out.spp.png"]),
     Killed(f"compare {COMMON} --resolution 60x60 --cap 300 --stop entropy --snapshots "
-           "--checkpoint c.h5 -o out", "--resume",
+           "--curves --checkpoint c.h5 -o out", "--resume",
            ["out.automatic.png", "out.reference.png", "out.thresholds.csv"]),
-    Killed(f"bench {COMMON} --resolution 60x60 --cap 200 --samplers random sobol --rule entropy "
-           "-o out", "", ["out.csv"]),
     Killed(f"record {COMMON.replace('20', '60', 1)} --resolution 120x60 --cap 200 --name v "
            "-o out.h5", "", ["out.h5"]),
 ]

@@ -231,14 +231,6 @@ void FuzzStudyPage(std::span<const char> bytes) {
     }
 }
 
-void FuzzStudyTexts(std::span<const char> bytes) {
-    const std::string path = WriteInput(bytes);
-    try {
-        AllStudyTexts(ReadStudyTexts(path));
-    } catch (const std::runtime_error&) {
-    }
-}
-
 void FuzzTrainingCheckpoint(std::span<const char> bytes) {
     const std::string path = WriteSealed(bytes);
     try {
@@ -279,7 +271,6 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"dataset", FuzzDataset},
             {"checkpoint", FuzzCheckpoint},
             {"study_page", FuzzStudyPage},
-            {"study_texts", FuzzStudyTexts},
             {"training_checkpoint", FuzzTrainingCheckpoint},
             {"criterion_state", FuzzCriterionState}};
 }

@@ -53,8 +53,8 @@ std::set<std::string> OptionsIn(const std::string& help) {
     return options;
 }
 
-const char* const kCommands[] = {"render",   "info",    "record", "train", "evaluate", "denoise",
-                                 "selftest", "compare", "bench",  "study", "entropy"};
+const char* const kCommands[] = {"render",  "info",     "record",  "train", "evaluate",
+                                 "denoise", "selftest", "compare", "study", "entropy"};
 
 TEST(Install, RunsWhereItIsMoved) {
     const InstalledTree tree;
@@ -78,7 +78,7 @@ TEST(Install, RunsWhereItIsMoved) {
     Do(tree, "TREE/bin/lull render scene.pbrt --spp 1 --quiet -o out.exr");
     for (const char* file :
          {"include/lull/stopping.h", "include/lull/denoising.h", "share/lull/models/entropy.h5",
-          "share/lull/models/noise.h5", "share/lull/models/paper.h5", "share/doc/lull/copyright"})
+          "share/lull/models/paper.h5", "share/doc/lull/copyright"})
         EXPECT_TRUE(tree.Has(file)) << file;
 }
 
@@ -114,10 +114,7 @@ TEST(Install, CompletionKnowsCommandsAndValues) {
     EXPECT_EQ(Complete(tree, "lull render --sampler so", 3), "sobol sobol-halves\n");
     EXPECT_EQ(Complete(tree, "lull render --aov al", 3), "albedo alpha\n");
     EXPECT_EQ(Complete(tree, "lull render --aov depth,no", 3), "depth,normal depth,noise\n");
-    EXPECT_EQ(Complete(tree, "lull bench --samplers sobol,", 3),
-              "sobol,random sobol,sobol sobol,sobol-halves\n");
-    for (const char* option :
-         {"render --stop", "compare --stop", "evaluate --stop", "bench --rule"})
+    for (const char* option : {"render --stop", "compare --stop", "evaluate --stop"})
         EXPECT_EQ(Complete(tree, "lull " + std::string(option) + " ''", 3),
                   "learned entropy dammertz cycles: luxtile: lnoise denoised thresholds: fixed:\n")
             << option;

@@ -1,4 +1,4 @@
-// Runs `lull compare` and `lull bench` as their help describes them.
+// Runs `lull compare` as its help describes it.
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -39,7 +39,7 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
         EXPECT_TRUE(std::filesystem::exists(directory.File(file))) << file;
     }
 
-    const std::string render = std::string("render scene.pbrt --sampler random") + kSize;
+    const std::string render = std::string("render scene.pbrt") + kSize;
     RunLull(directory, render + "--stop dammertz:0.02 --cap 160 -o a.exr");
     RunLull(directory, render + "--stop thresholds:human.csv:a --cap 160 -o h.exr");
     RunLull(directory, render + "--spp 160 -o r.exr");
@@ -93,8 +93,8 @@ TEST(Compare, MakesTheDenoisedImageOfARender) {
     ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize +
                                  "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
                                  "room.html");
-    RunLull(directory, std::string("render scene.pbrt") + kSize +
-                           "--sampler random --denoise --cap 300 -o clean.exr");
+    RunLull(directory,
+            std::string("render scene.pbrt") + kSize + "--denoise --cap 300 -o clean.exr");
     EXPECT_EQ(Green(directory, "room.denoised.exr"), Green(directory, "clean.exr"));
     EXPECT_EQ(ReadExr(directory.File("room.denoised.exr")).Find("spp")->values,
               ReadExr(directory.File("clean.exr")).Find("spp")->values);
@@ -114,8 +114,8 @@ TEST(Compare, TakesPicturesForDisplays) {
     const SceneDirectory directory;
     const std::string part = " --crop 0.25,1,0,1 ";
     for (const char* spp : {"20", "160"})
-        RunLull(directory, std::string("render scene.pbrt --sampler random") + kSize + part +
-                               "--spp " + spp + " -o at" + spp + ".exr");
+        RunLull(directory, std::string("render scene.pbrt") + kSize + part + "--spp " + spp +
+                               " -o at" + spp + ".exr");
     const std::string files = "compare --block 40 ";
     const Outcome exr =
         ExpectSuccess(directory, files + "--automatic at20.exr --reference at160.exr -o exr");
@@ -216,7 +216,8 @@ TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
 TEST(Compare, GoesOnAfterAnInterruption) {
     const SceneDirectory directory;
     const std::string command = std::string("compare scene.pbrt") + kSize +
-                                "--snapshots --stop dammertz:0.01 --human human.csv:a --cap 400 ";
+                                "--snapshots --curves --stop dammertz:0.01 --human human.csv:a "
+                                "--cap 400 ";
     ExpectSuccess(directory, command + "-o whole");
     int kills = 0;
     for (; kills < 100; ++kills) {
@@ -269,115 +270,32 @@ TEST(Compare, SaysWhatIsMissingOrWrong) {
         EXPECT_EQ(RunLull(directory, arguments).exitCode, 2) << arguments;
 }
 
-TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
-    const SceneDirectory directory;
-    const std::string size = " --resolution 48x44 --block 44 --quiet ";
-    RunLull(directory, "render scene.pbrt" + size + "--spp 7 -o other.exr");
-    directory.Write("others.csv", "someone,3.5,other.exr\n");
-    const Outcome outcome = ExpectSuccess(
-        directory,
-        "bench scene.pbrt" + size +
-            "--cap 100 --rule dammertz:0.03 --external others.csv -o room --report room.html");
-    EXPECT_EQ(outcome.out, "room.csv\nroom.html\n");
-    const std::string csv = ReadBytes(directory.File("room.csv"));
-    for (const char* part :
-         {"\nfixed,20,sobol-halves,20,", "\nfixed,60,random,60,", "\nlnoise,0.5,random,",
-          "\nentropy,0.5,random,", "\nlearned,,sobol-halves,", "\ndammertz,0.03,sobol-halves,",
-          "\nsomeone,,,0,3.5,"})
-        EXPECT_TRUE(Contains(csv, part)) << part << csv;
-    // Fixed, 5 sweeps of 8, learned and the extra rule, for both samplers, and the line of names.
-    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (4 + 40 + 2) + 1);
-    for (const auto& entry : std::filesystem::directory_iterator(directory.path))
-        EXPECT_FALSE(Contains(entry.path().string(), "checkpoint")) << entry.path();
-}
-
-TEST(Bench, GuidesPathsToo) {
-    const SceneDirectory directory;
-    const Outcome outcome = ExpectSuccess(directory,
-                                          "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
-                                          "--samplers sobol --guide on -o room --report room.html");
-    EXPECT_TRUE(Contains(outcome.err, "learned from")) << outcome.err;
-    const std::string csv = ReadBytes(directory.File("room.csv"));
-    // Both have the same points; that of the cap is another image's, not the reference.
-    for (const char* part :
-         {"\nfixed,20,sobol,20,", "\nfixed,20,sobol+guide,20,", "\nlearned,,sobol+guide,"})
-        EXPECT_TRUE(Contains(csv, part)) << part << csv;
-    EXPECT_FALSE(Contains(csv, "sobol+guide,60,0,")) << csv;
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("room.html")), "sobol+guide"));
-    // Where auto does not guide, there are no such points.
-    const Outcome few = ExpectSuccess(directory,
-                                      "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
-                                      "--samplers sobol --guide auto -o few");
-    EXPECT_FALSE(Contains(ReadBytes(directory.File("few.csv")), "guide"));
-}
-
-TEST(Bench, DenoisesToo) {
-    const SceneDirectory directory;
-    ExpectSuccess(directory,
-                  "bench scene.pbrt --resolution 48x44 --block 44 --cap 100 "
-                  "--samplers sobol-halves --denoise --rule denoised:20 -o room");
-    std::map<std::string, double> errors, ruleSeconds;
-    std::istringstream lines(ReadBytes(directory.File("room.csv")));
-    for (std::string line; std::getline(lines, line);) {
-        std::vector<std::string> fields;
-        std::istringstream in(line);
-        for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
-        if (fields[0] == "rule") continue;
-        const std::string name = fields[0] + ":" + fields[1];
-        errors[name] = std::stod(fields[8]);
-        ruleSeconds[name] = std::stod(fields[6]);
-    }
-    // Two looks, at 20 and at 40 spp.
-    ASSERT_TRUE(errors.contains("denoised:20") && errors.contains("denoised:3.1"));
-    EXPECT_NE(errors["denoised:20"], errors["fixed:40"]);
-    EXPECT_GT(ruleSeconds["denoised:20"], 0);
-    const Outcome without = RunLull(directory, "bench scene.pbrt --rule denoised --cap 20 -o b");
-    EXPECT_EQ(without.exitCode, 1);
-    EXPECT_TRUE(Contains(without.err, "--denoise")) << without.err;
-}
-
-TEST(Bench, GoesOnAfterAnInterruption) {
+TEST(Compare, HasCurvesOfErrorAgainstTime) {
     const SceneDirectory directory;
     const std::string command =
-        "bench scene.pbrt --resolution 48x44 --block 44 --quiet --cap 400 --checkpoint-interval "
-        "0.1 -o ";
-    ExpectSuccess(directory, command + "whole");
-    for (int kill = 0; kill < 100; ++kill) {
-        const std::string limit =
-            kill < 6 ? "timeout -s KILL 0." + std::to_string(2 + kill) + " " : "";
-        const Outcome outcome = RunShell(directory, limit + "LULL " + command + "parts");
-        if (outcome.exitCode == 0) break;
-        ASSERT_EQ(outcome.exitCode, 137) << outcome.err;
-    }
-    // All but the seconds is the same.
-    const auto withoutSeconds = [&](const char* name) {
-        std::istringstream in(ReadBytes(directory.File(name)));
-        std::string text, line;
-        while (std::getline(in, line)) {
-            int column = 0;
-            for (const char c : line) {
-                column += c == ',';
-                if (column < 4 || column > 6) text += c;
-            }
-        }
-        return text;
-    };
-    EXPECT_EQ(withoutSeconds("parts.csv"), withoutSeconds("whole.csv"));
-}
+        "compare scene.pbrt --resolution 48x44 --block 44 --quiet --cap 100 --curves "
+        "--stop dammertz:0.03 ";
+    ExpectSuccess(directory, command + "--snapshots --denoise -o room --report room.html");
+    const Json curves = directory.Read("room.compare.json")["errorCurves"];
+    EXPECT_EQ(curves["sharesReference"], true);
+    std::map<std::string, Json> points;
+    for (const Json& point : curves["points"])
+        points[point["rule"].get<std::string>() + ":" + point["setting"].get<std::string>()] =
+            point;
+    // The rules of the two images, fixed sample counts, and 5 rules at 8 settings.
+    EXPECT_EQ(curves["points"].size(), 2u + 4u + 40u);
+    for (const char* name : {"fixed:60", "lnoise:0.5", "entropy:0.5", "dammertz:0.03"})
+        EXPECT_TRUE(points.contains(name)) << name;
+    EXPECT_EQ(points["fixed:20"]["spp"], 20);
+    EXPECT_GT(points["fixed:20"]["rmseLightness"], points["fixed:60"]["rmseLightness"]);
+    EXPECT_GT(points["denoised:3.1"]["ruleSeconds"], 0);
+    EXPECT_TRUE(Contains(ReadBytes(directory.File("room.html")), "errorCurves"));
 
-TEST(Bench, SaysWhatIsWrong) {
-    const SceneDirectory directory;
-    directory.Write("others.csv", "someone,3.5\n");
-    directory.Write("lost.csv", "someone,3.5,lost.exr\n");
-    ExpectFailure(directory, "bench scene.pbrt --external others.csv",
-                  {"others.csv:1: ", "name,seconds,file.exr"});
-    ExpectFailure(directory, "bench scene.pbrt --external lost.csv", {"lost.exr"});
-    ExpectFailure(directory, "bench scene.pbrt --rule dammertz:x", {"--rule", "'x'"}, 2);
-    ExpectFailure(directory, "bench scene.pbrt --guide on --estimator pbrt-v3", {"--guide on"});
-    ExpectFailure(directory, "bench scene.pbrt --samplers random,random",
-                  {"--samplers: random is given twice"}, 2);
-    EXPECT_EQ(RunLull(directory, "bench scene.pbrt --samplers halton").exitCode, 2);
-    EXPECT_EQ(RunLull(directory, "bench").exitCode, 2);
+    // Beside a reference from a file, the errors are the same.
+    ExpectSuccess(directory, command + "--reference room.reference.exr -o other");
+    const Json other = directory.Read("other.compare.json")["errorCurves"];
+    EXPECT_EQ(other["sharesReference"], false);
+    EXPECT_EQ(other["points"][1]["flip"], points["fixed:20"]["flip"]);
 }
 
 TEST(RenderReport, IsAPageWhereItsNameSaysSo) {

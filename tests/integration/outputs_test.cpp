@@ -92,8 +92,6 @@ TEST(Outputs, OfOtherCommandsAreNoInputs) {
         {"evaluate --human human.csv --predicted p.csv --csv p.csv", "--csv", "--predicted"},
         {"record scene.pbrt --name a -o mesh.ply --blocks 0", "-o", "a file of the scene"},
         {"denoise a.exr -o a.exr", "-o", "IN"},
-        {"bench scene.pbrt --cap 40 -o b --report b.csv.html --reference b.csv", "-o",
-         "--reference"},
         {"compare --automatic a.exr --reference r.html -o c --report r.html", "--report",
          "--reference"},
         {"compare scene.pbrt --snapshots --cap 40 --block 8 --checkpoint c.reference.exr -o c "
@@ -113,15 +111,14 @@ TEST(Outputs, InterruptedRendersLeaveNoOlderThresholds) {
     const std::string render =
         "LULL render scene.pbrt --resolution 100x90 --block 40 --quiet -o out.exr ";
     ExpectSuccess(RunShell(directory, render + "--cap 40"));
-    const std::vector<std::string> others = {directory.File("out.thresholds.csv"),
-                                             directory.File("out.ranges.csv")};
-    for (const std::string& file : others) ASSERT_TRUE(fs::exists(file)) << file;
+    const std::string thresholds = directory.File("out.thresholds.csv");
+    ASSERT_TRUE(fs::exists(thresholds));
 
     const Outcome outcome = RunAndSignal(
         directory, render + "--stop dammertz:0.00001 --checkpoint c.h5 --checkpoint-interval 0.1",
         SIGTERM, "c.h5");
     EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
-    for (const std::string& file : others) EXPECT_FALSE(fs::exists(file)) << file;
+    EXPECT_FALSE(fs::exists(thresholds));
     EXPECT_EQ(outcome.out, "out.exr\nout.png\nout.spp.png\n");
 }
 
@@ -185,16 +182,6 @@ TEST(Outputs, PreviewsThatCannotBeWrittenAreWarnings) {
     EXPECT_TRUE(fs::exists(directory.File("out.png")));
 }
 
-// Rules that know nothing of people have no ranges of theirs.
-TEST(Outputs, RendersLeaveNoOlderRanges) {
-    const Inputs directory;
-    ExpectSuccess(directory, "render scene.pbrt --quiet -o out.exr --cap 40");
-    ASSERT_TRUE(fs::exists(directory.File("out.ranges.csv")));
-    ExpectSuccess(directory, "render scene.pbrt --quiet -o out.exr --spp 40");
-    EXPECT_FALSE(fs::exists(directory.File("out.ranges.csv")));
-    EXPECT_TRUE(fs::exists(directory.File("out.thresholds.csv")));
-}
-
 // /dev/full is a disk that is always full.
 TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
     const Inputs directory;
@@ -222,10 +209,10 @@ TEST(Outputs, PagesThatCannotBeWrittenGoElsewhere) {
     const Inputs directory;
     const std::string study =
         "LULL study scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --quiet -o ";
-    const std::string bench =
-        "LULL bench scene.pbrt --cap 20 --samplers random --quiet -o b --report ";
+    const std::string compare =
+        "LULL compare scene.pbrt --snapshots --curves --cap 20 --quiet -o b --report ";
     fs::create_symlink("/dev/full", directory.File("full.html"));
-    for (const std::string& command : {study, bench}) {
+    for (const std::string& command : {study, compare}) {
         const Outcome outcome = RunShell(directory, "TMPDIR=. " + command + "full.html");
         EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
         EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;

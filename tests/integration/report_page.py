@@ -117,8 +117,7 @@ def test(browser, lull):
         for command in (
                 "render scene.pbrt --stop lnoise:1 --cap 80 --report render.html -o r.exr",
                 "compare scene.pbrt --stop lnoise:1 --human human.csv --snapshots --cap 80"
-                " --report compare.html",
-                "bench scene.pbrt --cap 60 --report bench.html"):
+                " --curves --report compare.html"):
             subprocess.run([lull, *command.split(), "--block", "40", "--quiet"], cwd=folder,
                            check=True, stdout=subprocess.DEVNULL)
 
@@ -145,10 +144,7 @@ def test(browser, lull):
         check(browser.evaluate("document.querySelectorAll('#summary thead th').length === 4 &&"
                                " document.querySelectorAll('#summary tbody tr').length > 10"),
               "compare: the table has three images and their figures")
-        check_widths(browser, "compare")
-        browser.open(folder / "bench.html")
-        check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: two charts are drawn")
+        check(browser.evaluate(DRAWN % "#error-charts") == 2, "compare: two charts of error are drawn")
         choose(browser, "Error", "flip")
-        check(browser.evaluate(DRAWN % "#bench-charts") == 2, "bench: and again for another error")
-        check_saved(browser, "bench", 2, 1)
-        check_widths(browser, "bench")
+        check(browser.evaluate(DRAWN % "#error-charts") == 2, "compare: and again for another error")
+        check_widths(browser, "compare")

@@ -97,21 +97,6 @@ TEST(Sequence, KnowsFramesThatAreNotDone) {
     ExpectFailure(directory, command + "-o a.exr --aov depth", {"a.0001.exr", "aov"});
 }
 
-// Lines are whole, but not all of them are there.
-TEST(Sequence, KnowsRangesOfTooFewBlocks) {
-    const SequenceDirectory directory;
-    const std::string command =
-        "render moving.gltf --resolution 16x16 --block 8 --cap 20 --quiet --frames 0:0.25:4 "
-        "--checkpoint c.h5 --resume -o a.exr";
-    ExpectSuccess(directory, command);
-    const std::string whole = ReadBytes(directory.File("a.0001.ranges.csv"));
-    ASSERT_EQ(std::ranges::count(whole, '\n'), 5);
-    EXPECT_EQ(ExpectSuccess(directory, command).out, "");
-    directory.Write("a.0001.ranges.csv", whole.substr(0, whole.find("\n3,") + 1));
-    EXPECT_TRUE(ExpectSuccess(directory, command).out.starts_with("a.0001.exr\n"));
-    EXPECT_EQ(ReadBytes(directory.File("a.0001.ranges.csv")), whole);
-}
-
 TEST(Sequence, IsRefusedWhereItCannotBe) {
     const SequenceDirectory directory;
     for (const char* frames : {"0:1", "1:0:24", "0:1:0", "0:1:24mm", "0:1e9:24", "nan:1:1"})

@@ -4,17 +4,15 @@ import pathlib
 import random
 import time
 
-# A person takes time to look; a program that plays one says that it did. The cross between trials is
-# not waited for.
-LOOK = """(() => { let now = lastEvent + 1e6; performance.now = () => now += %d; timing.fixation = 0; timing.breakAfter = 1e12; })()"""
+# A person takes time to look; a program that plays one says that it did.
+LOOK = """(() => { let now = lastEvent + 1e6; performance.now = () => now += %d; timing.breakAfter = 1e12; })()"""
 
 
 class Participant:
     """Uses the page by mouse or by keys. `threshold(block, kind)` is in spp; looks last `look` ms."""
 
-    def __init__(self, browser, page, threshold, keys=False, guesses=None, look=700):
+    def __init__(self, browser, page, threshold, keys=False, look=700):
         self.browser, self.keys, self.threshold = browser, keys, threshold
-        self.guesses = guesses or random.Random(1)
         self.seen = {}  # (round, block): the threshold of this time
         self.time = LOOK % look
         browser.open(pathlib.Path(page))
@@ -104,7 +102,7 @@ class Participant:
 
     def state(self):
         return self.browser.evaluate(
-            "(s => s.finished ? null : s.trial ? {trial: s.trial} : {round: s.round, down: s.isDown,"
+            "(s => s.finished ? null : {round: s.round,"
             " entries: s.entries.map(e => [e.kind, shownLevel(study, e)])})(replay(session))")
 
     def look(self, most=10 ** 9):
@@ -114,21 +112,6 @@ class Participant:
             state = self.state()
             if state is None:
                 return True
-            if "trial" in state:
-                self.browser.wait_for("!choosing")
-                trial = state["trial"]
-                sees = self.sees(0, trial["block"], "asked", trial["level"])
-                side = trial["noisySide"] if sees else self.guesses.randrange(2)
-                if self.keys:
-                    self.browser.press(("ArrowLeft", "ArrowRight")[side])
-                else:
-                    self.browser.click(("#left", "#right")[side])
-                given += 1
-                continue
-            if state["down"]:
-                self.go_down(state)
-                given += 1
-                continue
             noisy = [i for i, (kind, level) in enumerate(state["entries"])
                      if self.sees(state["round"], i, kind, level)]
             for block in noisy[:most - given]:
@@ -137,18 +120,6 @@ class Participant:
             if not noisy:
                 self.press_same()
         return self.state() is None
-
-    def go_down(self, state):
-        """Makes blocks worse until noise is seen in them, and goes a step back."""
-        for block, (kind, level) in enumerate(state["entries"]):
-            if kind != "descend":
-                continue
-            while level > 0 and not self.sees(state["round"], block, kind, level):
-                self.click_block(block)
-                level -= 1
-            if self.sees(state["round"], block, kind, level):
-                self.click_block(block, back=True)
-        self.press_same()
 
     def save(self, folder):
         """Saves the answers and returns the file."""

@@ -47,8 +47,6 @@ TEST(Writers, OfOneCheckpointAreOne) {
                     "LULL record scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --threads 1 "
                     "--name v -o d.h5 --quiet",
                     ".d.h5.v.checkpoint.lock");
-    ExpectOneWriter(directory, "LULL bench scene.pbrt --cap 20 --samplers random -o b --quiet",
-                    ".b.random.checkpoint.lock");
 }
 
 // Files of one name are of one process; another name, or a name that a killed process had, is free.
@@ -61,7 +59,6 @@ TEST(Writers, OfOneResultAreOne) {
     expectOneWriter("LULL render scene.pbrt --spp 20 --denoise-layers -o a.png --quiet",
                     ".a.exr.lock");
     expectOneWriter("LULL denoise a.exr -o b.exr --quiet", ".b.exr.lock");
-    expectOneWriter("LULL bench scene.pbrt --cap 20 --samplers random -o b --quiet", ".b.csv.lock");
     expectOneWriter("LULL compare scene.pbrt --cap 20 --snapshots -o c --quiet",
                     ".c.compare.json.lock");
     expectOneWriter("LULL compare --automatic a.exr --reference b.exr -o c",

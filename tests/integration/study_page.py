@@ -4,7 +4,6 @@ import csv
 import json
 import math
 import pathlib
-import random
 import subprocess
 import tempfile
 import time
@@ -118,31 +117,6 @@ def check_labels(browser):
     check(not unnamed, "everything that can be used has a name " + "; ".join(unnamed))
 
 
-def check_quest(browser):
-    """Observers who follow the model of QUEST are measured without bias, the better the more answers."""
-    wanted, out = 400, {}
-    for answers in (8, 40):
-        out[answers] = browser.evaluate("""(() => { const random = makeRandom(3), errors = [];
-            const levels = [20]; while (levels[levels.length - 1] < 10000) levels.push(Math.round(levels[levels.length - 1] * 1.25));
-            for (let k = 0; k < 300; ++k) {
-              const quest = startQuest(levels, 0.35 + 0.3 * random());
-              for (let i = 0; i < %d; ++i) {
-                const x = intensityOf(levels[questLevel(quest, levels)]);
-                addAnswer(quest, x, random() < rightProbability(x, intensityOf(%d)));
-              }
-              errors.push(Math.log2(questThreshold(quest, levels).spp / %d));
-            }
-            const mean = errors.reduce((a, b) => a + b) / errors.length;
-            return [mean, Math.sqrt(errors.reduce((a, b) => a + (b - mean) ** 2, 0) / errors.length)]; })()"""
-                                        % (answers, wanted, wanted))
-    print("QUEST, bias and deviation in octaves:", out)
-    check(abs(out[8][0]) < 0.5 and out[8][1] < 1.6, "QUEST: 8 answers find a threshold roughly")
-    check(abs(out[40][0]) < 0.1 and out[40][1] < 0.5, "QUEST: 40 answers find it well")
-    check(abs(browser.evaluate("rightProbability(intensityOf(100), intensityOf(100))") - 0.8138) < 1e-3,
-          "QUEST: at the threshold 81 % of the answers are right")
-    check(abs(browser.evaluate("rightProbability(-9, 0)") - 0.5) < 1e-9, "QUEST: half of the guesses are")
-
-
 def check_plans(browser):
     """Start levels and order depend on the observer, and on nothing else."""
     plans = browser.evaluate("[1, 1, 2, 3].map(seed => JSON.stringify(planAdjustment("
@@ -153,50 +127,6 @@ def check_plans(browser):
           and not set(plan["caught"]) & set(plan["repeated"])
           and len(set(plan["starts"][0])) > 2 and max(plan["starts"][0]) <= 4,
           "checks, repeats and low start levels are drawn")
-
-
-def staircase(browser, page, folder):
-    observer = Participant(browser, page, lambda block, kind: RULE[block], guesses=random.Random(5))
-    observer.begin("dee")
-    check_quest(browser)
-    observer.look(5)
-    browser.click("#undo")
-    observer.keys = True
-    observer.look()
-    observer.expect("end")
-    return observer.save(folder)
-
-
-def guessing(browser, page, folder):
-    """Somebody who looks at nothing, and presses this or that."""
-    observer = Participant(browser, page, lambda block, kind: 0, guesses=random.Random(7))
-    observer.begin("gus")
-    observer.keys = True
-    observer.look()
-    observer.expect("end")
-    return observer.save(folder)
-
-
-def in_another_way(browser, page, folder):
-    """Reads other texts, answers questions, and goes down as well."""
-    observer = Participant(browser, page, lambda block, kind: RULE[block])
-    check(browser.evaluate("document.documentElement.lang === 'de' && screenName === 'own' &&"
-                           " byId('own-elements').textContent === 'Bitte zustimmen'"), "the own text is first")
-    browser.click("#agree")
-    check(browser.evaluate("byId('welcome-title').textContent") == "Wo ist Rauschen?", "texts are the researcher's")
-    browser.evaluate("byId('age').value = 33; for (const id of ['vision', 'colour'])"
-                     " document.querySelector(`input[name=${id}]`).checked = true")
-    observer.begin("eve")
-    observer.look()
-    observer.expect("end")
-    check(browser.evaluate("byId('end-title').textContent") == "Danke, eve", "also those with names in them")
-    file = observer.save(folder)
-    saved = json.loads(file.read_text())
-    check(saved["person"] == {"age": 33, "vision": "good", "colour": "usual"}, "questions are answered")
-    down = [a for a in saved["answers"] if a["kind"] == "descend"]
-    check(len(down) == 3 and all(STEPS[a["level"]] == snapped(RULE[a["block"]]) and a["lowest"] == a["level"] - 1
-                                 for a in down if a["level"] > 0), "half of the blocks are asked from above")
-    return file
 
 
 def is_in_view(browser):
@@ -294,8 +224,6 @@ def test(browser, lull, scenes):
         make = [lull, "study", f"{scenes}/cornell/scene.pbrt", "--resolution", "120x80", "--block", "40", "--cap", "240",
                 "--catches", "0.3", "--repeats", "0.3", "--quiet"]
         subprocess.run([*make, "-o", "study.html"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([*make, "--procedure", "staircase", "--answers", "12", "-o", "stairs.html"], cwd=folder,
-                       check=True, stdout=subprocess.DEVNULL)
         page = folder / "study.html"
         files = [by_mouse(browser, page, folder / "answers")]
         check_labels(browser)
@@ -304,38 +232,14 @@ def test(browser, lull, scenes):
         carelessly(browser, page, folder / "answers")
         check_collected(lull, folder, files)
 
-        (folder / "texts.md").write_text("Bitte **zustimmen**\n\n[language]\nde\n\n[title]\nWo ist *Rauschen*?\n"
-                                         "\n[end]\nDanke, {name}\n")
-        (folder / "other").mkdir()
-        subprocess.run([*make, "-o", "other.html", "--text", "texts.md", "--questions", "--descending", "0.5"],
-                       cwd=folder, check=True, stdout=subprocess.DEVNULL)
-        eve = in_another_way(browser, folder / "other.html", folder / "other")
-        subprocess.run([lull, "study", "--collect", eve, "-o", "other.csv", "--quiet"], cwd=folder, check=True,
-                       stdout=subprocess.DEVNULL)
-        eve = rows(folder / "other.observers.csv")[0]
-        check((eve["age"], eve["vision"], eve["tones"], eve["display_pixels"], float(eve["descending_octaves"]))
-              == ("33", "good", "all", "1", 0), "what is known of an observer is in the table")
         subprocess.run([lull, "study", f"{scenes}/cornell/scene.pbrt", "--resolution", "800x800", "--pass", "1", "--cap",
                         "2", "-o", "large.html", "--quiet"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
         check_windows(browser, folder / "large.html")
-
-        (folder / "staircase").mkdir()
-        stairs = staircase(browser, folder / "stairs.html", folder / "staircase")
-        guesses = guessing(browser, folder / "stairs.html", folder / "staircase")
-        subprocess.run([lull, "study", "--collect", stairs, guesses, "-o", "stairs.csv", "--quiet"], cwd=folder,
-                       check=True, stdout=subprocess.DEVNULL)
-        check(rows(folder / "stairs.observers.csv")[1]["reason"].startswith("failed"), "who guesses is left out")
-        check(not (folder / "stairs.answers.csv").exists(), "staircases have no single answers")
-        found = [int(t) for t in (folder / "stairs.csv").read_text().strip().split(";")[1:-1]]
-        print("rule", RULE, "staircase", found)
-        check(rows(folder / "stairs.observers.csv")[0]["failed"] == "0", "staircase: the easy trials are right")
-        error = sum(abs(math.log2(a / b)) for a, b in zip(found, RULE)) / len(RULE)
-        check(error < 1, f"staircase: 12 answers are {error:.2f} octaves off")
 
         browser.open(folder / "collected.html")
         check(browser.evaluate("[...document.images].every(i => i.complete && i.naturalWidth === 40) &&"
                                " document.querySelectorAll('.shade').length === 6"), "the report shows image and blocks")
         check(browser.evaluate("document.body.textContent.includes('left out: failed')"), "and who was left out")
         check_widths(browser, "the report")
-        browser.open(folder / "stairs.html")
+        browser.open(page)
         check_widths(browser, "the first screen")

@@ -23,10 +23,8 @@ void WriteScene(const TemporaryDirectory& directory) {
 TEST(Study, RecordsWhatRecordDoes) {
     const TemporaryDirectory directory;
     WriteScene(directory);
-    const std::string same =
-        " scene.pbrt --resolution 60x40 --cap 60 --name room --quiet --estimator pbrt-v3 ";
-    const Outcome judge =
-        ExpectSuccess(directory, "study -o s.html --record a.h5 --sampler random" + same);
+    const std::string same = " scene.pbrt --resolution 60x40 --cap 60 --name room --quiet ";
+    const Outcome judge = ExpectSuccess(directory, "study -o s.html --record a.h5" + same);
     EXPECT_TRUE(Contains(judge.out, "s.html\na.h5\n"));
     ExpectSuccess(directory, "record -o b.h5" + same);
     const ViewpointRecording a = ReadDataset(directory.File("a.h5")).at(0);
@@ -69,8 +67,10 @@ TEST(Study, TakesPicturesOfOtherRenderers) {
         std::filesystem::rename(directory.File("r.png"),
                                 directory.File(fmt::format("pictures/r-{}spp.png", spp)));
     }
-    const Outcome own = RunLull(
-        directory, "study scene.pbrt --cap 80 --levels 3 --block 10 --name x -o own.html --quiet");
+    const Outcome own =
+        RunLull(directory,
+                "study scene.pbrt --cap 80 --levels 3 --block 10 --estimator combined --name x "
+                "-o own.html --quiet");
     const Outcome other =
         RunLull(directory, "study --images pictures --block 10 --name x -o other.html");
     ASSERT_EQ(own.exitCode, 0) << own.err;
@@ -103,8 +103,7 @@ TEST(Study, CollectsThresholdsAndSaysWhoWasLeftOut) {
     EXPECT_TRUE(Contains(observers, "c.json,room,c,no,failed 3 of 4 checks,"));
     EXPECT_TRUE(Contains(observers, "d.json,,,no,\"is not JSON, or cut short\","));
     const std::string details = ReadBytes(directory.File("human.details.csv"));
-    EXPECT_TRUE(Contains(details, "room,0,2,100,20,320,40,160,84.85,1.414,,2\n"));
-    EXPECT_TRUE(Contains(details, "room,all,2,"));
+    EXPECT_TRUE(Contains(details, "room,0,2,100,40,160,84.85,1.414,2\n"));
     EXPECT_TRUE(Contains(outcome.err, "rest on as few as 2 answers; they are rough"));
     EXPECT_TRUE(ReadBytes(directory.File("human.answers.csv"))
                     .starts_with("block,spp,noise_seen,observer,track\n0,40,0,"));
@@ -121,14 +120,15 @@ TEST(Study, RefusesWhatDoesNotFit) {
     ExpectFailure(directory, "study scene.pbrt -o s.html --cap 20", {"--cap 20", "a ladder needs"});
     ExpectFailure(directory, "study scene.pbrt -o s.html --record d.h5", {"cannot be recorded"});
     ExpectFailure(directory, "study --images nowhere -o s.html", {"--images nowhere"});
-    ExpectFailure(directory, "study scene.pbrt -o s.html --text none.md", {"none.md"});
+    ExpectFailure(directory, "study scene.pbrt -o s.html --questions",
+                  {"there is no option --questions any more"}, 2);
     ExpectFailure(directory, "study scene.pbrt -o no/such/s.html", {"no/such"});
     for (const char* usage :
          {"study -o s.html", "study scene.pbrt", "study scene.pbrt -o s.csv",
           "study scene.pbrt --images x -o s.html", "study --images x --record d.h5 -o s.html",
           "study --images x --seed 1 -o s.html", "study --collect bad.json --cap 20 -o human.csv",
           "study --collect bad.json -o s.html", "study scene.pbrt -o s.html --report r.html",
-          "study scene.pbrt -o s.html --procedure guess"})
+          "study scene.pbrt -o s.html --repeats 2"})
         EXPECT_EQ(RunLull(directory, usage).exitCode, 2) << usage;
 }
 

@@ -1,8 +1,5 @@
 // Trains models as a user would.
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "renderer/files/file_io.h"
 #include "stopping/network/model_file.h"
@@ -69,35 +66,15 @@ TEST(Train, GoesOnAfterAnInterruption) {
 TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     const TrainingDirectory directory;
     const std::string options =
-        "train data.h5 --human human.csv --preset paper --units none --k 1 --pool rms,p4 --quiet "
-        "--channels H,detail_masked_noise --learning-rate 0.02 --epochs 60 ";
+        "train data.h5 --human human.csv --preset paper --units 4 --k 2 --pool mean --quiet "
+        "--channels H,visible_drop --learning-rate 0.02 --epochs 30 ";
     const Outcome outcome =
         ExpectSuccess(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
     EXPECT_TRUE(Contains(outcome.out, "each viewpoint left out")) << outcome.out;
     EXPECT_TRUE(Contains(ReadBytes(directory.File("judged.csv")), "barn-b"));
     const Model model = ReadModel(directory.File("model.h5"));
-    EXPECT_TRUE(model.network.lstm.empty());
-    EXPECT_EQ(FeatureNames(model.settings.features), "H,detail_masked_noise");
+    EXPECT_EQ(FeatureNames(model.settings.features), "H,visible_drop");
     ExpectSuccess(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5");
-    // How far people are from its stops is known then, and renders say so.
-    EXPECT_TRUE(Contains(outcome.out, "80 % of the human thresholds are "));
-    EXPECT_EQ(model.logRatios.size(), 11u);
-    directory.Write("scene.pbrt", SceneText(kSphere));
-    const Outcome render =
-        ExpectSuccess(directory,
-                      "render scene.pbrt --resolution 88x44 --block 44 --cap 200 --quiet "
-                      "--stop learned:model.h5 -o i.exr --report i.json");
-    EXPECT_TRUE(Contains(render.out, "i.ranges.csv\n")) << render.out;
-    const std::string ranges = ReadBytes(directory.File("i.ranges.csv"));
-    EXPECT_TRUE(
-        ranges.starts_with("block,x,y,width,height,spp,stopped,people_from,people_to\n"
-                           "0,0,0,44,44,"))
-        << ranges;
-    EXPECT_EQ(std::ranges::count(ranges, '\n'), 3);
-    const auto report = nlohmann::json::parse(ReadBytes(directory.File("i.json")));
-    const int from = report["blocks"][1]["people"]["from"], spp = report["blocks"][1]["spp"];
-    EXPECT_NEAR(from, spp * std::exp(model.logRatios[1]), 1);
-
     // Left out, it is judged by the same network as when each is left out in turn.
     const Outcome single = ExpectSuccess(directory, options + "-o one.h5 --leave-out barn-b");
     const size_t at = single.out.find("barn-b"), end = single.out.find('\n', at);
@@ -114,13 +91,13 @@ TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
     const Model entropy = ReadModel(directory.File("entropy.h5")),
                 paper = ReadModel(directory.File("paper.h5"));
     EXPECT_EQ(FeatureNames(entropy.settings.features), "visible_drop");
-    EXPECT_EQ(PoolNames(entropy.settings.pools), "mean");
+    EXPECT_TRUE(entropy.settings.takesMean);
     EXPECT_EQ(entropy.settings.k, 2);
     EXPECT_EQ(entropy.settings.spacing, Spacing::Geometric);
     EXPECT_EQ(entropy.network.lstm.size(), 2u);
     EXPECT_EQ(entropy.network.lstm[0].Units(), 8);
     EXPECT_EQ(FeatureNames(paper.settings.features), "H");
-    EXPECT_TRUE(paper.settings.pools.empty());
+    EXPECT_FALSE(paper.settings.takesMean);
     EXPECT_EQ(paper.settings.k, 4);
     EXPECT_EQ(paper.network.lstm[0].Units(), 8);
 
@@ -132,7 +109,7 @@ TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
                                                 "geometric --ratio 1.4142 --k 2 --units 8,4 "
                                                 "--dropout 0 --learning-rate 0.003 --flare 0 "
                                                 "--balance-viewpoints --no-class-weights "
-                                                "--noisy-weight 1 --mask 1e9 --nearness 0.25 "
+                                                "--mask 1e9 --nearness 0.25 "
                                                 "--peak-limit 1.1 --preset paper");
     EXPECT_EQ(brief.out, full.out);
     EXPECT_NE(brief.out, RunLull(directory, judge + "--preset paper --units 8,4").out);
@@ -148,107 +125,6 @@ TEST(Train, SplitsBlocks) {
     EXPECT_EQ(ExpectSuccess(directory, kSmall + "--split paper:split.csv").out, outcome.out);
 }
 
-// Runs tests/measurements/search.py, which makes s.csv and s.md.
-std::string SearchOf(const std::string& options) {
-    return fmt::format(
-        "'{}' -B '{}/measurements/search.py' grid.txt s.csv LULL train data.h5 "
-        "--human human.csv --preset paper {}",
-        LULL_PYTHON, LULL_TESTS_DIR, options);
-}
-
-// Returns the lines of s.csv without their last column, which are seconds.
-std::vector<std::string> SearchResults(const TemporaryDirectory& directory) {
-    std::istringstream in(ReadBytes(directory.File("s.csv")));
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(in, line);)
-        lines.push_back(line.substr(0, line.rfind(',')));
-    return lines;
-}
-
-TEST(Search, TrainsAllCombinationsAndRanksThem) {
-    if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
-    const TrainingDirectory directory;
-    directory.Write("grid.txt", "k 2 4  # steps\nfeatures H detail_masked_noise\n\nsnorm 0 1\n");
-    const Outcome outcome = ExpectSuccess(RunShell(directory, SearchOf("--units 4 --epochs 2")));
-    const std::vector<std::string> lines = SearchResults(directory);
-    ASSERT_EQ(lines.size(), 9u);
-    EXPECT_EQ(lines[0],
-              "k,features,snorm,auc_left_out,accuracy_left_out,auc_training,accuracy_training,"
-              "critical_error_2,early,late");
-    double last = 1;
-    for (size_t i = 1; i < lines.size(); ++i) {
-        size_t field = 0;
-        for (int j = 0; j < 3; ++j) field = lines[i].find(',', field) + 1;
-        const double auc = std::stod(lines[i].substr(field));
-        EXPECT_LE(auc, last);
-        last = auc;
-    }
-    EXPECT_EQ(outcome.out, ReadBytes(directory.File("s.md")));
-    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 10) << outcome.out;
-
-    // A combination has the figures that it has by itself.
-    ExpectSuccess(directory,
-                  "train data.h5 --human human.csv --preset paper --units 4 "
-                  "--epochs 2 --k 2 --features detail_masked_noise --no-snorm "
-                  "--cross-validate --csv one.csv");
-    const std::string one = ReadBytes(directory.File("one.csv"));
-    size_t field = one.find("left out, at least\",all,");
-    for (int i = 0; i < 8; ++i) field = one.find(',', field) + 1;
-    const std::string criticalError = one.substr(field, 8);
-    EXPECT_EQ(std::ranges::count_if(lines,
-                                    [&](const std::string& line) {
-                                        return line.starts_with("2,detail_masked_noise,0,") &&
-                                               Contains(line, "," + criticalError + ",");
-                                    }),
-              1)
-        << one << outcome.out;
-}
-
-TEST(Search, GoesOnAfterAnInterruption) {
-    if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
-    const TrainingDirectory directory;
-    directory.Write("grid.txt", "k 2 4\nepochs 1 40\n");
-    const std::string search = SearchOf("--units 16,8 --checkpoint-interval 0.1");
-    ExpectSuccess(RunShell(directory, search));
-    const std::vector<std::string> whole = SearchResults(directory);
-    std::filesystem::remove(directory.File("s.csv"));
-    const std::string checkpoint = "s.csv.k=4_epochs=40.h5.checkpoint";
-    const Outcome part = RunAndSignal(directory, search, SIGINT, checkpoint);
-    ASSERT_EQ(part.exitCode, 130) << part.err;
-    EXPECT_EQ(SearchResults(directory).size(), 4u);
-    EXPECT_TRUE(std::filesystem::exists(directory.File(checkpoint)));
-    // Other options are another search.
-    const Outcome other = RunShell(directory, search + " --learning-rate 0.01");
-    EXPECT_EQ(other.exitCode, 1);
-    EXPECT_TRUE(Contains(other.err, "s.csv: is not of this search")) << other.err;
-    ExpectSuccess(RunShell(directory, search));
-    EXPECT_EQ(SearchResults(directory), whole);
-    EXPECT_FALSE(std::filesystem::exists(directory.File(checkpoint)));
-}
-
-TEST(Search, SaysWhatCannotBeTrained) {
-    if (std::string(LULL_PYTHON).empty()) GTEST_SKIP() << "there is no Python";
-    const TrainingDirectory directory;
-    const auto expect = [&](const std::string& grid, const std::string& part) {
-        directory.Write("grid.txt", grid);
-        const Outcome outcome = RunShell(directory, SearchOf("--units 4 --epochs 1"));
-        EXPECT_EQ(outcome.exitCode, 1) << grid << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, part)) << grid << outcome.err;
-        std::filesystem::remove(directory.File("s.csv.search"));
-    };
-    expect("k 2\nspeed 1\n", "--speed=1: are no options of lull train");
-    expect("m 7\n", "--m=7: are no options of lull train");
-    expect("n 30 50\n", "--n=50: not trained");
-    expect("k\n", "'k' has no values");
-    expect("k 2 4\nk 8\n", "'k' has no values, or something comes twice");
-    expect("# k 2\n", "no option to vary");
-    // What can be trained is.
-    directory.Write("grid.txt", "n 30 40\n");
-    const Outcome outcome = ExpectSuccess(RunShell(directory, SearchOf("--units 4 --epochs 1")));
-    EXPECT_TRUE(Contains(outcome.err, "--n=30: not trained")) << outcome.err;
-    EXPECT_EQ(SearchResults(directory).size(), 2u);
-}
-
 TEST(Train, SaysWhatIsWrong) {
     const TrainingDirectory directory;
     ExpectFailure(directory, kSmall + "-o m.h5 --features H1", {"H1 with m = 25"});
@@ -260,8 +136,8 @@ TEST(Train, SaysWhatIsWrong) {
     ExpectFailure(directory, kSmall + "-o no/such/m.h5", {"no/such"});
     ExpectFailure(directory, "train human.csv --human human.csv -o m.h5", {"human.csv"});
     for (const char* bad :
-         {"", "-o m.h5 --features Q", "-o m.h5 --pool q101", "-o m.h5 --m 16",
-          "-o m.h5 --dropout 1", "-o m.h5 --units 8,,4", "--resume",
+         {"", "-o m.h5 --features Q", "-o m.h5 --pool rms", "-o m.h5 --units none",
+          "-o m.h5 --m 16", "-o m.h5 --dropout 1", "-o m.h5 --units 8,,4", "--resume",
           "-o m.h5 --cross-validate --leave-out attic-a", "-o m.h5 --split human.csv"})
         EXPECT_EQ(
             RunLull(directory, std::string("train data.h5 --human human.csv ") + bad).exitCode, 2)

@@ -1,7 +1,7 @@
 """Chooses a model's options inside the folds: each scene is judged by a network whose options were chosen, and which was
 trained, on the others. A scene is a viewpoint, or all whose names begin with a text of --together.
 
-    python3 nested.py LULL HUMAN.csv DATASET.h5... [--grid "mask 24 40 1e9; noisy-weight 1 1.4 2"] [--keep FOLDER]
+    python3 nested.py LULL HUMAN.csv DATASET.h5... [--grid "mask 24 40 1e9; nearness 0.25 0.35"] [--keep FOLDER]
 
 Options are chosen by the critical error at 2 % with recordings extended, each of the other viewpoints left out in turn. Results
 are kept in FOLDER, and existing ones are not trained again.
@@ -76,7 +76,7 @@ def nested(o):
 if __name__ == '__main__':
     p = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     p.add_argument('lull'), p.add_argument('human'), p.add_argument('data', nargs='+')
-    p.add_argument('--grid', default='noisy-weight 1 1.4; nearness 0.25 0.35; peak-limit 1.1 1.3')
+    p.add_argument('--grid', default='nearness 0.25 0.35; peak-limit 1.1 1.3')
     p.add_argument('--together', action='append', default=[])
     p.add_argument('--keep', default='nested')
     o = p.parse_args()

@@ -11,6 +11,7 @@
 #include "renderer/lab/commands/comparison_table.h"
 #include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/comparison/compared_files.h"
+#include "renderer/lab/comparison/error_curves.h"
 #include "renderer/mpi/job.h"
 #include "renderer/results/block_files.h"
 #include "renderer/results/image_files.h"
@@ -95,7 +96,8 @@ struct Compared {
 
     CompareOptions options;
     RenderJob render;
-    std::vector<MonitoredRule> rules;
+    std::vector<MonitoredRule> rules;  // after those of the images, those of the curves
+    size_t imageCount = 0;
     std::string humanChecksum = "none";
     ComparisonReport report;
     std::vector<ComparedImage> fromFiles;
@@ -124,6 +126,12 @@ void AddOtherRules(Compared* compared) {
     compared->rules.back().isDenoised = true;
 }
 
+void AddCurveRules(Compared* compared) {
+    const ScheduleOptions& schedule = compared->options.render.schedule;
+    for (const std::string& text : CurveRules(schedule.passLength, schedule.cap))
+        compared->rules.push_back(MakeRule(text, compared->render.ReadRule("--curves", text)));
+}
+
 // Checks all that can be wrong before the work begins.
 std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) {
     auto compared = std::make_unique<Compared>(options, ranks);
@@ -134,6 +142,8 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) 
     AddOtherRules(compared.get());
     std::vector<std::string> rendered;
     for (const MonitoredRule& rule : compared->rules) rendered.push_back(rule.name);
+    compared->imageCount = compared->rules.size();
+    if (options.curves) AddCurveRules(compared.get());
     if (options.snapshots) rendered.push_back("reference");
     render.CheckFiles(OutputsOf(options, rendered), InputsOf(options));
     render.LockResults(options.output + ".compare.json");
@@ -163,6 +173,7 @@ SessionOptions MakeOptions(Compared* compared) {
     how.identity["human"] = compared->humanChecksum;
     how.identity["snapshots"] = options.snapshots ? "yes" : "no";
     how.identity["curves"] = hasPage ? "yes" : "no";
+    how.identity["error curves"] = options.curves ? "yes" : "no";
     return how;
 }
 
@@ -211,7 +222,7 @@ void AddImages(const MonitoredRender& monitored, Compared* compared) {
     const CompareOptions& options = compared->options;
     ComparisonReport* report = &compared->report;
     Comparison& comparison = report->comparison;
-    for (size_t i = 0; i < compared->rules.size(); ++i)
+    for (size_t i = 0; i < compared->imageCount; ++i)
         comparison.images.push_back(TakeImage(monitored, compared->rules, i));
     if (options.snapshots) comparison.images.push_back(TakeWholeImage(monitored));
     for (ComparedImage& image : compared->fromFiles) comparison.images.push_back(std::move(image));
@@ -221,6 +232,11 @@ void AddImages(const MonitoredRender& monitored, Compared* compared) {
     Measure(&comparison);
     if (options.snapshots)
         report->estimates = CompareEstimates(comparison.images.front(), comparison.images.back());
+    if (!options.curves) return;
+    if (!options.render.quiet) TalkOf(options.render).Note("measuring the curves");
+    report->curvePoints =
+        MeasureCurves(monitored, compared->rules, compared->imageCount, comparison);
+    report->curvesShareReference = options.snapshots;
 }
 
 // Renders the automatic image by itself on as many threads as asked for, until it is interrupted.

@@ -25,6 +25,9 @@ With --denoise there is one more image, "denoised", that stops by the rule `deno
 denoised as a whole; its samples are rendered again. The time of checks and denoising counts as the
 rule's.
 
+With --curves, that render also gives the error, time and samples of fixed sample counts and of the
+stopping rules over a range of their settings: the measured CPU time divided by the number of threads.
+
 Errors relative to the reference, for the image and each block: RMSE and relMSE (linear); RMSE of the
 lightness L (0 to 100), PSNR, SSIM (Wang et al. 2004) and FLIP (Andersson et al. 2020) of the 8-bit
 display image; "visible", its visible difference (ColorVideoVDP, Mantiuk et al. 2024) on --viewing,
@@ -41,6 +44,7 @@ Files, in one folder:
 Examples:
   lull compare scene.pbrt --snapshots --human human.csv:room-view0 -o room --report room.html
   lull compare scene.pbrt --snapshots --denoise -o room
+  lull compare scene.pbrt --snapshots --curves --cap 2000 -o room --report room.html
   lull compare scene.pbrt --snapshots --stop lnoise:0.5 --cap 2000 --verify 0,1 -o room
   lull compare --images pictures/kitchen --human human.csv -o kitchen --report kitchen.html
   lull compare --automatic a.exr --human h.exr --reference r.exr -o room
@@ -79,6 +83,10 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
         ->needs(scene)
         ->excludes(reference);
     app.add_flag("--denoise", o->denoise, "Add \"denoised\", the image of `lull render --denoise`")
+        ->group(kCommonOptions)
+        ->needs(scene);
+    app.add_flag("--curves", o->curves,
+                 "Add curves of error against time: fixed sample counts, stopping rules")
         ->group(kCommonOptions)
         ->needs(scene);
     AddViewingOption(app, &o->display);

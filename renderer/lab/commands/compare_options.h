@@ -17,7 +17,7 @@ struct CompareOptions {
     std::string human, automatic, reference;  // empty: none
     std::string output, report;
     DisplayModel display;
-    bool snapshots = false, denoise = false;
+    bool snapshots = false, denoise = false, curves = false;
     std::vector<int> verify;  // numbers of threads
 };
 

@@ -15,9 +15,9 @@
 #include "renderer/lab/commands/evaluation_table.h"
 #include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/commands/picture_options.h"
-#include "renderer/lab/pages/curves_figure.h"
 #include "stopping/lab/evaluation/constants.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
+#include "stopping/lab/evaluation/recorded_rules.h"
 #include "stopping/lab/recordings/block_split.h"
 #include "stopping/rules/rule_table.h"
 
@@ -43,7 +43,7 @@ constexpr const char* kOptionsOfAnswers[] = {"DATASET.h5", "--images", "--block"
 struct Options {
     std::vector<std::string> datasets, images, predicted, rules, without;
     int blockSize = 200;  // pixels a side, of images
-    std::string human, answers, csv, blocks, curves, figure;
+    std::string human, answers, csv, blocks, curves;
     std::string split;  // the file that lists the blocks of a training; empty: all are judged
     bool rivals = false, constants = false, brief = false;
     ChooseBy chooseBy = ChooseBy::AbsoluteError;
@@ -56,13 +56,11 @@ constexpr const char* kFooter =
 have. With data sets (see lull record), only their blocks are evaluated, and rules run on the
 recordings, without rendering: every pass up to 400 spp, every second after.
 --images DIR does the same on another renderer's pictures, as lull record --images would record
-them. Rules that need a half buffer (lnoise, dammertz, cycles, luxtile, learned:noise) cannot be run
-on pictures.
+them. Rules that need a half buffer (lnoise, dammertz, cycles, luxtile) cannot be run on pictures.
 
 --stop takes the rules of lull render. --rivals runs the rules with one setting, each with the best
 setting of the other viewpoints (leave one out), which is in the column "setting"; the row of all
-viewpoints has the best one for all of them. "entropy, mask" is entropy with two settings: its
-threshold, and the masking of noise by detail (8 to 40; 1e+09: none).
+viewpoints has the best one for all of them.
 
 Columns:
   views   number of viewpoints, and of their
@@ -94,9 +92,8 @@ it has a lower error than the known constant.
 --split paper:FILE evaluates only blocks that FILE does not list: a row NAME;b0;b1;... has the
 training blocks of a viewpoint (lull train --split).
 
---curves and --figure show the number of each --stop rule over the samples of each block, as a CSV
-file and as an SVG image of one viewpoint, with human thresholds and stops (Buisine et al. 2021,
-Fig. 13).
+--curves writes the number of each --stop rule over the samples of each block, with human thresholds
+and stops (Buisine et al. 2021, Fig. 13).
 
 --answers evaluates --stop rules by observers' single answers instead, on data sets of one viewpoint.
 The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
@@ -118,7 +115,7 @@ Examples:
   lull evaluate data.h5 more.h5 --human human.csv --rivals --predicted predicted.csv --brief
   lull evaluate --images pictures/kitchen --human human.csv --stop learned --stop learned:paper
   lull evaluate data.h5 --human human.csv --stop learned:own.h5 --split paper:training-blocks.csv
-  lull evaluate data.h5 --human human.csv --stop learned:paper --curves c.csv --figure c.svg
+  lull evaluate data.h5 --human human.csv --stop learned:paper --curves c.csv
   lull evaluate data.h5 --answers answers.csv --stop entropy --stop learned
 
 Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
@@ -157,9 +154,11 @@ void AddOptions(CLI::App& app, Options* o) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("RULE");
     AddCautionOption(app, &o->caution);
-    app.add_flag("--rivals", o->rivals,
-                 "Evaluate the baselines, which have one setting:\n" +
-                     RuleNames([](const RuleEntry& rule) { return rule.sweep.largest > 0; }));
+    app.add_flag(
+        "--rivals", o->rivals,
+        "Evaluate the baselines, which have one setting:\n" + RuleNames([](const RuleEntry& rule) {
+            return FindRecordedRule(rule.name)->largest > 0;
+        }));
     app.add_flag("--constants", o->constants, "Evaluate constant spp, too");
     AddChoiceOption(app, "--choose-by", &o->chooseBy,
                     "Choose settings of baselines by the least error, or critical error at 2 %");
@@ -175,11 +174,6 @@ void AddOptions(CLI::App& app, Options* o) {
     AddSplitOption(app, &o->split, "Judge by the blocks alone that FILE does not list");
     app.add_option("--curves", o->curves, "Write the numbers of --stop rules to a CSV file")
         ->type_name("F.csv");
-    app.add_option("--figure", o->figure, "Draw them, for each block of one viewpoint")
-        ->check([](const std::string& file) {
-            return file.ends_with(".svg") ? "" : file + " does not end in .svg";
-        })
-        ->type_name("F.svg");
 }
 
 bool HasRecordings(const Options& options) {
@@ -265,40 +259,11 @@ void RunByAnswers(const Options& options) {
     if (!options.csv.empty()) WriteFileAtomically(options.csv, AnswerScoresCsv(scores));
 }
 
-// Returns the curves of all rules and viewpoints, or of the first viewpoint alone.
-std::vector<CurvesOfRule> CurvesOf(const std::vector<EvaluatedRule>& rules, bool onlyFirst) {
-    std::vector<CurvesOfRule> curves;
-    for (const EvaluatedRule& rule : rules) {
-        if (rule.threshold == 0 || rule.openStops == OpenStops::Extended) continue;
-        for (const ViewpointOutcome& viewpoint : rule.viewpoints) {
-            curves.push_back(
-                {.name = rule.name, .threshold = rule.threshold, .outcome = &viewpoint});
-            if (onlyFirst) break;
-        }
-    }
-    return curves;
-}
-
-void WriteCurves(const Options& options, const std::vector<EvaluatedRule>& rules) {
-    if (!options.curves.empty())
-        WriteFileAtomically(options.curves, CurvesCsv(CurvesOf(rules, false)));
-    if (options.figure.empty()) return;
-    const std::vector<CurvesOfRule> curves = CurvesOf(rules, true);
-    if (curves.empty())
-        throw Error(
-            "--figure: none of the rules has a number that falls; give one as --stop learned");
-    if (rules.at(0).viewpoints.size() > 1)
-        PrintTalk(fmt::format("--figure: shows '{}' alone; leave it out by --without for another",
-                              curves.front().outcome->name));
-    WriteFileAtomically(options.figure, CurvesSvg(curves.front().outcome->name, curves));
-}
-
 ExitCode RunEvaluate(const Options& options) {
-    CheckOutputs(std::vector<NamedFile>{{"--csv", options.csv},
-                                        {"--blocks", options.blocks},
-                                        {"--curves", options.curves},
-                                        {"--figure", options.figure}},
-                 InputsOf(options));
+    CheckOutputs(
+        std::vector<NamedFile>{
+            {"--csv", options.csv}, {"--blocks", options.blocks}, {"--curves", options.curves}},
+        InputsOf(options));
     if (!options.answers.empty()) {
         RunByAnswers(options);
         return kDone;
@@ -315,7 +280,7 @@ ExitCode RunEvaluate(const Options& options) {
     if (!options.csv.empty())
         WriteFileAtomically(options.csv, EvaluationCsv(rules, options.scoring));
     if (!options.blocks.empty()) WriteFileAtomically(options.blocks, BlocksCsv(rules));
-    WriteCurves(options, rules);
+    if (!options.curves.empty()) WriteFileAtomically(options.curves, CurvesCsv(rules));
     return kDone;
 }
 
@@ -334,8 +299,8 @@ void CheckUsage(const CLI::App& app, const Options& options) {
     if (!HasRecordings(options) && runs)
         throw CLI::ValidationError("--stop and --rivals",
                                    "need DATASET.h5 or --images to run rules on");
-    if (options.rules.empty() && !(options.curves.empty() && options.figure.empty()))
-        throw CLI::ValidationError("--curves and --figure", "show the rules of --stop");
+    if (options.rules.empty() && !options.curves.empty())
+        throw CLI::ValidationError("--curves", "shows the rules of --stop");
     if (!options.split.empty() && !HasRecordings(options))
         throw CLI::ValidationError("--split", "needs DATASET.h5 or --images");
     if (!runs && options.predicted.empty())

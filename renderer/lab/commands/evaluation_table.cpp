@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -117,6 +118,23 @@ std::string BlocksCsv(const std::vector<EvaluatedRule>& rules) {
                                CsvField(LabelOf(rule)), CsvField(viewpoint.name),
                                CsvField(viewpoint.setting), b.block, int(b.seen), b.human,
                                b.outcome.stop, int(b.outcome.open));
+    return csv;
+}
+
+std::string CurvesCsv(const std::vector<EvaluatedRule>& rules) {
+    std::string csv = "rule,viewpoint,block,human,stop,spp,value,threshold,noisy\n";
+    for (const EvaluatedRule& rule : rules) {
+        if (rule.threshold == 0 || rule.openStops == OpenStops::Extended) continue;
+        for (const ViewpointOutcome& viewpoint : rule.viewpoints)
+            for (const BlockOutcome& block : viewpoint.blocks)
+                for (const BlockVerdict& verdict : block.outcome.verdicts)
+                    if (std::isfinite(verdict.score))
+                        fmt::format_to(std::back_inserter(csv),
+                                       "{},{},{},{},{},{},{:.9g},{:g},{}\n", CsvField(rule.name),
+                                       CsvField(viewpoint.name), block.block, block.human,
+                                       block.outcome.stop, verdict.spp, verdict.score,
+                                       rule.threshold, int(verdict.noisy));
+    }
     return csv;
 }
 

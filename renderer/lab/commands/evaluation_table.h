@@ -22,4 +22,8 @@ std::string EvaluationCsv(const std::vector<EvaluatedRule>& rules, const ScoreOp
 // noise and where the rule stopped, in spp, and whether its recording had ended before.
 std::string BlocksCsv(const std::vector<EvaluatedRule>& rules);
 
+// Returns a CSV file of all verdicts, with a line of names: rule,viewpoint,block,human,stop,spp,
+// value,threshold,noisy. Rules without a number, and spp at which there is none, are left out.
+std::string CurvesCsv(const std::vector<EvaluatedRule>& rules);
+
 }  // namespace lull

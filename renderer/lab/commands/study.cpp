@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <filesystem>
 
 #include "renderer/base/memory.h"
@@ -19,14 +18,6 @@ namespace lull::study {
 
 namespace {
 
-// Prints the expected scatter of thresholds by chance alone.
-void SayPower(int answers) {
-    const double octaves = StaircaseOctaves(answers);
-    Say("lull: {} answers to each block: thresholds of one observer scatter by {:.2f} octaves (a "
-        "factor of {:.2f}), means of 10 observers by {:.0f} %, by chance alone\n",
-        answers, octaves, std::exp2(octaves), 100 * (std::exp2(octaves / std::sqrt(10.0)) - 1));
-}
-
 void WriteStudy(const Options& settings, const Study& study, ResultFiles* results) {
     RunWithThreads(settings.render.scene.compile.threads, [&] {
         results->WriteText(settings.output, MakeStudyPage(study, settings.study));
@@ -34,8 +25,6 @@ void WriteStudy(const Options& settings, const Study& study, ResultFiles* result
     if (!settings.render.quiet)
         Say("lull: {} blocks at {} levels: {} spp\n", study.blocks.size(), study.levels.size(),
             fmt::join(study.levels, ", "));
-    if (!settings.render.quiet && settings.study.procedure == StudyProcedure::Staircase)
-        SayPower(settings.study.answers);
 }
 
 // Prints the names of the files. Throws Error where one is not where it should be.
@@ -141,11 +130,6 @@ ExitCode MakeStudyOfScene(Options options) {
 }
 
 ExitCode Run(Options settings) {
-    if (settings.listsTexts) {
-        fmt::print("{}", DefaultStudyTexts());
-        return kDone;
-    }
-    if (!settings.textFile.empty()) settings.study.texts = ReadStudyTexts(settings.textFile);
     if (settings.collect.empty())
         return settings.images.empty() ? MakeStudyOfScene(settings) : MakeStudyOfImages(settings);
     CollectAnswers(settings);
@@ -158,6 +142,9 @@ void AddCommand(CLI::App& app, Command* command) {
     CLI::App* study = app.add_subcommand(
         "study", "Makes a page on which observers mark visible noise, and collects their answers.");
     auto settings = std::make_shared<Options>();
+    // As lull record renders, so that answers are to what it records.
+    settings->render.purpose = Purpose::Recording;
+    settings->render.estimator = Estimator::PbrtV3;
     AddOptions(*study, settings.get());
     study->callback([=] {
         CheckOptions(*study, *settings);

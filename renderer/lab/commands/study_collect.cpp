@@ -9,7 +9,6 @@
 #include "renderer/files/outputs.h"
 #include "renderer/lab/commands/study_options.h"
 #include "renderer/lab/pages/collected_page.h"
-#include "stopping/lab/observers/agreement.h"
 #include "stopping/lab/observers/observer_tables.h"
 
 namespace lull::study {
@@ -28,17 +27,10 @@ void Tell(const Collected& collected) {
                 observer.doubts);
 }
 
-std::string AgreementOf(const CollectedViewpoint& viewpoint) {
-    if (!viewpoint.agreement) return "not known";
-    const std::string word = AgreementInAWord(*viewpoint.agreement);
-    return fmt::format("{:.2f} ({}{})", *viewpoint.agreement, word,
-                       word == "poor" ? ": observers differ more than blocks do" : "");
-}
-
 // Prints how far the thresholds of a viewpoint can be relied on.
 void SayCertainty(const CollectedViewpoint& viewpoint) {
-    Say("lull: {}: {} observer{}, agreement {}\n", viewpoint.name, viewpoint.observers,
-        viewpoint.observers == 1 ? "" : "s", AgreementOf(viewpoint));
+    Say("lull: {}: {} observer{}\n", viewpoint.name, viewpoint.observers,
+        viewpoint.observers == 1 ? "" : "s");
     if (const int fewest = FewestAnswers(viewpoint); fewest < kEnoughAnswers)
         Say("lull: {}: thresholds of blocks rest on as few as {} answer{}; they are rough with "
             "fewer than {}\n",
@@ -83,7 +75,6 @@ void CollectAnswers(const Options& settings) {
     if (!settings.studyPage.empty()) {
         study = ReadStudyPage(settings.studyPage);
         options.study = study.at("id").get<std::string>();
-        options.procedure = study.at("procedure").get<std::string>();
     }
     const Collected collected = CollectFiles(settings.collect, options);
     Tell(collected);

@@ -13,9 +13,8 @@ namespace {
 
 // Those with an effect on a study of another renderer's pictures, and on the collection of answers.
 constexpr const char* kOptionsOfPictures[] = {
-    "--images",  "--name",      "--levels",     "--block",   "--threads",
-    "--output",  "--text",      "--procedure",  "--repeats", "--catches",
-    "--answers", "--questions", "--descending", "--quiet",   "--json-progress"};
+    "--images", "--name",    "--levels",  "--block", "--threads",
+    "--output", "--repeats", "--catches", "--quiet", "--json-progress"};
 constexpr const char* kOptionsOfAnswers[] = {"--collect", "--study", "--output",
                                              "--report",  "--quiet", "--json-progress"};
 
@@ -25,32 +24,26 @@ constexpr const char* kFooter =
 The scene is rendered to the cap once, and each block stored at a ladder of sample counts, each level
 a quarter above the last. STUDY.html opens from disk in any browser, without a network connection; an
 observer ends with a small file of answers. An interrupted render leaves STUDY.html.checkpoint, from
-which the same command continues. The noise is the same as of `lull render` with the same --sampler
-and --estimator.
+which the same command continues. The noise is that of `lull record`, by pbrt-v3's estimator and random
+sampler, unless --sampler and --estimator are given.
 
-Procedures:
-  adjust      image and reference side by side: observers point where they differ, and the block gets
-              one level better, until both look the same (Buisine et al. 2021)
-  staircase   one block and its reference side by side: which of the two is noisier? Levels are
-              chosen by QUEST (Watson and Pelli 1983)
-Start levels differ between observers, some blocks are asked twice, and some show the reference on
-both sides, to detect inattentive observers. --descending asks a fraction of the blocks again from
-above: they begin without noise, and get worse until it is just visible. Observers cannot begin in a
-window that is too small for both pictures.
+Image and reference are side by side: observers point where they differ, and the block gets one level
+better, until both look the same (Buisine et al. 2021). Start levels differ between observers, some
+blocks are asked twice, and some show the reference on both sides, to detect inattentive observers.
+Observers cannot begin in a window that is too small for both pictures.
 
 --collect writes, in one folder:
   HUMAN.csv             mean thresholds over observers, in the format of the published ones
-  HUMAN.details.csv     of each block: spread, 95 % confidence interval of the mean; of each
-                        viewpoint: how far observers agree
-  HUMAN.observers.csv   of each observer: consistency, checks failed, display, distance, age and
-                        sight, who was left out or is in doubt, and why
+  HUMAN.details.csv     of each block: the spread over observers
+  HUMAN.observers.csv   of each observer: consistency, checks failed, display, distance, who was left
+                        out or is in doubt, and why
   HUMAN.answers.csv     single answers with observer and adjustment (track), for `lull evaluate
-                        --answers`; not of staircases, whose answers are half right by chance
+                        --answers`
 Damaged, foreign and contradictory files are named and left out.
 
 Examples:
   lull study scene.pbrt -o study.html --record data.h5
-  lull study scene.pbrt -o study.html --resolution 800x800 --cap 2000 --procedure staircase
+  lull study scene.pbrt -o study.html --resolution 800x800 --cap 2000
   lull study --images pictures/ --name kitchen-view0 -o study.html
   lull study --collect answers/*.json -o human.csv --study study.html --report collected.html
   lull train data.h5 --human human.csv -o model.h5
@@ -58,19 +51,13 @@ Examples:
 Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
 void AddStudyOptions(CLI::App& app, StudySettings* s) {
-    AddChoiceOption(app, "--procedure", &s->procedure, "Choose the procedure, described below");
     app.add_option("--repeats", s->repeats, "Ask this fraction of the blocks twice")
         ->check(Between(0.0, 1.0))
         ->type_name("X")
         ->capture_default_str();
-    app.add_option("--catches", s->catches,
-                   "Check observers in this fraction of the blocks (staircase: trials)")
+    app.add_option("--catches", s->catches, "Check observers in this fraction of the blocks")
         ->check(Between(0.0, 0.5))
         ->type_name("X")
-        ->capture_default_str();
-    app.add_option("--answers", s->answers, "Ask N times per block of a staircase")
-        ->check(Between(2, 100))
-        ->type_name("N")
         ->capture_default_str();
 }
 
@@ -102,20 +89,6 @@ void AddOptions(CLI::App& app, Options* s) {
         ->type_name("DATA.h5");
     AddCheckpointInterval(app, &s->render.checkpoint);
     AddStudyOptions(app, &s->study);
-    app.add_option("--text", s->textFile,
-                   "Use your own texts: first a consent form with an address, then sections [key]\n"
-                   "that replace texts of the page, for another language or task; # headings,\n"
-                   "- lists, **bold**, *italics*")
-        ->type_name("TEXT.md");
-    app.add_flag("--list-texts", s->listsTexts,
-                 "Print all texts of the page, to be changed for --text");
-    app.add_flag("--questions", s->study.questions,
-                 "Ask observers for their age, and whether they see well and tell colours apart");
-    app.add_option("--descending", s->study.descending,
-                   "Fraction of the blocks shown from above, too, by adjustment")
-        ->check(Between(0.0, 1.0))
-        ->type_name("X")
-        ->capture_default_str();
     app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")
         ->type_name("STUDY.html");
     app.add_option("--report", s->report, "Write a page of the answers, with --collect")
@@ -125,10 +98,7 @@ void AddOptions(CLI::App& app, Options* s) {
 }
 
 void CheckOptions(const CLI::App& app, const Options& s) {
-    if (s.listsTexts) return;
     if (s.output.empty()) throw CLI::ValidationError("--output", "is required");
-    if (s.study.descending > 0 && s.study.procedure != StudyProcedure::Adjust)
-        Refuse("--descending is for --procedure adjust");
     const bool hasScene = !s.render.scene.file.empty();
     if (int(hasScene) + int(!s.images.empty()) + int(!s.collect.empty()) != 1)
         Refuse("a SCENE is needed, or --images, or --collect; one of them");
@@ -136,7 +106,6 @@ void CheckOptions(const CLI::App& app, const Options& s) {
         Refuse("-o " + s.output + ": a study is a page, STUDY.html");
     if (!s.collect.empty() && !s.output.ends_with(".csv"))
         Refuse("-o " + s.output + ": collected thresholds are a table, HUMAN.csv");
-    if (!s.textFile.empty() && !s.collect.empty()) Refuse("--text is for a study that is made");
     if (!s.record.empty() && !hasScene) Refuse("--record needs a SCENE, which is rendered");
     if (s.collect.empty() && !(s.report.empty() && s.studyPage.empty()))
         Refuse("--report and --study need --collect");

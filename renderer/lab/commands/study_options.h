@@ -9,13 +9,11 @@ namespace lull::study {
 struct Options {
     RenderSettings render;
     StudySettings study;
-    std::string textFile;              // that observers read first; empty: none
     std::string images;                // the folder of another renderer's pictures; empty: none
     std::vector<std::string> collect;  // files of answers; empty: a study is made
     std::string output, name;
     std::string record;             // the data set that the render is recorded to; empty: none
     std::string report, studyPage;  // of --collect; empty: none
-    bool listsTexts = false;        // and nothing else is done
     int levels = 0;                 // 0: as many as steps of kLadderRatio give
 };
 

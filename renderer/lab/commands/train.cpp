@@ -75,12 +75,10 @@ ExitCode RunTrain(const TrainOptions& options) {
     const ScoreOptions scoring{.grid = plan.settings.n};
     if (!options.output.empty()) {
         WriteModel(options.output, result->network, plan.settings,
-                   MakeRecord(plan, splits.back(), *result, scoring), result->logRatios);
+                   MakeRecord(plan, splits.back(), *result, scoring));
         checkpoint.Remove();
     }
     PrintEvaluation(stdout, result->rules, scoring, true);
-    if (const std::string certainty = CertaintyText(*result); !certainty.empty())
-        fmt::print("\n{}\n", certainty);
     if (!options.csv.empty())
         WriteFileAtomically(options.csv, EvaluationCsv(result->rules, scoring));
     return kDone;

@@ -25,28 +25,19 @@ ignored.
 
 Features for --features (also --channels), a list with commas:
   H, H1, H2          SVD-entropies of m sub-blocks (H1 and H2 for m = 100 only)
-  detail_masked_noise
-                     noise of 10x10 sub-blocks from half buffers, masked by detail
   visible_drop       visible noise (1.5 to 2 times its L*), from the drop in H, of 10x10 sub-blocks
   attributes26       means and deviations of the block minus its filtered copies, for 13 filters;
                      blocks recorded without them are ignored
---pool rms,p4 replaces the values of all sub-blocks by statistics: mean, rms, or pN for the power mean
-with exponent N (3 to 9); none keeps the value of each sub-block.
-
---units none --k 1 is a logistic regression on the last step, without LSTM layers.
-
 The same options and seed give the same weights for any number of threads. An interrupted training
 with -o leaves MODEL.h5.checkpoint and continues with --resume.
 
 --cross-validate evaluates each viewpoint by a network trained on all others. With -o, it also writes
-a network trained on all viewpoints, and stores the held-out ratios of human thresholds to stops, from
-which renders derive confidence ranges. For the columns of the tables see lull evaluate --help.
+a network trained on all viewpoints. For the columns of the tables see lull evaluate --help.
 
 Examples:
   lull train data.h5 --human human.csv -o model.h5
   lull train data.h5 --human human.csv -o model.h5 --leave-out kitchen-view0
-  lull train data.h5 --human human.csv --cross-validate --features H,detail_masked_noise
-      --pool rms,p4 --units 16,8
+  lull train data.h5 --human human.csv --cross-validate --features H,visible_drop --units 16,8
   lull train data.h5 --human human.csv --cross-validate --preset paper
   lull train --preset paper
 
@@ -54,7 +45,6 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrup
 
 bool ParseUnits(const std::string& text, std::vector<int>* units) {
     units->clear();
-    if (text == "none") return true;
     const char* at = text.data();
     const char* const end = at + text.size();
     while (true) {
@@ -71,7 +61,7 @@ bool ParseUnits(const std::string& text, std::vector<int>* units) {
 std::string UnitsText(const std::vector<int>& units) {
     std::string text;
     for (const int n : units) text.append(text.empty() ? "" : ",").append(std::to_string(n));
-    return text.empty() ? "none" : text;
+    return text;
 }
 
 void AddUnits(CLI::App& app, std::vector<int>* units) {
@@ -79,10 +69,9 @@ void AddUnits(CLI::App& app, std::vector<int>* units) {
            "--units",
            [=](const std::string& text) {
                if (!ParseUnits(text, units))
-                   throw CLI::ValidationError("--units",
-                                              text + " is not a list as 512,128,32, or none");
+                   throw CLI::ValidationError("--units", text + " is not a list as 512,128,32");
            },
-           "Set the units of the LSTM layers, or none")
+           "Set the units of the LSTM layers")
         ->type_name("N,N,...")
         ->default_str(UnitsText(*units));
 }
@@ -105,12 +94,11 @@ void AddNames(CLI::App& app, const std::string& names, T (*parse)(const std::str
         ->default_str(standard);
 }
 
-// Reads and writes a list that may be empty.
-std::vector<Pool> ParsePoolsOrNone(const std::string& text) {
-    return text == "none" ? std::vector<Pool>() : ParsePools(text);
-}
-std::string PoolsText(const std::vector<Pool>& pools) {
-    return pools.empty() ? "none" : PoolNames(pools);
+std::string PoolText(bool takesMean) { return takesMean ? "mean" : "none"; }
+bool ParsePool(const std::string& text) {
+    if (text != "mean" && text != "none")
+        throw std::invalid_argument("'" + text + "' is neither mean nor none");
+    return text == "mean";
 }
 
 std::string DefaultNote(bool isDefault) { return isDefault ? " [the default]" : ""; }
@@ -141,11 +129,11 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
         ->capture_default_str();
     AddNames(app, "--features,--channels", ParseFeatures, &s->features,
              "Set the inputs of the network", FeatureNames(s->features));
-    AddNames(app, "--pool", ParsePoolsOrNone, &s->pools,
-             "Replace the values of sub-blocks by statistics", PoolsText(s->pools));
+    AddNames(app, "--pool", ParsePool, &s->takesMean,
+             "Take the mean of the values of the sub-blocks (mean), or each value (none)",
+             PoolText(s->takesMean));
     app.add_flag("--snorm,!--no-snorm", s->snorm,
                  "Normalise entropies and attributes26 over the window" + DefaultNote(s->snorm));
-    app.add_flag("--bnorm", s->bnorm, "Normalise entropies and attributes26 of each step");
     AddNames(app, "--spacing", ParseSpacing, &s->spacing,
              "Space steps n spp apart (fixed) or by --ratio (geometric)", SpacingName(s->spacing));
     AddReal(app, "--ratio", &s->ratio, 1.1, 16.0, "Set the ratio of geometric spacing");
@@ -188,8 +176,6 @@ void AddTraining(CLI::App& app, TrainingOptions* t) {
     app.add_flag("--class-weights,!--no-class-weights", t->balanceClasses,
                  "Let noisy and noiseless samples count the same, as in the paper" +
                      DefaultNote(t->balanceClasses));
-    AddReal(app, "--noisy-weight", &t->noisyWeight, 1e-3, 1e3,
-            "Weigh noisy samples by X; larger: fewer early stops");
 }
 
 void AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,
@@ -289,8 +275,8 @@ std::string ValuesText(const TrainingPlan& plan) {
         return fmt::format("--{}{}\n", isSet ? "" : "no-", name);
     };
     std::string text = fmt::format("--k {}\n--n {}\n--m {}\n--features {}\n--pool {}\n", s.k, s.n,
-                                   s.m, FeatureNames(s.features), PoolsText(s.pools));
-    text += flag("snorm", s.snorm) + (s.bnorm ? "--bnorm\n" : "");
+                                   s.m, FeatureNames(s.features), PoolText(s.takesMean));
+    text += flag("snorm", s.snorm);
     text += fmt::format("--spacing {}\n", SpacingName(s.spacing));
     if (s.spacing == Spacing::Geometric) text += fmt::format("--ratio {:g}\n", s.ratio);
     if (Needs(s, Feature::VisibleDrop))
@@ -303,9 +289,8 @@ std::string ValuesText(const TrainingPlan& plan) {
     text +=
         fmt::format("--units {}\n--dropout {:g}\n--learning-rate {:g}\n--batch {}\n--epochs {}\n",
                     UnitsText(t.units), t.dropout, t.learningRate, t.batch, t.epochs);
-    text +=
-        flag("balance-viewpoints", t.balanceViewpoints) + flag("class-weights", t.balanceClasses);
-    return text + fmt::format("--noisy-weight {:g}\n", t.noisyWeight);
+    return text + flag("balance-viewpoints", t.balanceViewpoints) +
+           flag("class-weights", t.balanceClasses);
 }
 
 std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {

@@ -1,7 +1,6 @@
 #include "renderer/lab/pages/collected_page.h"
 
 #include "renderer/pages/html_page.h"
-#include "stopping/lab/observers/agreement.h"
 
 namespace lull {
 
@@ -15,17 +14,12 @@ Json ConsensusJson(const BlockConsensus& b) {
             {"highest", b.highest},
             {"deviation", Number(b.deviation)},
             {"octaves", Number(b.octaves)},
-            {"low", Number(b.low)},
-            {"high", Number(b.high)},
             {"answers", b.answers}};
 }
 
 Json ViewpointJson(const CollectedViewpoint& viewpoint, const Json& study) {
     Json json = {{"name", viewpoint.name},
                  {"observers", viewpoint.observers},
-                 {"procedure", viewpoint.procedure},
-                 {"agreement", Number(viewpoint.agreement)},
-                 {"inAWord", viewpoint.agreement ? AgreementInAWord(*viewpoint.agreement) : ""},
                  {"fewestAnswers", FewestAnswers(viewpoint)},
                  {"enoughAnswers", kEnoughAnswers},
                  {"levels", viewpoint.levels},
@@ -51,7 +45,6 @@ Json ObserverJson(const CheckedObserver& o) {
     return {{"file", o.answers.file},
             {"observer", o.answers.observer},
             {"viewpoint", o.answers.viewpoint},
-            {"procedure", o.answers.procedure},
             {"leftOut", o.leftOut},
             {"doubts", o.doubts},
             {"checks", o.checks},

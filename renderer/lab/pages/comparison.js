@@ -1,10 +1,10 @@
 "use strict";
-// Fills the page of a comparison or a bench, whose data have as well:
+// Fills the page of a comparison, whose data have as well:
 //   images [{flipSrc?, visibleDifferenceSrc?, visibleBlocks?, figures?, seams?, cost?, saved?,
 //            blocks [{figures}]}]
 //   viewing {name, pixelsPerDegree, threshold}: for visible differences, with the visibility threshold
-//   againstHuman, estimates, verifications (comparison)
-//   bench {samplers [], points [{rule, setting, sampler, spp, seconds, sharesReference, and figures}]}
+//   againstHuman, estimates, verifications
+//   errorCurves? {sharesReference, points [{rule, setting, spp, seconds, ruleSeconds, and figures}]}
 
 const figureNames = [["rmse", "RMSE"], ["relMse", "relMSE"], ["rmseLightness", "RMSE, L*"],
                      ["psnr", "PSNR, dB"], ["ssim", "SSIM"], ["flip", "FLIP"],
@@ -104,8 +104,8 @@ function lastColumns(head, cells) {
   if (data.againstHuman) { head.push("compared with human threshold"); cells.push(i => differenceToHuman(data, i)); }
 }
 
-startBench(data);
-startPage(data.kind, data.bench ? sayBench(data) : sayComparison(data), [],
-  {noun: data.kind === "compare" ? "comparison" : data.kind, sppName: image => "spp of " + image.name, sppHead: image => "spp of " + image.name, layers: errorLayers(),
-   overlays: data.againstHuman ? [humanOverlay()] : [], isDivided: data.kind === "compare", blockRows, blockColumns, lastColumns,
+startErrorCurves(data);
+startPage("compare", sayComparison(data), [],
+  {noun: "comparison", sppName: image => "spp of " + image.name, sppHead: image => "spp of " + image.name, layers: errorLayers(),
+   overlays: data.againstHuman ? [humanOverlay()] : [], isDivided: true, blockRows, blockColumns, lastColumns,
    summarise: () => showSummary(data)});

@@ -7,11 +7,28 @@ namespace {
 // JSON has no infinity and no NaN: both become null.
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+// Infinite and unknown figures are null.
+Json FiguresJson(const ErrorFigures& f) {
+    return {{"rmse", Number(f.rmse)},
+            {"relMse", Number(f.relMse)},
+            {"rmseLightness", Number(f.rmseLightness)},
+            {"psnr", Number(f.psnr)},
+            {"ssim", Number(f.ssim)},
+            {"flip", Number(f.flip)},
+            {"visibleDifference", Number(f.visibleDifference)}};
+}
+
 Json CostJson(const TotalCost& cost) {
     return {{"samples", cost.samples},
             {"seconds", cost.seconds},
             {"ruleSeconds", cost.ruleSeconds},
             {"estimated", cost.isEstimated}};
+}
+
+Json ViewingJson(const DisplayModel& display) {
+    return {{"name", NameOf(display)},
+            {"pixelsPerDegree", display.pixelsPerDegree},
+            {"threshold", kVisibilityThreshold}};
 }
 
 // Returns the share of `whole` that `part` saves, null where there is nothing to save from.
@@ -99,6 +116,20 @@ Json VerificationJson(const ComparisonReport& report, const Verification& v) {
     return json;
 }
 
+Json ErrorCurvesJson(const ComparisonReport& report) {
+    Json points = Json::array();
+    for (const CurvePoint& point : report.curvePoints) {
+        Json json = FiguresJson(point.figures);
+        json["rule"] = point.rule;
+        json["setting"] = point.setting;
+        json["spp"] = point.spp;
+        json["seconds"] = point.seconds;
+        json["ruleSeconds"] = point.ruleSeconds;
+        points.push_back(std::move(json));
+    }
+    return {{"sharesReference", report.curvesShareReference}, {"points", std::move(points)}};
+}
+
 // Maps visible differences to [0, 1), the threshold to 1/2.
 std::vector<float> OnScale(std::vector<float> differences) {
     for (float& v : differences) v = v / (v + float(kVisibilityThreshold));
@@ -106,22 +137,6 @@ std::vector<float> OnScale(std::vector<float> differences) {
 }
 
 }  // namespace
-
-Json FiguresJson(const ErrorFigures& f) {
-    return {{"rmse", Number(f.rmse)},
-            {"relMse", Number(f.relMse)},
-            {"rmseLightness", Number(f.rmseLightness)},
-            {"psnr", Number(f.psnr)},
-            {"ssim", Number(f.ssim)},
-            {"flip", Number(f.flip)},
-            {"visibleDifference", Number(f.visibleDifference)}};
-}
-
-Json ViewingJson(const DisplayModel& display) {
-    return {{"name", NameOf(display)},
-            {"pixelsPerDegree", display.pixelsPerDegree},
-            {"threshold", kVisibilityThreshold}};
-}
 
 TotalCost CostAtCap(const Comparison& comparison) {
     TotalCost total;
@@ -156,6 +171,7 @@ Json ComparisonJson(const ComparisonReport& report) {
         json["estimates"] = {{"blocks", report.estimates->blocks},
                              {"total", report.estimates->total},
                              {"worst", report.estimates->worst}};
+    if (!report.curvePoints.empty()) json["errorCurves"] = ErrorCurvesJson(report);
     json["verifications"] = Json::array();
     for (const Verification& verification : report.verifications)
         json["verifications"].push_back(VerificationJson(report, verification));

@@ -1,7 +1,7 @@
 // Writes comparisons: as JSON for programs, as a page for people.
 #pragma once
 
-#include "renderer/lab/comparison/comparison.h"
+#include "renderer/lab/comparison/error_curves.h"
 #include "renderer/pages/html_page.h"
 
 namespace lull {
@@ -14,16 +14,12 @@ struct ComparisonReport {
     std::vector<BlockHistory> histories;     // for their curves; may be empty
     std::optional<EstimateError> estimates;  // of the seconds to the cap
     std::vector<Verification> verifications;
+    std::vector<CurvePoint> curvePoints;  // may be empty
+    bool curvesShareReference = false;    // their samples: errors near the cap are understated
     std::map<std::string, int> warnings;
     std::vector<std::string> notes;  // for the reader, a sentence each
     std::string title;
 };
-
-// Returns the figures of an image; infinite and unknown ones are null.
-Json FiguresJson(const ErrorFigures&);
-
-// Returns the viewing conditions of visible differences, and the visibility threshold.
-Json ViewingJson(const DisplayModel&);
 
 // Returns all figures, without pictures. Seconds are of processors unless said otherwise; those to
 // the cap are estimated for blocks that were not rendered that far.

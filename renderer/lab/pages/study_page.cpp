@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include "renderer/base/error.h"
@@ -33,20 +31,11 @@ Json BlockJson(const StudyBlock& block) {
 }
 
 Json DescribeStudy(const Study& study, const StudySettings& settings) {
-    Json json = {{"format", kFormat},
-                 {"version", kVersion},
-                 {"id", StudyId(study)},
-                 {"viewpoint", study.viewpoint},
-                 {"procedure", NameOf(settings.procedure)},
-                 {"repeats", settings.repeats},
-                 {"catches", settings.catches},
-                 {"answers", settings.answers},
-                 {"descending", settings.descending},
-                 {"questions", settings.questions},
-                 {"width", study.width},
-                 {"height", study.height},
-                 {"levels", study.levels},
-                 {"provenance", study.provenance},
+    Json json = {{"format", kFormat},           {"version", kVersion},
+                 {"id", StudyId(study)},        {"viewpoint", study.viewpoint},
+                 {"repeats", settings.repeats}, {"catches", settings.catches},
+                 {"width", study.width},        {"height", study.height},
+                 {"levels", study.levels},      {"provenance", study.provenance},
                  {"blocks", Json::array()}};
     for (const StudyBlock& block : study.blocks) json["blocks"].push_back(BlockJson(block));
     return json;
@@ -76,18 +65,6 @@ std::string ReadWholeFile(const std::string& path) { return std::string(ReadFile
 
 }  // namespace
 
-double StaircaseOctaves(int answers) {
-    static constexpr std::pair<double, double> kSimulated[] = {
-        {2, 1.62},  {4, 1.53},  {8, 1.14},  {12, 0.86}, {16, 0.68},
-        {20, 0.58}, {30, 0.43}, {40, 0.35}, {60, 0.26}, {100, 0.19}};
-    size_t next = 1;
-    while (next + 1 < std::size(kSimulated) && kSimulated[next].first < answers) ++next;
-    const auto& [fewer, atFewer] = kSimulated[next - 1];
-    const auto& [more, atMore] = kSimulated[next];
-    const double share = std::log(answers / fewer) / std::log(more / fewer);
-    return std::min(atFewer * std::pow(atMore / atFewer, share), kSimulated[0].second);
-}
-
 std::string MakeStudyPage(const Study& study, const StudySettings& settings) {
     std::vector<std::string> scripts(study.blocks.size());
     ForEachIndex(int(scripts.size()),
@@ -95,7 +72,6 @@ std::string MakeStudyPage(const Study& study, const StudySettings& settings) {
     std::string pictures;
     for (const std::string& script : scripts) pictures += script;
     return FillPage("study.html", {{"study", JsonForScript(DescribeStudy(study, settings))},
-                                   {"texts", JsonForScript(Json(AllStudyTexts(settings.texts)))},
                                    {"pictures", std::move(pictures)}});
 }
 
@@ -110,7 +86,7 @@ Json ReadStudyPage(const std::string& path) try {
             throw NotAStudy(path);
     };
     for (const char* key : {"width", "height"}) checkPixels(study.at(key));
-    for (const char* key : {"id", "procedure"}) study.at(key).get<std::string>();
+    study.at("id").get<std::string>();
     study["references"] = Json::array();
     for (size_t i = 0; i < study.at("blocks").size(); ++i) {
         for (const char* key : {"x", "y", "width", "height"})

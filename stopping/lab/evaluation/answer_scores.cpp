@@ -8,11 +8,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "stopping/lab/evaluation/recorded_rules.h"
 #include "stopping/lab/evaluation/roc.h"
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/evaluation/statistics.h"
 #include "stopping/lab/recordings/extension.h"
-#include "stopping/network/human_range.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -69,9 +69,10 @@ struct RuleRun {
 RuleRun RunRule(const std::string& rule, const RuleContext& context,
                 std::span<const LabelledBlock> recorded, std::span<const LabelledBlock> extended) {
     const Simulator simulator = MakeSimulator(rule, context);
+    const RecordedRule* recordedRule = FindRecordedRule(rule);
     const RuleEntry* entry = FindRule(rule);
     RuleRun run{.rule = rule,
-                .isKnown = entry && entry->replay == Replay::Counts,
+                .isKnown = recordedRule && recordedRule->replay == Replay::Counts,
                 .outcomes = {},
                 .curves = {}};
     for (size_t i = 0; i < recorded.size(); ++i) {

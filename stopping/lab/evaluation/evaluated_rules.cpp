@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "stopping/lab/evaluation/recorded_rules.h"
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/evaluation/two_figures.h"
 #include "stopping/lab/recordings/extension.h"
@@ -40,7 +41,7 @@ std::string Stem(const std::string& path) { return std::filesystem::path(path).s
 
 // Returns the threshold of a rule's number; 0 where a recording has no such numbers.
 double ThresholdOf(const std::string& rule, const RuleContext& context) {
-    const RuleEntry* entry = FindRule(rule);
+    const RecordedRule* entry = FindRecordedRule(rule);
     return entry && entry->replay == Replay::Decides ? ParseRule(rule, context).threshold : 0;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "stopping/lab/evaluation/statistics.h"
-#include "stopping/network/human_range.h"
+#include "stopping/lab/recordings/recording.h"
 
 namespace lull {
 

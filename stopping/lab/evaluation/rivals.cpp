@@ -5,41 +5,29 @@
 #include <functional>
 #include <stdexcept>
 
+#include "stopping/lab/evaluation/recorded_rules.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
 
 namespace {
 
-// Names a rule that has one threshold, and says whether the mask of its visible noise is chosen
-// beside it.
-struct RivalRule {
-    const RuleEntry* rule;
-    bool choosesMask = false;
-
-    std::string Name() const { return std::string(rule->name) + (choosesMask ? ", mask" : ""); }
-};
-
-// Returns the rules that can be run on the recorded data of the blocks.
-std::vector<RivalRule> RivalRules(std::span<const LabelledBlock> blocks) {
+// Returns the rules with one threshold that can be run on the recorded data of the blocks.
+std::vector<const RecordedRule*> RivalRules(std::span<const LabelledBlock> blocks) {
     const bool haveHalves = std::ranges::all_of(
         blocks, [](const LabelledBlock& block) { return HasHalves(*block.recording); });
-    std::vector<RivalRule> rivals;
-    for (const RuleEntry& rule : RuleTable()) {
-        if (rule.sweep.largest == 0) continue;
+    std::vector<const RecordedRule*> rivals;
+    for (const RecordedRule& rule : RecordedRules()) {
+        if (rule.largest == 0) continue;
         const bool comparesHalves =
             rule.replay == Replay::RanAlong ||
             ParseRule(std::string(rule.name) + ":1", {.hasHalves = false}).need >=
                 ViewNeed::MeanAndHalf;
         if (comparesHalves && !haveHalves) continue;
-        rivals.push_back({&rule});
-        if (rule.sweep.choosesMask) rivals.push_back({&rule, true});
+        rivals.push_back(&rule);
     }
     return rivals;
 }
-
-// Candidates for NoiseVisibility::mask, the default first; the last hides nothing.
-constexpr double kMasks[] = {NoiseVisibility().mask, 8, 12, 16, 24, 1e9};
 
 std::string Text(double number) {
     char text[32];
@@ -48,30 +36,18 @@ std::string Text(double number) {
     return std::string(text, end);
 }
 
-// Returns the masks that a rule is run with.
-std::span<const double> MasksOf(const RivalRule& rule) {
-    return std::span(kMasks).first(rule.choosesMask ? std::size(kMasks) : 1);
-}
-
 // Setting of a rule.
 struct Setting {
     double threshold = 0;
-    size_t mask = 0;  // its place in kMasks
     std::string text = {};
 };
 
-std::vector<Setting> SettingsOf(const RivalRule& rule) {
+std::vector<Setting> SettingsOf(const RecordedRule& rule) {
     std::vector<Setting> settings;
-    const RuleSweep& sweep = rule.rule->sweep;
-    if (rule.rule->replay == Replay::RanAlong) {
-        for (const double t : kCyclesThresholds)
-            settings.push_back({.threshold = t, .text = Text(t)});
-        return settings;
-    }
-    for (size_t mask = 0; mask < MasksOf(rule).size(); ++mask)
-        for (double t = sweep.largest; t >= sweep.least; t /= 1.01)
-            settings.push_back(
-                {t, mask, rule.choosesMask ? Text(t) + ", " + Text(kMasks[mask]) : Text(t)});
+    if (rule.replay == Replay::RanAlong)
+        for (const double t : kCyclesThresholds) settings.push_back({t, Text(t)});
+    else
+        for (double t = rule.largest; t >= rule.least; t /= 1.01) settings.push_back({t, Text(t)});
     return settings;
 }
 
@@ -125,23 +101,18 @@ Rival EvaluateRival(const std::string& name, std::span<const LabelledBlock> bloc
     return rival;
 }
 
-// Runs a rule over recordings, each of which it reads once for each mask.
-Run MakeRun(std::span<const LabelledBlock> blocks, const RivalRule& rival) {
-    if (rival.rule->replay == Replay::RanAlong)
+// Runs a rule over recordings, each of which it reads once.
+Run MakeRun(std::span<const LabelledBlock> blocks, const RecordedRule& entry) {
+    if (entry.replay == Replay::RanAlong)
         return [=](size_t index, const Setting& setting, bool brief) {
             return SimulateCycles(blocks[index], setting.threshold, brief);
         };
-    std::vector<std::vector<ErrorSeries>> series;  // by mask, by block
-    for (const double mask : MasksOf(rival)) {
-        const Rule rule =
-            ParseRule(std::string(rival.rule->name) + ":1",
-                      {.passSpp = blocks.front().passSpp, .visibility = {.mask = mask}});
-        std::vector<ErrorSeries>& ofBlocks = series.emplace_back();
-        for (const LabelledBlock& block : blocks) ofBlocks.push_back(MakeErrorSeries(block, rule));
-    }
+    const Rule rule =
+        ParseRule(std::string(entry.name) + ":1", {.passSpp = blocks.front().passSpp});
+    std::vector<ErrorSeries> series;
+    for (const LabelledBlock& block : blocks) series.push_back(MakeErrorSeries(block, rule));
     return [=](size_t index, const Setting& setting, bool brief) {
-        return SimulateErrorRule(blocks[index], series[setting.mask][index], setting.threshold,
-                                 brief);
+        return SimulateErrorRule(blocks[index], series[index], setting.threshold, brief);
     };
 }
 
@@ -164,9 +135,9 @@ std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseB
     begins.push_back(blocks.size());
 
     std::vector<Rival> rivals;
-    for (const RivalRule& rule : RivalRules(blocks))
-        rivals.push_back(EvaluateRival(rule.Name(), blocks, begins, SettingsOf(rule),
-                                       MakeRun(blocks, rule), chooseBy, grid));
+    for (const RecordedRule* rule : RivalRules(blocks))
+        rivals.push_back(EvaluateRival(std::string(rule->name), blocks, begins, SettingsOf(*rule),
+                                       MakeRun(blocks, *rule), chooseBy, grid));
     return rivals;
 }
 

@@ -18,21 +18,18 @@ enum class ChooseBy { AbsoluteError, CriticalError };
 double CostOf(const ViewpointOutcome& viewpoint, ChooseBy, int grid);
 
 struct Rival {
-    // A name of the table of rules; "entropy, mask" is that with the mask of its visible noise
-    // chosen as well.
-    std::string rule;
+    std::string rule;  // a name of the table of rules
     // One for each viewpoint, with the setting that is the best one on all others.
     std::vector<ViewpointOutcome> viewpoints;
-    // The best setting on all viewpoints, for use on new ones. A threshold, to three digits;
-    // "threshold, mask" for "entropy, mask".
+    // The best setting on all viewpoints, for use on new ones. A threshold, to three digits.
     std::string bestOfAll;
 };
 
 // Runs the rules over recorded blocks (grouped by viewpoint), each viewpoint
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. Thresholds are RuleSweep's; masks are 8, 12, 16, 24, 40 and none (1e9). Rules
-// that compare halves are left out where a block was recorded without (HasHalves()). Throws
-// std::invalid_argument if there are fewer than two viewpoints.
+// samples. Thresholds are RecordedRule's. Rules that compare halves are left out where a block was
+// recorded without (HasHalves()). Throws std::invalid_argument if there are fewer than two
+// viewpoints.
 std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
                                   int grid);
 

@@ -8,6 +8,7 @@
 
 #include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
+#include "stopping/lab/evaluation/recorded_rules.h"
 #include "stopping/rules/rule_table.h"
 #include "stopping/rules/thresholds.h"
 #include "stopping/signals/lightness_noise.h"
@@ -94,8 +95,8 @@ std::vector<Decision> Replayed(const LabelledBlock& block, const Rule& rule) {
             decisions.push_back(criterion.Decide(spp, {}));
             continue;
         }
-        decisions.push_back(criterion.Decide(spp, rule.recall(spp, ValuesOf(recording, i)),
-                                             PeakIn(recording, i, rule)));
+        decisions.push_back(
+            criterion.Decide(spp, RecordedSignals(rule, recording, i), PeakIn(recording, i, rule)));
     }
     CheckLookedAt(decisions, block);
     return decisions;
@@ -195,7 +196,7 @@ RuleOutcome SimulateStop(const LabelledBlock& block, int spp) {
 
 Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     // Each viewpoint has a row of its own.
-    const RuleEntry* entry = FindRule(text);
+    const RecordedRule* entry = FindRecordedRule(text);
     if (entry && entry->name == "thresholds" && !ArgumentOf(text).empty())
         return ThresholdsSimulator(ArgumentOf(text));
     if (entry && entry->replay == Replay::Unknown)
@@ -211,7 +212,7 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     if (replay == Replay::RanAlong)
         return
             [rule](const LabelledBlock& block) { return SimulateCycles(block, rule->threshold); };
-    if (!rule->recall)
+    if (!HasRecordedSignals(*rule))
         throw std::invalid_argument(
             "stopping rule '" + rule->text +
             "' cannot be simulated: recordings do not have what it measures");

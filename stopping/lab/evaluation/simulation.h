@@ -36,8 +36,8 @@ int FirstBelow(const ErrorSeries& series, double threshold);
 RuleOutcome SimulateErrorRule(const LabelledBlock& block, const ErrorSeries& series,
                               double threshold, bool brief = false);
 RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool brief = false);
-// Decides as in a render, on signals that were recorded, with a rule that has them (recall) and was
-// made for the block's passes.
+// Decides as in a render, on signals that were recorded (HasRecordedSignals()), with a rule that
+// was made for the block's passes.
 RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule);
 // Stops at `spp`, wherever the recording ends.
 RuleOutcome SimulateStop(const LabelledBlock& block, int spp);

@@ -1,7 +1,5 @@
 #include "stopping/lab/evaluation/two_figures.h"
 
-#include "stopping/network/human_range.h"
-
 namespace lull {
 
 namespace {

@@ -23,7 +23,7 @@ constexpr int kVersion = 1;
 // Bounds on the contents of a damaged file.
 constexpr size_t kMostBytes = size_t(1) << 26;
 constexpr int kMostBlocks = 1 << 16, kMostLevels = 1000, kMostSpp = 1 << 24;
-constexpr size_t kLongestText = 200, kMostTrials = 1000;
+constexpr size_t kLongestText = 200;
 
 [[noreturn]] void Refuse(const std::string& what) { throw std::runtime_error(what); }
 
@@ -82,12 +82,6 @@ void ReadDisplay(const Json& display, ObserverAnswers* result) {
     result->windowHeight = GetOptionalInt(display.at("window").at(1));
 }
 
-void ReadPerson(const Json& person, ObserverAnswers* result) {
-    if (person.contains("age")) result->age = GetOptionalInt(person.at("age"));
-    result->vision = GetWord(person, "vision", {"good", "not good", "unknown"});
-    result->colour = GetWord(person, "colour", {"usual", "not usual", "unknown"});
-}
-
 std::string GetText(const Json& object, const char* key) {
     const Json& value = Get(object, key);
     if (!value.is_string()) Refuse(std::string("'") + key + "' is not a text");
@@ -120,7 +114,6 @@ AnswerKind ReadKind(const Json& answer) {
     if (kind == "asked") return AnswerKind::Asked;
     if (kind == "repeat") return AnswerKind::Repeat;
     if (kind == "catch") return AnswerKind::Catch;
-    if (kind == "descend") return AnswerKind::Descend;
     Refuse("an answer of the unknown kind '" + Printable(kind) + "'");
 }
 
@@ -130,28 +123,14 @@ BlockAnswer ReadAnswer(const Json& json, const ObserverAnswers& head, int blocks
         const Json& failed = Get(json, "failed");
         if (!failed.is_boolean()) Refuse("'failed' is neither true nor false");
         answer.failed = failed.get<bool>();
-    } else if (head.procedure == "adjust") {
+    } else {
         const int top = int(head.levels.size()) - 1, level = GetInt(json, "level", 0, top);
         answer.spp = head.levels[size_t(level)];
         const int start = json.contains("start") ? GetInt(json, "start", 0, top) : level;
-        if (answer.kind == AnswerKind::Descend) {
-            // Down to where noise was seen, and back.
-            const int lowest = GetInt(json, "lowest", 0, level);
-            for (int i = std::min(start, top - 1); i >= level; --i)
-                answer.single.push_back({.spp = head.levels[size_t(i)]});
-            if (lowest < level)
-                answer.single.push_back({.spp = head.levels[size_t(level - 1)], .seen = true});
-            return answer;
-        }
         for (int i = start; i < level; ++i)
             answer.single.push_back({.spp = head.levels[size_t(i)], .seen = true});
         // Whether there is noise in the reference nobody was asked.
         if (level < top) answer.single.push_back({.spp = head.levels[size_t(level)]});
-    } else {
-        answer.spp = GetNumber(json, "spp", head.levels.front(), head.levels.back());
-        answer.octaves = GetOptional(json, "octaves");
-        if (json.contains("trials"))
-            answer.answers = int(GetArray(json, "trials", kMostTrials).size());
     }
     return answer;
 }
@@ -180,9 +159,8 @@ void ReadStudy(const Json& study, ObserverAnswers* result) {
     result->viewpoint = GetText(study, "viewpoint");
     if (result->viewpoint.find_first_of(";/") != std::string::npos)
         Refuse("the viewpoint '" + Printable(result->viewpoint) + "' has a ; or / in its name");
-    result->procedure = GetText(study, "procedure");
-    if (result->procedure != "adjust" && result->procedure != "staircase")
-        Refuse("unknown procedure '" + Printable(result->procedure) + "'");
+    if (const std::string procedure = GetText(study, "procedure"); procedure != "adjust")
+        Refuse("unknown procedure '" + Printable(procedure) + "'; adjust is known");
     result->levels = ReadLevels(study);
 }
 
@@ -205,12 +183,10 @@ ObserverAnswers Read(const Json& json) {
     int64_t clicks = 0;
     for (const Json& entry : GetArray(json, "answers", 16 * size_t(kMostBlocks))) {
         result.answers.push_back(ReadAnswer(entry, result, blocks));
-        if (result.procedure == "adjust") clicks += GetInt(entry, "clicks", 0, 1 << 20);
+        clicks += GetInt(entry, "clicks", 0, 1 << 20);
     }
-    result.isIdle = result.procedure == "adjust" && clicks == 0;
+    result.isIdle = clicks == 0;
     result.given = int(std::min<int64_t>(clicks, kMostSpp));
-    if (result.procedure == "staircase")
-        for (const BlockAnswer& answer : result.answers) result.given += answer.answers;
     for (const Json& threshold : GetArray(json, "thresholds", kMostBlocks))
         result.thresholds.push_back(
             ToNumber(threshold, "thresholds", result.levels.front(), result.levels.back()));
@@ -221,8 +197,6 @@ ObserverAnswers Read(const Json& json) {
     if (json.contains("display") && json.at("display").is_object()) {
         ReadDisplay(json.at("display"), &result);
     }
-    if (json.contains("person") && json.at("person").is_object())
-        ReadPerson(json.at("person"), &result);
     return result;
 }
 

@@ -10,10 +10,9 @@
 namespace lull {
 
 enum class AnswerKind {
-    Asked,    // where the block's noise was seen to end
-    Repeat,   // the same, asked again
-    Descend,  // the same, asked from above: until noise is about to be seen
-    Catch     // a check of the observer, to which the right answer is known
+    Asked,   // where the block's noise was seen to end
+    Repeat,  // the same, asked again
+    Catch    // a check of the observer, to which the right answer is known
 };
 
 // Whether noise was seen in a picture of `spp` samples per pixel.
@@ -24,12 +23,10 @@ struct NoiseAnswer {
 
 struct BlockAnswer {
     AnswerKind kind = AnswerKind::Asked;
-    int block = 0;                         // row-major
-    double spp = 0;                        // the threshold, within the ladder; 0 for a check
-    bool failed = false;                   // of a check
-    int answers = 1;                       // that the threshold rests on
-    std::optional<double> octaves = {};    // standard deviation of the threshold; of staircases
-    std::vector<NoiseAnswer> single = {};  // of adjustments: staircases ask for the noisier of two
+    int block = 0;        // row-major
+    double spp = 0;       // the threshold, within the ladder; 0 for a check
+    bool failed = false;  // of a check
+    std::vector<NoiseAnswer> single = {};
 };
 
 struct ObserverAnswers {
@@ -37,21 +34,17 @@ struct ObserverAnswers {
     std::string observer, session;     // a name that the observer chose; digits of the session
     std::string started;               // ISO 8601, so that texts are ordered as times
     std::string study, viewpoint;      // id and name
-    std::string procedure;             // "adjust" or "staircase"
     std::vector<int> levels;           // spp of the ladder, increasing, two or more
     std::vector<double> thresholds;    // spp of each block: the mean of all answers to it
     std::vector<BlockAnswer> answers;  // at least one for each block that is no check
     bool isIdle = false;               // the observer pointed at nothing
     double seconds = 0;                // without pauses
-    int given = 0;                     // answers in all: clicks, or trials
+    int given = 0;                     // answers in all
     // Of the display, as set or stated by the observer; zoom: 1 is 100 %; pixels are those of
     // pictures, `shown` is the number of display pixels for one of them.
     std::optional<double> gamma, distanceCm, pixelsPerDegree, zoom;
     std::optional<int> shown, windowWidth, windowHeight;
     std::string tones;  // "all" or "not all", which can be told apart; empty: not known
-    // Of the observer, where the study asks; empty: not known.
-    std::optional<int> age;
-    std::string vision, colour;  // "good" or "not good", "usual" or "not usual", or "unknown"
 
     bool operator==(const ObserverAnswers& other) const;  // but for the file
 };

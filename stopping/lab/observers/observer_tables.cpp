@@ -15,50 +15,42 @@ std::string Field(const std::optional<double>& value) {
 }
 std::string Field(const std::optional<int>& value) { return value ? std::to_string(*value) : ""; }
 
-// Returns the data of the display and the observer, for columns from gamma to colour.
+// Returns the data of the display and the observer, for columns from gamma to window.
 std::string ViewingFields(const ObserverAnswers& a) {
     const std::string window = a.windowWidth && a.windowHeight
                                    ? fmt::format("{}x{}", *a.windowWidth, *a.windowHeight)
                                    : "";
-    return fmt::format("{},{},{},{},{},{},{},{},{},{}", Field(a.gamma), a.tones,
-                       Field(a.distanceCm), Field(a.pixelsPerDegree), Field(a.zoom), Field(a.shown),
-                       window, Field(a.age), a.vision, a.colour);
+    return fmt::format("{},{},{},{},{},{},{}", Field(a.gamma), a.tones, Field(a.distanceCm),
+                       Field(a.pixelsPerDegree), Field(a.zoom), Field(a.shown), window);
 }
 
 }  // namespace
 
 std::string DetailsCsv(const Collected& collected) {
-    std::string csv =
-        "viewpoint,block,observers,mean,low,high,lowest,highest,deviation,octaves,agreement,"
-        "answers\n";
-    for (const CollectedViewpoint& v : collected.viewpoints) {
+    std::string csv = "viewpoint,block,observers,mean,lowest,highest,deviation,octaves,answers\n";
+    for (const CollectedViewpoint& v : collected.viewpoints)
         for (size_t i = 0; i < v.blocks.size(); ++i) {
             const BlockConsensus& b = v.blocks[i];
-            csv += fmt::format("{},{},{},{:.6g},{},{},{:.6g},{:.6g},{},{},,{}\n", CsvField(v.name),
-                               i, v.observers, b.mean, Field(b.low), Field(b.high), b.lowest,
-                               b.highest, Field(b.deviation), Field(b.octaves), b.answers);
+            csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{},{},{}\n", CsvField(v.name), i,
+                               v.observers, b.mean, b.lowest, b.highest, Field(b.deviation),
+                               Field(b.octaves), b.answers);
         }
-        csv += fmt::format("{},all,{},,,,,,,,{},\n", CsvField(v.name), v.observers,
-                           Field(v.agreement));
-    }
     return csv;
 }
 
 std::string ObserversCsv(const Collected& collected) {
     std::string csv =
-        "file,viewpoint,observer,counts,reason,procedure,checks,failed,repeats,repeat_octaves,"
-        "descending_octaves,shift_octaves,seconds,gamma,tones,distance_cm,pixels_per_degree,zoom,"
-        "display_pixels,window,age,vision,colour,doubts\n";
+        "file,viewpoint,observer,counts,reason,checks,failed,repeats,repeat_octaves,shift_octaves,"
+        "seconds,gamma,tones,distance_cm,pixels_per_degree,zoom,display_pixels,window,doubts\n";
     for (const CheckedObserver& o : collected.observers)
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{:.0f},{},{}\n",
-                           CsvField(o.answers.file), CsvField(o.answers.viewpoint),
-                           CsvField(o.answers.observer), o.leftOut.empty() ? "yes" : "no",
-                           CsvField(o.leftOut), o.answers.procedure, o.checks, o.failed, o.repeats,
-                           Field(o.repeatOctaves), Field(o.descendOctaves), Field(o.shiftOctaves),
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.0f},{},{}\n", CsvField(o.answers.file),
+                           CsvField(o.answers.viewpoint), CsvField(o.answers.observer),
+                           o.leftOut.empty() ? "yes" : "no", CsvField(o.leftOut), o.checks,
+                           o.failed, o.repeats, Field(o.repeatOctaves), Field(o.shiftOctaves),
                            o.answers.seconds, ViewingFields(o.answers), CsvField(o.doubts));
     for (const RefusedAnswers& r : collected.refused)
         csv += fmt::format("{},,,no,{}{}\n", CsvField(r.file), CsvField(r.reason),
-                           std::string(19, ','));
+                           std::string(14, ','));
     return csv;
 }
 

@@ -10,8 +10,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "stopping/lab/observers/agreement.h"
-
 namespace lull {
 
 namespace {
@@ -37,22 +35,14 @@ void RefuseSome(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswer
     *answers = std::move(kept);
 }
 
-std::string NameOfProcedure(const std::string& procedure) {
-    return procedure == "adjust" ? "adjustment" : procedure;
-}
-
-using Asked = std::pair<std::string, std::string>;  // study and procedure
-
-// Chooses for each viewpoint the study that most files answer, the first of them in a tie; the same
-// pictures give other thresholds where they are asked for in another way.
-std::map<std::string, Asked> ChooseStudies(const std::vector<ObserverAnswers>& answers) {
-    std::map<std::string, std::map<Asked, int>> counts;
-    for (const ObserverAnswers& one : answers) ++counts[one.viewpoint][{one.study, one.procedure}];
-    std::map<std::string, Asked> chosen;
+// Chooses for each viewpoint the study that most files answer, the first of them in a tie.
+std::map<std::string, std::string> ChooseStudies(const std::vector<ObserverAnswers>& answers) {
+    std::map<std::string, std::map<std::string, int>> counts;
+    for (const ObserverAnswers& one : answers) ++counts[one.viewpoint][one.study];
+    std::map<std::string, std::string> chosen;
     for (const ObserverAnswers& one : answers) {
-        const Asked asked(one.study, one.procedure);
-        Asked& best = chosen.emplace(one.viewpoint, asked).first->second;
-        if (counts[one.viewpoint][asked] > counts[one.viewpoint][best]) best = asked;
+        std::string& best = chosen.emplace(one.viewpoint, one.study).first->second;
+        if (counts[one.viewpoint][one.study] > counts[one.viewpoint][best]) best = one.study;
     }
     return chosen;
 }
@@ -78,23 +68,14 @@ void RefuseContradictions(std::vector<ObserverAnswers>* answers,
 void RefuseOtherStudies(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
                         const CollectOptions& options) {
     RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
-        if (!options.study.empty() && one.study != options.study) return "answers another study";
-        if (!options.procedure.empty() && one.procedure != options.procedure)
-            return "answers the study by " + NameOfProcedure(one.procedure) + ", not by " +
-                   NameOfProcedure(options.procedure);
-        return "";
+        return options.study.empty() || one.study == options.study ? "" : "answers another study";
     });
-    const std::map<std::string, Asked> chosen = ChooseStudies(*answers);
+    const std::map<std::string, std::string> chosen = ChooseStudies(*answers);
     RefuseSome(answers, refused, [&](const ObserverAnswers& one) -> std::string {
-        const auto& [study, procedure] = chosen.at(one.viewpoint);
-        if (one.study != study)
-            return "answers another study of '" + one.viewpoint +
-                   "', with other pictures, than most files do";
-        if (one.procedure != procedure)
-            return "was asked by " + NameOfProcedure(one.procedure) + ", most files of '" +
-                   one.viewpoint + "' by " + NameOfProcedure(procedure) +
-                   "; collect the two apart, as they are not the same thresholds";
-        return "";
+        return one.study == chosen.at(one.viewpoint)
+                   ? ""
+                   : "answers another study of '" + one.viewpoint +
+                         "', with other pictures, than most files do";
     });
     RefuseContradictions(answers, refused);
 }
@@ -143,8 +124,6 @@ void AddDisplayDoubts(const ObserverAnswers& answers, const Add& add) {
     if (const auto pixels = answers.pixelsPerDegree;
         pixels && !(*pixels >= kLeastPixelsPerDegree && *pixels <= kMostPixelsPerDegree))
         add(fmt::format("saw {:.0f} pixels a degree", *pixels));
-    if (answers.vision == "not good") add("does not see well at this distance");
-    if (answers.colour == "not usual") add("does not tell colours apart as most people do");
 }
 
 // Returns doubts about the answers that count.
@@ -165,8 +144,7 @@ std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
 
 CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& options) {
     CheckedObserver judged;
-    double squares = 0, above = 0;
-    int descended = 0;
+    double squares = 0;
     for (const BlockAnswer& answer : answers.answers) {
         if (answer.kind == AnswerKind::Catch) {
             ++judged.checks;
@@ -176,16 +154,10 @@ CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& opt
                 return other.kind == AnswerKind::Asked && other.block == answer.block;
             });
             const double octaves = std::log2(answer.spp / first->spp);
-            if (answer.kind == AnswerKind::Descend) {
-                above += octaves;
-                ++descended;
-                continue;
-            }
             squares += octaves * octaves / 2;
             ++judged.repeats;
         }
     }
-    if (descended > 0) judged.descendOctaves = above / descended;
     if (judged.repeats > 0) judged.repeatOctaves = std::sqrt(squares / judged.repeats);
     if (judged.failed > options.mostFailed * judged.checks)
         judged.leftOut = "failed " + std::to_string(judged.failed) + " of " +
@@ -201,7 +173,16 @@ CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& opt
     return judged;
 }
 
-BlockConsensus MakeConsensus(const std::vector<double>& spp, const std::vector<int>& levels) {
+// Returns the standard deviation of a sample, nothing for fewer than two values.
+std::optional<double> SampleDeviation(const std::vector<double>& values) {
+    if (values.size() < 2) return {};
+    double mean = 0, sum = 0;
+    for (const double v : values) mean += v / double(values.size());
+    for (const double v : values) sum += (v - mean) * (v - mean);
+    return std::sqrt(sum / double(values.size() - 1));
+}
+
+BlockConsensus MakeConsensus(const std::vector<double>& spp) {
     BlockConsensus block;
     std::vector<double> logs;
     for (const double v : spp) {
@@ -212,24 +193,7 @@ BlockConsensus MakeConsensus(const std::vector<double>& spp, const std::vector<i
     block.highest = *std::ranges::max_element(spp);
     block.deviation = SampleDeviation(spp);
     block.octaves = SampleDeviation(logs);
-    if (block.deviation) {
-        const double half = StudentInterval(0.95, int(spp.size()) - 1) * *block.deviation /
-                            std::sqrt(double(spp.size()));
-        block.low = std::max(double(levels.front()), block.mean - half);
-        block.high = std::min(double(levels.back()), block.mean + half);
-    }
     return block;
-}
-
-// Adds the confidence of thresholds from the staircases of the only observer.
-void AddOwnConfidence(const ObserverAnswers& answers, CollectedViewpoint* viewpoint) {
-    for (const BlockAnswer& answer : answers.answers) {
-        if (answer.kind != AnswerKind::Asked || !answer.octaves) continue;
-        BlockConsensus& block = viewpoint->blocks[size_t(answer.block)];
-        const double factor = std::exp2(1.96 * std::min(20.0, std::max(0.0, *answer.octaves)));
-        block.low = std::max(double(viewpoint->levels.front()), block.mean / factor);
-        block.high = std::min(double(viewpoint->levels.back()), block.mean * factor);
-    }
 }
 
 // Makes the viewpoint of observers whose answers count, and notes how far each is from all.
@@ -237,11 +201,9 @@ CollectedViewpoint MakeCollected(const std::vector<CheckedObserver*>& observers)
     const ObserverAnswers& first = observers.front()->answers;
     CollectedViewpoint viewpoint{.name = first.viewpoint,
                                  .study = first.study,
-                                 .procedure = first.procedure,
                                  .levels = first.levels,
                                  .observers = int(observers.size()),
-                                 .blocks = {},
-                                 .agreement = {}};
+                                 .blocks = {}};
     std::vector<std::vector<double>> logs(first.thresholds.size());
     for (size_t i = 0; i < logs.size(); ++i) {
         std::vector<double> spp;
@@ -249,14 +211,11 @@ CollectedViewpoint MakeCollected(const std::vector<CheckedObserver*>& observers)
             spp.push_back(o->answers.thresholds[i]);
             logs[i].push_back(std::log2(spp.back()));
         }
-        viewpoint.blocks.push_back(MakeConsensus(spp, viewpoint.levels));
+        viewpoint.blocks.push_back(MakeConsensus(spp));
     }
     for (const CheckedObserver* o : observers)
         for (const BlockAnswer& answer : o->answers.answers)
-            if (answer.kind != AnswerKind::Catch)
-                viewpoint.blocks[size_t(answer.block)].answers += answer.answers;
-    if (observers.size() == 1) AddOwnConfidence(first, &viewpoint);
-    viewpoint.agreement = IntraclassCorrelation(logs);
+            if (answer.kind != AnswerKind::Catch) ++viewpoint.blocks[size_t(answer.block)].answers;
     for (size_t k = 0; k < observers.size(); ++k) {
         double shift = 0;
         for (const std::vector<double>& block : logs) {

@@ -7,10 +7,9 @@
 namespace lull {
 
 struct CollectOptions {
-    double mostFailed = 0.25;    // share of the checks that an observer may fail
-    double leastSeconds = 0.2;   // mean time of an answer; less is no look
-    std::string study = {};      // the id of the only study that is taken; empty: any
-    std::string procedure = {};  // and how it has to have asked; empty: any
+    double mostFailed = 0.25;   // share of the checks that an observer may fail
+    double leastSeconds = 0.2;  // mean time of an answer; less is no look
+    std::string study = {};     // the id of the only study that is taken; empty: any
 };
 
 // Rejected answers, with the reason.
@@ -27,8 +26,6 @@ struct CheckedObserver {
     // Standard deviation of a single answer, from those given twice: the root of the mean of half
     // the squared differences.
     std::optional<double> repeatOctaves;
-    // How far answers from above are above those from below, in the mean (hysteresis).
-    std::optional<double> descendOctaves;
     // How far the thresholds are above the mean of all observers (geometric means, octaves).
     std::optional<double> shiftOctaves;
 };
@@ -37,19 +34,14 @@ struct CheckedObserver {
 struct BlockConsensus {
     double mean = 0, lowest = 0, highest = 0;
     std::optional<double> deviation, octaves;  // standard deviations over observers
-    // 95 % confidence of the mean, within the ladder: from the spread over observers; of a single
-    // one from the staircase; else not known.
-    std::optional<double> low, high;
-    int answers = 0;  // that it rests on, of all observers
+    int answers = 0;                           // that it rests on, of all observers
 };
 
 struct CollectedViewpoint {
     std::string name, study;  // and the study's id
-    std::string procedure;
     std::vector<int> levels;
     int observers = 0;  // whose answers count
     std::vector<BlockConsensus> blocks;
-    std::optional<double> agreement;  // intraclass correlation of the logarithms
 };
 
 struct Collected {
@@ -65,7 +57,7 @@ inline constexpr int kEnoughAnswers = 30;
 int FewestAnswers(const CollectedViewpoint& viewpoint);
 
 // Reads files of answers and refuses those that cannot be read, answer another study than most
-// files of that viewpoint do, or were asked by another procedure, come twice, or contradict each
+// files of that viewpoint do, come twice, or contradict each
 // other: the same session with other answers (all of them), or a name that has judged the viewpoint
 // before (the later one).
 Collected CollectFiles(const std::vector<std::string>& files, const CollectOptions& options);

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "stopping/base/parallel.h"
-#include "stopping/network/human_range.h"
 
 namespace lull {
 

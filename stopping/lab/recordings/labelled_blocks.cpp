@@ -44,14 +44,14 @@ std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecordi
 
 std::vector<LabelledBlock> KeepRecorded(const std::vector<LabelledBlock>& judged,
                                         const ModelSettings& settings, const WarningSink& warn) {
-    std::vector<LabelledBlock> blocks = KeepRecorded(judged, settings);
-    std::string missing;
+    if (!Needs(settings, Feature::Attributes26)) return judged;
+    std::vector<LabelledBlock> blocks;
     for (const LabelledBlock& block : judged)
-        if (missing.empty()) missing = FeatureNames(MissingFeatures(*block.recording, settings));
-    if (blocks.empty()) throw std::runtime_error("no block was recorded with " + missing);
+        if (!block.recording->absent[ChannelIndex("attributes26")]) blocks.push_back(block);
+    if (blocks.empty()) throw std::runtime_error("no block was recorded with attributes26");
     if (blocks.size() < judged.size())
-        warn(fmt::format("{} of {} blocks were recorded without {}", judged.size() - blocks.size(),
-                         judged.size(), missing));
+        warn(fmt::format("{} of {} blocks were recorded without attributes26",
+                         judged.size() - blocks.size(), judged.size()));
     return blocks;
 }
 

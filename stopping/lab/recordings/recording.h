@@ -14,6 +14,14 @@
 
 namespace lull {
 
+// The spp at which the human thresholds end: observers were shown no more.
+inline constexpr int kMostShownSpp = 10000;
+
+// The thresholds at which the rule `cycles`, which remembers pixels, runs along while blocks are
+// recorded.
+inline constexpr std::array<double, 13> kCyclesThresholds = {
+    0.64, 0.32, 0.16, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015, 0.01, 0.0075, 0.005, 0.0025};
+
 // Names numbers that are recorded of a block: one for each of `count` sub-blocks, row-major, or, of
 // the whole block, one or a list.
 struct Channel {

@@ -11,6 +11,18 @@ namespace lull {
 
 namespace {
 
+constexpr const char* kNeeded =
+    ": recordings have H for m = 4, 25, 100 and 400, H1 and H2 for m = 100";
+
+std::string EntropyChannel(Feature feature, int m) {
+    if (feature == Feature::H && (m == 4 || m == 25 || m == 100 || m == 400))
+        return std::string("h").append(std::to_string(m));
+    if (feature == Feature::H1 && m == 100) return "h1";
+    if (feature == Feature::H2 && m == 100) return "h2";
+    throw std::invalid_argument(FeatureNames({&feature, 1}) + " with m = " + std::to_string(m) +
+                                kNeeded);
+}
+
 std::string PassText(int passSpp) {
     return passSpp > 0 ? "in passes of " + std::to_string(passSpp) + " spp" : "at any spp";
 }
@@ -55,31 +67,27 @@ class VoteGrid {
 
 }  // namespace
 
-RecordedValues ValuesOf(const BlockRecording& recording, int i) {
-    return [&recording, i](std::string_view channel) { return recording.Values(i, channel); };
-}
-
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings) {
-    return RecordedMeasures(recording.spp[size_t(i)], ValuesOf(recording, i), settings);
-}
-
-std::vector<Feature> MissingFeatures(const BlockRecording& recording,
-                                     const ModelSettings& settings) {
-    std::vector<Feature> missing;
+    BlockMeasures measures{.spp = recording.spp[size_t(i)]};
+    const auto put = [&](std::vector<double>* numbers, std::string_view channel) {
+        const std::span<const float> values = recording.Values(i, channel);
+        numbers->assign(values.begin(), values.end());
+    };
     for (const Feature feature : settings.features) {
-        if ((feature == Feature::DetailMaskedNoise && !HasHalves(recording)) ||
-            (feature == Feature::Attributes26 && recording.absent[ChannelIndex("attributes26")]))
-            missing.push_back(feature);
+        std::vector<double>* numbers = &measures.Of(feature);
+        if (feature == Feature::VisibleDrop) {
+            put(&measures.Of(Feature::H), EntropyChannel(Feature::H, settings.m));
+            const auto mean = recording.Values(i, "lightness"),
+                       deviation = recording.Values(i, "deviation");
+            measures.lightness = {.mean = {mean.begin(), mean.end()},
+                                  .deviation = {deviation.begin(), deviation.end()}};
+        } else if (IsEntropy(feature)) {
+            put(numbers, EntropyChannel(feature, settings.m));
+        } else {
+            put(numbers, FeatureNames({&feature, 1}));  // which is that of its channel
+        }
     }
-    return missing;
-}
-
-std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
-                                        const ModelSettings& settings) {
-    std::vector<LabelledBlock> kept;
-    for (const LabelledBlock& block : blocks)
-        if (MissingFeatures(*block.recording, settings).empty()) kept.push_back(block);
-    return kept;
+    return measures;
 }
 
 std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,

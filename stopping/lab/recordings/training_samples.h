@@ -5,17 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "stopping/features/recorded_measures.h"
 #include "stopping/lab/recordings/dataset.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {
 
-// Returns a function that reads the channels of record i; the recording must outlive it.
-RecordedValues ValuesOf(const BlockRecording& recording, int i);
-
-// Returns the features of the settings in record i of a block, as RecordedMeasures()
-// does.
+// Returns the result of MeasureBlock() from record i of a block, up to the rounding of recordings.
+// Throws std::invalid_argument if features of the settings were not recorded: entropies are
+// recorded for m = 4, 25, 100 and 400, H1 and H2 for m = 100 only, and older blocks have no
+// attributes.
 BlockMeasures MeasuresOf(const BlockRecording& recording, int i, const ModelSettings& settings);
 
 // Names a block that was recorded and that people judged.
@@ -34,15 +32,6 @@ struct LabelledBlock {
 std::vector<LabelledBlock> JoinHuman(std::span<const ViewpointRecording> viewpoints,
                                      std::span<const ThresholdsRow> human,
                                      std::vector<std::string>* unknown);
-
-// Returns the features that a block was recorded without: older recordings have no attributes,
-// pictures no noise of halves.
-std::vector<Feature> MissingFeatures(const BlockRecording& recording,
-                                     const ModelSettings& settings);
-
-// Returns the blocks that were recorded with all that the settings ask for.
-std::vector<LabelledBlock> KeepRecorded(std::span<const LabelledBlock> blocks,
-                                        const ModelSettings& settings);
 
 // Windows, one after the other.
 struct TrainingSamples {

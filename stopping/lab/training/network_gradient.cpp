@@ -128,16 +128,6 @@ MatrixOf<Scalar> RunBackward(const LstmWeights<Scalar>& layer, const LstmTrace<S
     return inputs;
 }
 
-// Lays the steps of each sample one below the other.
-template <typename Scalar>
-MatrixOf<Scalar> Flatten(const SampleBatch<Scalar>& batch) {
-    const Eigen::Index inputs = batch.inputs.rows();
-    MatrixOf<Scalar> flat(inputs * batch.steps, batch.count);
-    for (int t = 0; t < batch.steps; ++t)
-        flat.middleRows(t * inputs, inputs) = batch.inputs.middleCols(t * batch.count, batch.count);
-    return flat;
-}
-
 // Returns log(1 + exp(x)) without overflow.
 double SoftPlus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
 
@@ -156,8 +146,7 @@ BatchResult<Scalar> AddGradient(const NetworkWeights<Scalar>& weights,
         traces.push_back(RunForward(weights.lstm[l], l == 0 ? batch.inputs : traces[l - 1].outputs,
                                     mask(l), count, steps));
     // Inputs of the dense layers; at the end the answers.
-    std::vector<Matrix> states = {traces.empty() ? Flatten(batch)
-                                                 : Matrix(traces.back().outputs.rightCols(count))};
+    std::vector<Matrix> states = {Matrix(traces.back().outputs.rightCols(count))};
     VectorOf<Scalar> logits;
     for (const DenseWeights<Scalar>& l : weights.dense) {
         const Matrix z = (l.kernel * states.back()).colwise() + l.bias;
@@ -182,7 +171,6 @@ BatchResult<Scalar> AddGradient(const NetworkWeights<Scalar>& weights,
         dx.noalias() = weights.dense[l].kernel.transpose() * dz;
         if (l > 0) dz = dx.array() * states[l].array() * (Scalar(1) - states[l].array());
     }
-    if (traces.empty()) return result;
     // Only the last step of the last layer is seen by the dense layers.
     Matrix outputs = Matrix::Zero(traces.back().outputs.rows(), count * steps);
     outputs.rightCols(count) = dx;

@@ -44,7 +44,8 @@ NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed) {
     CheckSize(shape.inputs, "inputs", 1000000);
     CheckSize(shape.steps, "steps");
     NetworkWeights<float> weights;
-    int64_t inputs = shape.lstm.empty() ? int64_t(shape.inputs) * shape.steps : shape.inputs;
+    if (shape.lstm.empty()) throw std::invalid_argument("an LSTM layer is needed");
+    int64_t inputs = shape.inputs;
     for (uint64_t layer = 0; int units : shape.lstm) {
         CheckSize(units, "units");
         CheckSize(4 * int64_t(units) * (inputs + units), "weights of a layer", kMostWeights);
@@ -57,7 +58,6 @@ NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed) {
         weights.lstm.push_back(std::move(l));
         inputs = units;
     }
-    CheckSize(inputs, "weights of a layer", kMostWeights);
     CounterRandom random(seed, {kInitialTag, uint64_t(1000)});
     weights.dense.push_back({GlorotUniform(1, inputs, &random), Eigen::VectorXf::Zero(1)});
     return weights;

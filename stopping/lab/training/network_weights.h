@@ -60,7 +60,8 @@ struct NetworkShape {
 
 // Returns Keras' initial weights: kernels uniform within sqrt(6 / (inputs + outputs)) (Glorot,
 // Bengio 2010), orthonormal recurrent kernels, biases zero except 1 for forget gates. Throws
-// std::invalid_argument if a size is not in [1, 16384], or a layer of more than 2^28 weights.
+// std::invalid_argument if there is no LSTM layer, a size is not in [1, 16384], or a layer of more
+// than 2^28 weights.
 NetworkWeights<float> InitialWeights(const NetworkShape& shape, uint64_t seed);
 
 // Returns weights of the same shape, all zero.

@@ -68,16 +68,12 @@ Trainer::Trainer(const TrainingSamples& samples, const TrainingOptions& options)
     Check(options.dropout >= 0 && options.dropout < 1, "dropout must be in [0, 1)");
     Check(options.learningRate > 0 && std::isfinite(options.learningRate),
           "the learning rate must be above 0");
-    Check(options.noisyWeight > 0 && std::isfinite(options.noisyWeight),
-          "the weight of noisy samples must be above 0");
     const size_t count = samples.Count();
     const double noisy = double(std::count(samples.noisy.begin(), samples.noisy.end(), char(1)));
     Check(count > 0, "there are no samples to train on");
     Check(noisy > 0 && noisy < double(count),
           "the samples to train on are all noisy or all noiseless; there is nothing to learn");
     sampleWeights = SampleWeights(samples, options, noisy / double(count));
-    for (size_t i = 0; i < count; ++i)
-        if (samples.noisy[i]) sampleWeights[i] *= float(options.noisyWeight);
     stepsPerEpoch = int64_t(count + size_t(options.batch) - 1) / options.batch;
     const size_t most = (std::min(count, size_t(options.batch)) + kChunkSize - 1) / kChunkSize;
     gradients.assign(most, optimizer.meanSquares);
@@ -182,9 +178,8 @@ uint32_t Trainer::Fingerprint() const {
     writer.Put(options.seed);
     writer.Put(options.balanceViewpoints);
     writer.Put(options.balanceClasses);
-    writer.Put(options.noisyWeight);
     const std::string features =
-        FeatureNames(samples.settings.features) + ":" + PoolNames(samples.settings.pools);
+        FeatureNames(samples.settings.features) + (samples.settings.takesMean ? ":mean" : ":");
     put(features);
     put(samples.noisy);
     put(samples.windows);

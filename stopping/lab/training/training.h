@@ -13,7 +13,7 @@
 namespace lull {
 
 struct TrainingOptions {
-    std::vector<int> units = {512, 128, 32};  // of LSTM layers; empty: dense layers only
+    std::vector<int> units = {512, 128, 32};  // of LSTM layers
     double dropout = 0.4;                     // share of each LSTM layer's inputs, in [0, 1)
     double learningRate = 1e-3;               // > 0
     int batch = 64;                           // samples, > 0
@@ -24,8 +24,6 @@ struct TrainingOptions {
     // Weights noisy and noiseless samples as the paper does. Without, all count the same, as all
     // spp do in the critical error.
     bool balanceClasses = true;
-    // Factor of the loss of noisy samples: above 1 fewer blocks stop early.
-    double noisyWeight = 1;
 };
 
 struct TrainingProgress {

@@ -77,7 +77,6 @@ std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const Bl
             {"learning_rate", fmt::format("{}", t.learningRate)},
             {"batch", fmt::format("{}", t.batch)},
             {"epochs", fmt::format("{}", t.epochs)},
-            {"noisy_weight", fmt::format("{}", t.noisyWeight)},
             {"seed", fmt::format("{}", t.seed)},
             {"balance_viewpoints", t.balanceViewpoints ? "1" : "0"},
             {"balance_classes", t.balanceClasses ? "1" : "0"}};

@@ -7,7 +7,7 @@ std::span<const TrainingPreset> TrainingPresets() {
         {.name = "entropy",
          .settings = {.k = 2,
                       .features = {Feature::VisibleDrop},
-                      .pools = {{1}},
+                      .takesMean = true,
                       .spacing = Spacing::Geometric,
                       .ratio = 1.4142,
                       .visibility = {.mask = 1e9, .flare = 0, .nearness = 0.25},
@@ -17,8 +17,7 @@ std::span<const TrainingPreset> TrainingPresets() {
                       .learningRate = 0.003,
                       .epochs = 60,
                       .balanceViewpoints = true,
-                      .balanceClasses = false,
-                      .noisyWeight = 1}},
+                      .balanceClasses = false}},
         {.name = "paper"}};
     return presets;
 }

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-
-#include "stopping/lab/evaluation/certainty.h"
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/evaluation/two_figures.h"
 #include "stopping/lab/recordings/extension.h"
@@ -100,7 +97,6 @@ std::optional<TrainingResult> TrainAll(
         outcomes.back().Add(*network, plan.settings, isTested ? split.test : split.training);
         result.network = std::move(*network);
     }
-    if (plan.crossValidate) result.logRatios = LogRatioQuantiles(outcomes.front().recorded);
     for (NetworkOutcomes& o : outcomes)
         AddTwoFigures(
             o.blocks, {.name = o.name, .viewpoints = std::move(o.recorded)},
@@ -109,23 +105,12 @@ std::optional<TrainingResult> TrainAll(
     return result;
 }
 
-std::string CertaintyText(const TrainingResult& result) {
-    if (result.logRatios.empty()) return "";
-    return fmt::format(
-        "80 % of the human thresholds are {:.2f} to {:.2f} times the stop; of each viewpoint, "
-        "{:.1f} % are in the range of the others",
-        std::exp(result.logRatios[1]), std::exp(result.logRatios[9]),
-        100 * RangeCoverage(result.rules.front().viewpoints));
-}
-
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
                                               const ScoreOptions& scoring) {
     std::map<std::string, std::string> record = MakeRecord(plan, split);
     for (const EvaluatedRule& rule : result.rules)
         record["judged on " + LabelOf(rule)] = ScoresText(rule.viewpoints, scoring);
-    if (const std::string certainty = CertaintyText(result); !certainty.empty())
-        record["certainty"] = certainty;
     return record;
 }
 

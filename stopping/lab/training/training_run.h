@@ -29,8 +29,6 @@ struct TrainingResult {
     // if there are none, "blocks trained on"; each twice where recordings end too early for it, see
     // AddTwoFigures().
     std::vector<EvaluatedRule> rules = {};
-    // Of the networks without each viewpoint, see LogRatioQuantiles(); else empty.
-    std::vector<double> logRatios = {};
 };
 
 // Trains and judges a network on each split of a plan. Nothing if it was cancelled: the checkpoint
@@ -39,9 +37,6 @@ struct TrainingResult {
 std::optional<TrainingResult> TrainAll(
     const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
     const std::function<TrainingEvents(const BlockSplit&)>& eventsOf);
-
-// Returns how far from the stops people's thresholds lie; empty where that is not known.
-std::string CertaintyText(const TrainingResult& result);
 
 // Returns the training data of the last network, its options, and its evaluation.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,

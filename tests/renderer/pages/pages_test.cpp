@@ -20,7 +20,7 @@ TEST(MakeRenderPage, HoldsAllFilesAndNeedsNoOther) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
     }
-    for (const char* name : {"comparison.css", "comparison.js", "bench.js", "study.js"}) {
+    for (const char* name : {"comparison.css", "comparison.js", "error_curves.js", "study.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_EQ(page.find(EmbeddedFile(name)), std::string::npos)
             << name << " is the laboratory's";

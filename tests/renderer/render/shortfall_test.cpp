@@ -72,8 +72,7 @@ RenderResult CappedResult(double errorAtCap) {
 }
 
 TEST(Capped, TellsWhichCapWouldDo) {
-    const RuleTrend error{.kind = RuleTrend::Error};
-    const std::vector<CappedBlock> capped = FindCapped(CappedResult(1), error);
+    const std::vector<CappedBlock> capped = FindCapped(CappedResult(1));
     ASSERT_EQ(capped.size(), 1u);
     EXPECT_EQ(capped[0].block, 0);
     EXPECT_DOUBLE_EQ(capped[0].value, 1);
@@ -84,16 +83,19 @@ TEST(Capped, TellsWhichCapWouldDo) {
     EXPECT_LT(cap, 1.1 * capped[0].neededSpp);
     EXPECT_EQ(cap % 100, 0);
     // At the line, where it needs but another look.
-    EXPECT_GT(FindCapped(CappedResult(0.5), error).at(0).neededSpp, 1000);
+    EXPECT_GT(FindCapped(CappedResult(0.5)).at(0).neededSpp, 1000);
 }
 
 TEST(Capped, SaysNothingWhereNothingIsKnown) {
-    EXPECT_TRUE(FindCapped(CappedResult(1), {.kind = RuleTrend::Samples}).empty());
+    RenderResult counted = CappedResult(1);
+    counted.trend.kind = RuleTrend::Samples;
+    EXPECT_TRUE(FindCapped(counted).empty());
     RenderResult sure = CappedResult(1);
     for (BlockResult& block : sure.blocks)
         for (BlockDecision& record : block.decisions) record.decision.value = 1 - 1e-9;
     sure.blocks[1].block.stopped = sure.blocks[1].block.stoppedByVote = false;
-    const std::vector<CappedBlock> capped = FindCapped(sure, {.kind = RuleTrend::Probability});
+    sure.trend.kind = RuleTrend::Probability;
+    const std::vector<CappedBlock> capped = FindCapped(sure);
     ASSERT_EQ(capped.size(), 1u);
     EXPECT_EQ(capped[0].neededSpp, 0);
     EXPECT_EQ(CapFor(capped, 1000), 0);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/vision/visible_difference.h"
+#include "renderer/denoise/visible_error.h"
 #include "stopping/rules/denoised.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/renderer/render/feature_render.h"
@@ -17,7 +17,7 @@ TEST(DenoisedImage, IsAcceptedWhereTheRuleStops) {
     context.measures[kDenoisedRuleName] = [](const BlockView&, const BlockInfo&) -> Signals {
         return 0.0;
     };
-    EXPECT_EQ(ParseRule(kDenoisedRuleName, context).threshold, kVisibilityThreshold);
+    EXPECT_EQ(ParseRule(kDenoisedRuleName, context).threshold, kAcceptedBound);
 }
 
 TEST(DenoisedImage, NamesTheWorstPixels) {
@@ -25,7 +25,7 @@ TEST(DenoisedImage, NamesTheWorstPixels) {
     const std::string most =
         "visible difference from the true image probably at most 2 in half of the blocks and 2 in "
         "all (accepted: " +
-        fmt::format("{}", kVisibilityThreshold) + ")";
+        fmt::format("{}", kAcceptedBound) + ")";
     EXPECT_EQ(TextOf({clean, clean}), most);
     EXPECT_EQ(TextOf({clean, one}), most + ", except for a pixel that may be wrong by 7 in L*");
     EXPECT_TRUE(

@@ -13,24 +13,23 @@ namespace {
 ModelSettings Geometric(int k, double ratio) {
     return {.k = k,
             .n = 40,
-            .m = 4,
-            .features = {Feature::DetailMaskedNoise},
-            .pools = {{1}},
+            .features = {Feature::H},
+            .takesMean = true,
+            .snorm = false,
             .spacing = Spacing::Geometric,
             .ratio = ratio};
 }
 
-// Measures whose entropies of 100 sub-blocks are above 0.2 by 1 / spp, with a noise of spp.
+// Measures whose entropies of 100 sub-blocks are above 0.2 by 1 / spp.
 BlockMeasures At(int spp) {
     BlockMeasures measures{.spp = spp};
     measures.Of(Feature::H).assign(100, 0.2 + 1.0 / spp);
-    measures.Of(Feature::DetailMaskedNoise).assign(100, spp);
     measures.lightness.mean.assign(100, 60);
     measures.lightness.deviation.assign(100, 0);
     return measures;
 }
 
-double SppOf(double input) { return std::exp(input); }
+double SppOf(double input) { return 1 / (input - 0.2); }
 
 TEST(BlockMemory, StepsGeometrically) {
     BlockMemory memory(Geometric(4, 2));
@@ -62,7 +61,7 @@ TEST(BlockMemory, CompletesFallsOfEntropies) {
     const ModelSettings settings{
         .k = 1,
         .features = {Feature::VisibleDrop},
-        .pools = {{1}},
+        .takesMean = true,
         .visibility = {.mask = 24, .flare = 0, .reference = 10000, .nearness = 0.5}};
     BlockMemory memory(settings);
     memory.Add(At(20));
@@ -75,7 +74,7 @@ TEST(BlockMemory, CompletesFallsOfEntropies) {
 
 TEST(BlockMemory, ScalesNoiseByCaution) {
     ModelSettings settings{
-        .k = 1, .features = {Feature::VisibleDrop, Feature::H}, .pools = {{1}}, .snorm = false};
+        .k = 1, .features = {Feature::VisibleDrop, Feature::H}, .takesMean = true, .snorm = false};
     auto inputs = [&] {
         BlockMemory memory(settings);
         for (int spp = 20; spp <= 420; spp += 40) memory.Add(At(spp));
@@ -90,7 +89,6 @@ TEST(BlockMemory, ScalesNoiseByCaution) {
 
 TEST(BlockMemory, GoesOnAfterARestart) {
     ModelSettings settings = Geometric(3, 1.5);
-    settings.m = 100;
     settings.features = {Feature::VisibleDrop};
     BlockMemory first(settings), second(settings);
     for (int spp = 20; spp <= 1020; spp += 40) first.Add(At(spp));

@@ -13,47 +13,28 @@
 namespace lull {
 namespace {
 
-TEST(ModelSettings, NameFeaturesAndPools) {
-    const std::string features = "H,H1,H2,detail_masked_noise,visible_drop,attributes26";
+TEST(ModelSettings, NameFeatures) {
+    const std::string features = "H,H1,H2,visible_drop,attributes26";
     EXPECT_EQ(FeatureNames(ParseFeatures(features)), features);
-    EXPECT_EQ(PoolNames(ParsePools("mean,rms,p3,p9")), "mean,rms,p3,p9");
-    EXPECT_TRUE(ParsePools("").empty());
     for (const char* bad : {"", "H3", "H,", ",H", "H,H", "h", "H noise", "texture"})
         EXPECT_THROW(ParseFeatures(bad), std::invalid_argument) << bad;
-    for (const char* bad : {"q90", "p2", "p10", "p", "p3x", "mean,mean", "median", "rms,"})
-        EXPECT_THROW(ParsePools(bad), std::invalid_argument) << bad;
 }
 
-TEST(InputVector, PoolsBeforeItScales) {
+TEST(InputVector, TakesTheMeanBeforeItScales) {
     BlockMeasures measures{.spp = 10000};
     for (int i = 0; i < 100; ++i) {
-        measures.Of(Feature::DetailMaskedNoise).push_back(i / 100.0);
-        measures.Of(Feature::VisibleDrop).push_back(50);
+        measures.Of(Feature::H).push_back(i / 100.0);
+        measures.Of(Feature::VisibleDrop).push_back(i);
     }
     const std::vector<double> x =
-        InputVector(measures, {.features = {Feature::DetailMaskedNoise, Feature::VisibleDrop},
-                               .pools = ParsePools("mean,rms")});
-    ASSERT_EQ(x.size(), 4u);
-    EXPECT_NEAR(x[0], std::log(0.496), 1e-12);
-    EXPECT_NEAR(x[1], std::log(std::sqrt(0.32835) + 0.001), 1e-12);
-    EXPECT_NEAR(x[2], std::log(50.1), 1e-12);
-    EXPECT_NEAR(x[3], std::log(50.1), 1e-12);
-}
-
-TEST(InputVector, PoolsByPowerMeans) {
-    BlockMeasures measures{.spp = 20};
-    measures.Of(Feature::DetailMaskedNoise).assign(100, 0.1);
-    measures.Of(Feature::DetailMaskedNoise)[7] = 2;
-    const std::vector<double> x = InputVector(
-        measures, {.features = {Feature::DetailMaskedNoise}, .pools = ParsePools("mean,rms,p4")});
-    ASSERT_EQ(x.size(), 3u);
-    EXPECT_NEAR(x[0], std::log(0.119 + 0.001), 1e-12);
-    EXPECT_NEAR(x[1], std::log(std::sqrt((4 + 99 * 0.01) / 100) + 0.001), 1e-12);
-    EXPECT_NEAR(x[2], std::log(std::pow((16 + 99 * 1e-4) / 100, 0.25) + 0.001), 1e-12);
+        InputVector(measures, {.features = {Feature::H, Feature::VisibleDrop}, .takesMean = true});
+    ASSERT_EQ(x.size(), 2u);
+    EXPECT_NEAR(x[0], 0.495, 1e-12);
+    EXPECT_NEAR(x[1], std::log(49.6), 1e-12);
 }
 
 TEST(InputVector, GivesEachSubBlock) {
-    const ModelSettings settings = {.m = 4, .features = {Feature::H, Feature::DetailMaskedNoise}};
+    const ModelSettings settings = {.m = 4, .features = {Feature::H, Feature::VisibleDrop}};
     const std::vector<InputRange> ranges = InputRanges(settings);
     ASSERT_EQ(ranges.size(), 2u);
     EXPECT_EQ(ranges[0].begin, 0);
@@ -62,20 +43,17 @@ TEST(InputVector, GivesEachSubBlock) {
 
     BlockMeasures measures{.spp = 20};
     measures.Of(Feature::H) = {0.1, 0.2, 0.3, 0.4};
-    measures.Of(Feature::DetailMaskedNoise).assign(100, 1);
+    measures.Of(Feature::VisibleDrop).assign(100, 1);
     const std::vector<double> x = InputVector(measures, settings);
     EXPECT_EQ(x[2], 0.3);
-    EXPECT_NEAR(x[103], 0.001, 1e-6);
+    EXPECT_NEAR(x[103], std::log(1.1), 1e-6);
     measures.Of(Feature::H).pop_back();
     EXPECT_THROW(InputVector(measures, settings), std::invalid_argument);
 }
 
 TEST(Window, NormalisesEntropiesOnly) {
-    const ModelSettings settings{.k = 2,
-                                 .n = 20,
-                                 .m = 1,
-                                 .features = {Feature::DetailMaskedNoise, Feature::H},
-                                 .pools = {{1}}};
+    const ModelSettings settings{
+        .k = 2, .n = 20, .features = {Feature::VisibleDrop, Feature::H}, .takesMean = true};
     History<double> history;
     AddInputs(20, {0.1, 0.2}, settings, &history);
     AddInputs(40, {0.3, 0.6}, settings, &history);
@@ -85,15 +63,9 @@ TEST(Window, NormalisesEntropiesOnly) {
 }
 
 TEST(Window, NormalisesAttributesAsEntropies) {
-    const ModelSettings settings = {.k = 2,
-                                    .n = 20,
-                                    .m = 1,
-                                    .features = ParseFeatures("attributes26,H"),
-                                    .pools = ParsePools("mean"),
-                                    .snorm = false,
-                                    .bnorm = true};
-    ASSERT_EQ(InputCount(settings), 27);  // attributes are never pooled
-    EXPECT_EQ(NeedOf(settings), ViewNeed::Mean);
+    const ModelSettings settings = {
+        .k = 2, .n = 20, .m = 1, .features = ParseFeatures("attributes26,H"), .takesMean = true};
+    ASSERT_EQ(InputCount(settings), 27);  // of attributes there is no mean
     History<double> history;
     for (const int spp : {20, 40}) {
         BlockMeasures measures{.spp = spp};
@@ -103,7 +75,7 @@ TEST(Window, NormalisesAttributesAsEntropies) {
     }
     const Eigen::MatrixXf window = *WindowOf(history, settings, 40);
     for (int step = 0; step < 2; ++step)
-        for (int i = 0; i < 26; ++i) EXPECT_NEAR(window(i, step), i / 25.0, 1e-6);
+        for (int i = 0; i < 26; ++i) EXPECT_NEAR(window(i, step), step, 1e-6);
     EXPECT_EQ(window(26, 1), 0);
 }
 
@@ -111,8 +83,7 @@ TEST(Window, NormalisesAttributesAsEntropies) {
 TEST(ModelInputs, AreThoseOfRecordings) {
     for (int m : {25, 100}) {
         ModelSettings settings = {.m = m};
-        settings.features = ParseFeatures(m == 100 ? "H,H1,H2,detail_masked_noise,attributes26"
-                                                   : "H,attributes26,detail_masked_noise");
+        settings.features = ParseFeatures(m == 100 ? "H,H1,H2,attributes26" : "H,attributes26");
         BlockRecording recording;
         BlockRecorder recorder(20, 100, 100, &recording);
         for (int spp = 20; spp <= 100; spp += 20) {
@@ -127,25 +98,6 @@ TEST(ModelInputs, AreThoseOfRecordings) {
                 EXPECT_NEAR(recorded[i], live[i], 1e-6 * std::max(1.0, live[i]));
         }
     }
-}
-
-TEST(Learned, ReadsTheHalfMeanForNoise) {
-    ModelSettings settings = {.k = 2, .m = 25, .features = ParseFeatures("detail_masked_noise")};
-    settings.pools = ParsePools("rms");
-    Network network;  // a logistic regression on the last step: noise below exp(-2) is not seen
-    network.dense.push_back({"dense_1", Eigen::MatrixXf::Zero(1, 2), Eigen::VectorXf::Zero(1)});
-    network.dense[0].kernel(0, 1) = 10;
-    network.dense[0].bias[0] = 20;
-    const auto model = std::make_shared<const Model>(Model{network, settings, ""});
-    const auto criterion = MakeCriterion(LearnedRule(model, 20));
-    EXPECT_EQ(criterion->Need(20), ViewNeed::MeanAndHalf);
-    int stop = 0;
-    for (int spp = 20; spp <= 10000 && stop == 0; spp += 20) {
-        const BlockImage block = NoisyBlock(40, 40, 0.05, spp, unsigned(spp));
-        if (criterion->Observe(block.At(spp)).stop) stop = spp;
-    }
-    EXPECT_GT(stop, 100);
-    EXPECT_LT(stop, 10000);
 }
 
 }  // namespace

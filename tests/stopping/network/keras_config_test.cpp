@@ -79,17 +79,14 @@ TEST(KerasConfig, NamesWhatIsNotModelled) {
     ExpectError(Replace(good, "\"units\": 4", "\"units\": 4, \"return_sequences\": true"),
                 "Dense on every time step");
     ExpectError(Sequential(denseLayer + "," + lstmLayer), "Dense on every time step");
+    ExpectError(Replace(good, "\"LSTM\"", "\"Flatten\""), "Flatten is not supported");
     ExpectError(Sequential(lstmLayer + "," + lstmLayer), "return_sequences");
     ExpectError(good, "hard_sigmoid of Keras 3.1.0", "3.1.0");
 }
 
 TEST(KerasConfig, TakesNoShapeAfterTheFirstLayer) {
-    const std::string flatten = R"({"class_name": "Flatten", "config": {"name": "f",
-        "batch_input_shape": [null, 8, 100]}})";
     const std::string input = R"({"class_name": "InputLayer", "config": {"name": "i",
         "batch_input_shape": [null, null, 25]}})";
-    EXPECT_EQ(ParseKerasConfig(Sequential(flatten + "," + denseLayer), "2.4.0").timeSteps, 8);
-    ExpectError(Sequential(flatten + "," + input + "," + denseLayer), "layer 'i': InputLayer");
     ExpectError(Sequential(lstmLayer + "," + input + "," + denseLayer), "layer 'i': InputLayer");
 }
 

@@ -85,26 +85,11 @@ TEST(Lstm, StaysFiniteWithHugeWeights) {
     }
 }
 
-TEST(Lstm, CanBeALogisticRegressionOnTheWholeSequence) {
-    Network network;
-    network.dense.push_back({"dense_1", Eigen::RowVectorXf::LinSpaced(6, 0.1f, 0.6f),
-                             Eigen::VectorXf::Constant(1, 0.5f)});
-    CheckNetwork(network);
-    EXPECT_TRUE(Takes(network, 2, 3));
-    EXPECT_TRUE(Takes(network, 6, 1));
-    EXPECT_FALSE(Takes(network, 2, 2));
-    Eigen::MatrixXf sequence(2, 3);
-    sequence << 1, 3, -5, 2, 4, 6;
-    // The first step comes first.
-    const double z = 0.5 + 0.1 * 1 + 0.2 * 2 + 0.3 * 3 + 0.4 * 4 + 0.5 * -5 + 0.6 * 6;
-    EXPECT_NEAR(RunNetwork(network, sequence)[0], Apply(Activation::Sigmoid, z), 1e-6);
-    EXPECT_THROW(RunNetwork(network, sequence.leftCols(2)), std::invalid_argument);
-}
-
 TEST(Lstm, RefusesNetworksThatDoNotFit) {
     const Network good = RandomNetwork(4, {3, 2}, 1);
     EXPECT_NO_THROW(CheckNetwork(good));
     EXPECT_THROW(CheckNetwork({}), std::invalid_argument);
+    EXPECT_THROW(CheckNetwork({.lstm = {}, .dense = good.dense}), std::invalid_argument);
 
     Network bad = good;
     bad.lstm[1].kernel.resize(8, 4);

@@ -13,7 +13,6 @@
 
 #include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
-#include "stopping/network/human_range.h"
 #include "stopping/network/keras_config.h"
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/network/random_network.h"
@@ -71,7 +70,6 @@ TEST(ModelFile, ReadsWhatItWrites) {
                                     .m = 25,
                                     .features = {Feature::H2},
                                     .snorm = false,
-                                    .bnorm = true,
                                     .votes = 2,
                                     .voteSpacing = 120};
     const ScratchFile file(".h5");
@@ -83,27 +81,22 @@ TEST(ModelFile, ReadsWhatItWrites) {
     EXPECT_EQ(model.settings.m, 25);
     EXPECT_EQ(model.settings.features, std::vector<Feature>{Feature::H2});
     EXPECT_FALSE(model.settings.snorm);
-    EXPECT_TRUE(model.settings.bnorm);
     EXPECT_EQ(model.settings.votes, 2);
     EXPECT_EQ(model.settings.voteSpacing, 120);
     EXPECT_EQ(model.checksum, FileChecksum(file.path));
     EXPECT_FALSE(std::filesystem::exists(file.path + ".new"));
 }
 
-TEST(ModelFile, KeepsFlatNetworksFeaturesAndRecords) {
-    ModelSettings settings = {.k = 3,
-                              .features = ParseFeatures("detail_masked_noise,visible_drop")};
-    settings.pools = ParsePools("rms,p4");
-    Network network;
-    network.dense.push_back(
-        {"dense_1", Eigen::MatrixXf::Random(4, 12), Eigen::VectorXf::Random(4)});
-    network.dense.push_back({"dense_2", Eigen::MatrixXf::Random(1, 4), Eigen::VectorXf::Random(1)});
+TEST(ModelFile, KeepsFeaturesAndRecords) {
+    const ModelSettings settings = {
+        .k = 3, .features = {Feature::VisibleDrop, Feature::H}, .takesMean = true};
+    const Network network = RandomNetwork(2, {4}, 1);
     const ScratchFile file(".h5");
     WriteModel(file.path, network, settings, {{"seed", "7"}, {"viewpoints", "a: 0 1\nb: 2"}});
     const Model model = ReadModel(file.path);
     EXPECT_TRUE(Equal(model.network, network));
     EXPECT_EQ(model.settings.features, settings.features);
-    EXPECT_EQ(model.settings.pools, settings.pools);
+    EXPECT_TRUE(model.settings.takesMean);
     EXPECT_EQ(model.settings.k, 3);
     const Hdf5Group record = Hdf5Group::Open(file.path).Group("lull").Group("training");
     EXPECT_EQ(record.String("viewpoints"), "a: 0 1\nb: 2");
@@ -128,7 +121,7 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
     const ModelSettings settings{
         .k = 3,
         .features = {Feature::VisibleDrop},
-        .pools = {{1}},
+        .takesMean = true,
         .spacing = Spacing::Geometric,
         .ratio = 1.4,
         .visibility = {.mask = 30, .flare = 0.02, .reference = 5000, .nearness = 0.25},
@@ -148,28 +141,6 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
     const Hdf5Group group = Hdf5Group::Open(file.path).Group("lull");
     for (const char* name : {"spacing", "ratio", "mask", "flare", "reference", "nearness"})
         EXPECT_FALSE(group.HasAttribute(name)) << name;
-}
-
-TEST(ModelFile, KeepsTheDistanceFromPeople) {
-    std::vector<double> ratios;
-    for (int i = 0; i < kLogRatios; ++i) ratios.push_back(0.1 * i - 0.4);
-    const ScratchFile file(".h5");
-    const auto write = [&] {
-        WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 4}, {}, ratios);
-    };
-    write();
-    EXPECT_EQ(ReadModel(file.path).logRatios, ratios);
-    ratios[3] = 2;  // they would decrease
-    write();
-    EXPECT_THROW(ReadModel(file.path), std::runtime_error);
-    ratios.assign(kLogRatios, std::numeric_limits<double>::quiet_NaN());
-    write();
-    EXPECT_THROW(ReadModel(file.path), std::runtime_error);
-    ratios.assign(3, 0.0);
-    write();
-    EXPECT_THROW(ReadModel(file.path), std::runtime_error);
-    WriteModel(file.path, RandomNetwork(4, {3}, 1), {.m = 4});
-    EXPECT_TRUE(ReadModel(file.path).logRatios.empty());
 }
 
 TEST(ModelFile, WritesNoBrokenModel) {

@@ -181,18 +181,6 @@ TEST(LightnessNoise, LeavesNoNan) {
         }
 }
 
-TEST(LightnessNoise, IsMaskedByDetail) {
-    // Noise 3 and texture 4 within a deviation of 13 leave 12 for detail; less than nothing is
-    // none.
-    const std::vector<double> masked =
-        DetailMaskedNoise(std::vector{3.f, 3.f, 3.f, 0.f}, std::vector{13.f, 5.f, 2.f, 0.f},
-                          std::vector{4.f, 4.f, 4.f, 0.f});
-    EXPECT_DOUBLE_EQ(masked[0], 3 / (1 + 12 / 4.0));
-    EXPECT_DOUBLE_EQ(masked[1], 3);
-    EXPECT_DOUBLE_EQ(masked[2], 3);
-    EXPECT_DOUBLE_EQ(masked[3], 0);
-}
-
 TEST(PeakNoise, CountsFewPixelsWithMuchNoise) {
     // One dark pixel in 400 has all its light in one half: 20 L* there are 20 / 400^(1/4) in all.
     BlockImage block(20, 20, 0.f);

@@ -11,11 +11,6 @@
 //   catch   shows the reference on both sides: whoever points there does not look
 // A block that was left alone above the lowest level is asked again from there, as its threshold
 // may lie below where it started.
-//
-// The last round goes down, where the study asks for that: its entries are of the kind
-//   descend  starts some levels above the first answer; "+" makes it worse and "-" better, and the
-//            observer leaves it where no noise is seen yet
-//   idle     shows the reference on both sides and cannot be pointed at
 
 function planAdjustment(study, seed) {
   const random = makeRandom(seed), blocks = countUpTo(study.blocks.length);
@@ -25,17 +20,15 @@ function planAdjustment(study, seed) {
   const highest = Math.floor((study.levels.length - 1) / 6);
   const start = () => Math.floor(random() * (highest + 1));
   const starts = [blocks.map(start), blocks.map(start)];
-  return {caught: order.slice(0, catches), repeated: order.slice(catches, catches + repeats), starts,
-    descended: shuffled(blocks, random).slice(0, countOf(study.descending, blocks.length)), above: blocks.map(() => 2 + Math.floor(3 * random()))};
+  return {caught: order.slice(0, catches), repeated: order.slice(catches, catches + repeats), starts};
 }
 
-// `least` is the lowest that `net` has been.
-const makeEntry = (kind, start) => ({kind, start, clicks: 0, net: 0, least: 0, ms: 0});
+const makeEntry = (kind, start) => ({kind, start, clicks: 0, net: 0, ms: 0});
 
 // Returns the level that a block shows.
 function shownLevel(study, entry) {
   const top = study.levels.length - 1;
-  return entry.kind === "catch" || entry.kind === "idle" ? top : Math.min(top, entry.start + entry.net);
+  return entry.kind === "catch" ? top : Math.min(top, entry.start + entry.net);
 }
 
 function firstRound(study, plan) {
@@ -43,7 +36,7 @@ function firstRound(study, plan) {
 }
 
 // Says whether an entry may have begun above its threshold.
-const isOpen = entry => (entry.kind === "asked" || entry.kind === "repeat") && entry.clicks === 0 && entry.start > 0;
+const isOpen = entry => entry.kind !== "catch" && entry.clicks === 0 && entry.start > 0;
 
 // Returns the entries of the round after `entries`, or null if nothing is left to ask.
 function nextRound(plan, entries, round) {
@@ -56,38 +49,24 @@ function nextRound(plan, entries, round) {
   return next.some(entry => entry.kind !== "catch") ? next : null;
 }
 
-// Returns the entries of the round that goes down, or null if there is none.
-function downRound(study, plan, answers) {
-  if (!plan.descended.length) return null;
-  const top = study.levels.length - 1;
-  const first = block => answers.find(a => a.block === block && a.kind === "asked").level;
-  return study.blocks.map((_, b) => plan.descended.includes(b) ? makeEntry("descend", Math.min(top, first(b) + plan.above[b])) : makeEntry("idle", 0));
-}
-
 function closeRound(study, entries, round, answers) {
   entries.forEach((entry, block) => {
-    // A block left as good as it began has no information on the threshold.
-    if (isOpen(entry) || entry.kind === "idle" || (entry.kind === "descend" && entry.least === 0)) return;
+    if (isOpen(entry)) return;
     const answer = {block, round, kind: entry.kind, clicks: entry.clicks, seconds: entry.ms / 1000};
     if (entry.kind === "catch") answer.failed = entry.net > 0;
     else Object.assign(answer, {start: entry.start, level: shownLevel(study, entry)});
-    if (entry.kind === "descend") answer.lowest = entry.start + entry.least;
     answers.push(answer);
   });
 }
 
-// Returns where a session stands: {round, entries, answers, isDown, finished}.
+// Returns where a session stands: {round, entries, answers, finished}.
 function replayAdjustment(study, session) {
   const plan = planAdjustment(study, session.seed), top = study.levels.length - 1;
-  const state = {round: 0, entries: firstRound(study, plan), answers: [], isDown: false, finished: false};
+  const state = {round: 0, entries: firstRound(study, plan), answers: [], finished: false};
   for (const [what, block, ms] of session.events) {
     if (what === "same") {
       closeRound(study, state.entries, state.round, state.answers);
-      let next = state.isDown ? null : nextRound(plan, state.entries, state.round);
-      if (!next && !state.isDown) {
-        next = downRound(study, plan, state.answers);
-        state.isDown = next !== null;
-      }
+      const next = nextRound(plan, state.entries, state.round);
       state.finished = next === null;
       if (next) { state.entries = next; ++state.round; }
       continue;
@@ -95,10 +74,9 @@ function replayAdjustment(study, session) {
     const entry = state.entries[block];
     ++entry.clicks;
     entry.ms += ms;
-    const step = (what === "+") === state.isDown ? -1 : 1;
+    const step = what === "+" ? 1 : -1;
     if (entry.kind === "catch") entry.net = Math.max(0, entry.net + step);
     else entry.net = Math.min(top - entry.start, Math.max(-entry.start, entry.net + step));
-    entry.least = Math.min(entry.least, entry.net);
   }
   return state;
 }

@@ -8,7 +8,7 @@ const holdTime = 500;  // ms that a finger is held to go a step back
 function placeName(block) {
   const b = study.blocks[block];
   const columns = [...new Set(study.blocks.map(o => o.x))], rows = [...new Set(study.blocks.map(o => o.y))];
-  return textOf("place", {row: rows.indexOf(b.y) + 1, column: columns.indexOf(b.x) + 1});
+  return `row ${rows.indexOf(b.y) + 1}, column ${columns.indexOf(b.x) + 1}`;
 }
 
 function makeAdjustView() {
@@ -20,7 +20,7 @@ function makeAdjustView() {
         click: e => point(block, e.shiftKey ? "-" : "+"), contextmenu: e => e.preventDefault(), mouseenter: () => markBlock(block), mouseleave: () => markBlock(-1)}, canvas);
       if (side === "noisy") {
         cell.tabIndex = block ? -1 : 0;
-        cell.setAttribute("aria-label", textOf("label.block", {place: placeName(block)}));
+        cell.setAttribute("aria-label", "Block in " + placeName(block));
         cell.addEventListener("focus", () => { moveTo(block); if (cell.matches(":focus-visible")) markBlock(block); });
         cell.addEventListener("blur", () => markBlock(-1));
         stepBackWhenHeld(cell, block);
@@ -29,9 +29,7 @@ function makeAdjustView() {
       (adjustView.cells[block] = adjustView.cells[block] || {})[side] = {cell, canvas};
     });
   }
-  // As long as they will be, so that their height is known before the task.
-  putText(byId("adjust-hint"), "task.adjust");
-  putText(byId("progress-text"), "progress.look", {look: textOf("progress.second"), count: 100});
+  showProgress("Second", 100);  // as long as it will be, so that its height is known before the task
   byId("noisy").addEventListener("keydown", adjustKeys);
   byId("same").addEventListener("click", bothLookTheSame);
   byId("flicker").addEventListener("click", () => flicker());
@@ -48,20 +46,22 @@ function stepBackWhenHeld(cell, block) {
   cell.addEventListener("click", e => { if (wasHeld) { wasHeld = false; e.stopImmediatePropagation(); } }, true);
 }
 
+const sameAgain = "Everywhere? Then press again";
+
 // Asks once more, as this ends the round.
 function askIfSame(isAsked) {
   adjustView.isAsked = isAsked;
-  putText(byId("same"), isAsked ? "same.again" : "same");
+  byId("same").textContent = isAsked ? sameAgain : "Both look the same";
   byId("same").classList.toggle("asked", isAsked);
 }
 
 function bothLookTheSame() {
   if (!adjustView.isAsked) {
     askIfSame(true);
-    say("same.again");
+    say(sameAgain);
   } else if (addEvent("same")) {
     askIfSame(false);
-    say(null);
+    say("");
   }
 }
 
@@ -115,9 +115,7 @@ function adjustKeys(event) {
 function point(block, direction) {
   if (adjustView.flicker) flicker();
   askIfSame(false);
-  const {entries, isDown} = replay(session);
-  if (entries[block].kind === "idle" || !addEvent(direction, block)) return;
-  say(direction === "-" ? "said.back" : isDown ? "said.worse" : "said.better", {place: placeName(block)});
+  if (addEvent(direction, block)) say(placeName(block) + (direction === "-" ? ": one step back" : ": one step better"));
 }
 
 // Shows the reference in place of the noisy picture, or the noisy one again.
@@ -125,19 +123,18 @@ function flicker(on = !adjustView.flicker) {
   adjustView.flicker = on;
   byId("flicker").setAttribute("aria-pressed", on);
   byId("noisy").parentElement.classList.toggle("flickering", on);
-  putText(byId("noisy-caption"), on ? "task.reference" : "task.picture");
-  if (on) say("said.reference");
+  byId("noisy-caption").textContent = on ? "the reference" : "the picture to judge";
+  if (on) say("the reference is shown");
   showAdjust(replay(session));
+}
+
+function showProgress(look, count) {
+  byId("progress-text").textContent = `${look} look: ${count} answers so far`;
 }
 
 function showAdjust(state) {
   const top = study.levels.length - 1;
-  const look = textOf(["progress.first", "progress.second", "progress.last"][Math.min(2, state.round)]);
-  putText(byId("progress-text"), "progress.look", {look, count: session.events.filter(e => e[0] !== "same").length});
-  putText(byId("adjust-hint"), state.isDown ? "task.down" : "task.adjust");
-  state.entries.forEach((entry, block) => {
-    for (const {cell} of Object.values(adjustView.cells[block])) cell.classList.toggle("asked", entry.kind === "descend");
-  });
+  showProgress(["First", "Second", "Last"][Math.min(2, state.round)], session.events.filter(e => e[0] !== "same").length);
   byId("progress").value = Math.min(0.95, state.round / 2);
   alignStages();
   const drawn = state.entries.map((entry, block) => {

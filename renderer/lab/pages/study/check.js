@@ -17,7 +17,7 @@ const gammaOf = grey => Math.log(0.5) / Math.log(grey / 255);
 function showGamma() {
   const grey = +byId("gamma").value;
   byId("gamma-patch").style.background = `rgb(${grey},${grey},${grey})`;
-  putText(byId("gamma-value"), "gamma", {gamma: gammaOf(grey).toFixed(2)});
+  byId("gamma-value").textContent = "gamma " + gammaOf(grey).toFixed(2);
 }
 
 // The zoom of the page, where the browser tells: 1 is 100 %.
@@ -30,16 +30,19 @@ function showZoom() {
   byId("gamma-field").style.setProperty("--pixel", pixelSize() + "px");
   const zoom = pageZoom(), shown = Math.round(pixelSize() * devicePixelRatio);
   const off = zoom !== null && Math.abs(zoom - 1) > 0.06;
-  if (off) putText(byId("zoom"), "zoom.off", {zoom: Math.round(100 * zoom)});
-  else putText(byId("zoom"), "zoom.good", {shown, scale: Math.round(100 * devicePixelRatio)});
+  byId("zoom").textContent = off ? `The page seems to be zoomed to ${Math.round(100 * zoom)} %. Press Ctrl and 0 to set it to 100 %.`
+    : `The zoom is 100 %, as it should be; a pixel of a picture is ${shown}x${shown} of the display, whatever its scale (${Math.round(100 * devicePixelRatio)} %).`;
   byId("zoom").classList.toggle("warning", off);
 }
+
+const tooSmallText = () => `The pictures do not fit: they need ${neededText()} pixels, and this window has ${innerWidth} x ${innerHeight}. Make it larger, by full screen for instance, or take a larger display. They are not made smaller, as that would hide their noise.`;
 
 // Says whether the pictures fit, and lets nobody begin where they do not.
 function showWindow() {
   const found = arrangement(), full = fullScale();
-  const key = !found ? "window.small" : found.shown < full ? "window.smaller" : "window.fits";
-  putText(byId("window"), key, {...windowSize(), shown: found?.shown, full, needed: neededText()});
+  byId("window").textContent = !found ? tooSmallText()
+    : found.shown < full ? `The pictures fit into this window of ${innerWidth} x ${innerHeight} pixels with ${found.shown}x${found.shown} of its pixels for one of a picture, in place of ${full}x${full}.`
+    : `The pictures fit into this window; it has ${innerWidth} x ${innerHeight} pixels.`;
   byId("window").classList.toggle("warning", !found);
   byId("begin").disabled = !found;
 }
@@ -54,7 +57,6 @@ function makeCheck() {
   byId("card-size").addEventListener("input", showCard);
   addEventListener("resize", () => { showZoom(); showWindow(); });
   byId("full-check").addEventListener("click", toggleFullScreen);
-  byId("person").hidden = !study.questions;
   showGamma();
   showZoom();
   showWindow();
@@ -63,11 +65,6 @@ function makeCheck() {
 
 const chosen = name => document.querySelector(`input[name=${name}]:checked`)?.value ?? null;
 
-// Returns age and sight as observers state them; null where they were not asked.
-function personFacts() {
-  return study.questions ? {age: +byId("age").value || null, vision: chosen("vision"), colour: chosen("colour")} : null;
-}
-
 // Returns the data of the display and the viewing conditions. Pixels are those of pictures.
 function displayFacts() {
   const found = arrangement();
@@ -75,7 +72,7 @@ function displayFacts() {
   const distance = +byId("distance").value;
   return {userAgent: navigator.userAgent, screen: [screen.width, screen.height], window: [innerWidth, innerHeight],
     devicePixelRatio, zoom: pageZoom(), colorDepth: screen.colorDepth, tones: chosen("tones"),
-    shown: found?.shown ?? null, arrangement: !found ? null : isStaircase || !found.stacked ? "side by side" : "one above the other",
+    shown: found?.shown ?? null, arrangement: !found ? null : !found.stacked ? "side by side" : "one above the other",
     gamma: +gammaOf(+byId("gamma").value).toFixed(3), distanceCm: distance, pixelsPerMm,
     pixelsPerDegree: pixelsPerMm ? +(pixelsPerMm * 10 * distance * Math.PI / 180).toFixed(1) : null};
 }

@@ -1,14 +1,13 @@
 "use strict";
 // Shows the thresholds of people on the image, where they disagree, and who was left out:
-//   viewpoints [{name, observers, agreement, levels [], width?, height?, references? [src],
-//     places? [{x, y, width, height}], blocks [{mean, lowest, highest, deviation, octaves, low, high, answers}],
-//     procedure, inAWord (of the agreement), fewestAnswers, enoughAnswers}]
-//   observers [{file, observer, viewpoint, procedure, leftOut, doubts, checks, failed, repeats,
+//   viewpoints [{name, observers, levels [], width?, height?, references? [src],
+//     places? [{x, y, width, height}], blocks [{mean, lowest, highest, deviation, octaves, answers}],
+//     fewestAnswers, enoughAnswers}]
+//   observers [{file, observer, viewpoint, leftOut, doubts, checks, failed, repeats,
 //     repeatOctaves, shiftOctaves, seconds, gamma, distanceCm}],  refused [{file, reason}]
 
 const data = JSON.parse(byId("data").textContent);
 const showOctaves = v => isNumber(v) ? v.toFixed(2) : "\u2013";
-const showRange = (low, high) => isNumber(low) ? `${showCount(low)} \u2013 ${showCount(high)}` : "\u2013";
 
 // Overlays of the image: values, their places in [0, 1], and words for them.
 function overlaysOf(viewpoint) {
@@ -50,30 +49,23 @@ function makePicture(viewpoint) {
   return make("div", {style: `--width:${Math.max(viewpoint.width, 600)}px`}, make("p", {class: "controls"}, make("label", {}, "Over the image ", select)), picture, legend);
 }
 
-// Intraclass correlation of the logarithms: 1 if all say the same, 0 if only chance decides.
-function sayAgreement(viewpoint) {
-  if (!isNumber(viewpoint.agreement)) return "How far observers agree cannot be told of one of them.";
-  return `Their agreement is ${viewpoint.inAWord} (intraclass correlation ${viewpoint.agreement.toFixed(2)})` +
-    (viewpoint.inAWord === "poor" ? ": observers differ more than blocks do." : ".");
-}
-
 function makeViewpoint(viewpoint) {
-  const rows = viewpoint.blocks.map((b, i) => [String(i), showCount(b.mean), showRange(b.low, b.high), showRange(b.lowest, b.highest), show(b.deviation, 3), showOctaves(b.octaves), String(b.answers)]);
+  const rows = viewpoint.blocks.map((b, i) => [String(i), showCount(b.mean), `${showCount(b.lowest)} \u2013 ${showCount(b.highest)}`, show(b.deviation, 3), showOctaves(b.octaves), String(b.answers)]);
   return make("section", {}, make("h2", {}, viewpoint.name),
-    make("p", {}, `${viewpoint.observers} observer${viewpoint.observers === 1 ? "" : "s"}, asked by ${viewpoint.procedure === "adjust" ? "adjustment" : "staircases"}. ` + sayAgreement(viewpoint)),
+    make("p", {}, `${viewpoint.observers} observer${viewpoint.observers === 1 ? "" : "s"}.`),
     viewpoint.fewestAnswers < viewpoint.enoughAnswers
       ? make("p", {}, `Thresholds of blocks rest on as few as ${viewpoint.fewestAnswers} answer${viewpoint.fewestAnswers === 1 ? "" : "s"}: they are rough with fewer than ${viewpoint.enoughAnswers}.`) : null,
     make("div", {class: "beside"},
       viewpoint.references ? makePicture(viewpoint) : make("p", {class: "hint"}, "--study STUDY.html shows the image here."),
-      make("div", {class: "scroll"}, makeTable("Samples per pixel at which noise is no longer seen", ["block", "mean", "95 % confidence", "lowest \u2013 highest", "deviation", "octaves", "answers"], rows))));
+      make("div", {class: "scroll"}, makeTable("Samples per pixel at which noise is no longer seen", ["block", "mean", "lowest \u2013 highest", "deviation", "octaves", "answers"], rows))));
 }
 
 // The second column has words.
 const wordsIn = table => { for (const row of table.rows) row.cells[1].classList.add("words"); return table; };
 
 function makeObservers() {
-  const table = makeTable("", ["observer", "counts", "viewpoint", "procedure", "checks failed", "asked twice", "deviation of an answer, octaves", "above all, octaves", "time", "gamma", "distance, cm"],
-    data.observers.map(o => [o.observer, o.leftOut ? "left out: " + o.leftOut : o.doubts ? "yes, but " + o.doubts : "yes", o.viewpoint, o.procedure, `${o.failed} of ${o.checks}`,
+  const table = makeTable("", ["observer", "counts", "viewpoint", "checks failed", "asked twice", "deviation of an answer, octaves", "above all, octaves", "time", "gamma", "distance, cm"],
+    data.observers.map(o => [o.observer, o.leftOut ? "left out: " + o.leftOut : o.doubts ? "yes, but " + o.doubts : "yes", o.viewpoint, `${o.failed} of ${o.checks}`,
       String(o.repeats), showOctaves(o.repeatOctaves), showOctaves(o.shiftOctaves), showSeconds(o.seconds), show(o.gamma, 3), show(o.distanceCm, 3)]));
   [...table.querySelectorAll("tbody tr")].forEach((row, i) => {
     row.classList.toggle("left-out", data.observers[i].leftOut !== "");

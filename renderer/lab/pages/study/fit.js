@@ -4,9 +4,6 @@
 
 const gap = 16;  // between two pictures and beside them, in pixels of the page
 
-// The largest block, of which a staircase shows two.
-const largestBlock = {width: Math.max(...study.blocks.map(b => b.width)), height: Math.max(...study.blocks.map(b => b.height))};
-
 // Measures the parts of the task around its pictures, in pixels of the page.
 function heightOfTexts(stacked) {
   const task = byId("task"), wasHidden = task.hidden, stages = byId("stages"), wasStacked = stages.classList.contains("stacked");
@@ -22,29 +19,26 @@ function heightOfTexts(stacked) {
 
 // Returns the room that both pictures need with so many pixels of the page for one of theirs.
 function neededRoom(size, stacked) {
-  if (isStaircase) return {width: 2 * largestBlock.width * size + 48 + 2 * gap, height: largestBlock.height * size + 2 * gap + heightOfTexts(false)};
   const width = study.width * size, height = study.height * size, texts = heightOfTexts(stacked);
   return stacked ? {width: width + gap, height: 2 * height + gap + texts} : {width: 2 * width + 2 * gap, height: height + texts};
 }
 
 const fullScale = () => Math.max(1, Math.round(devicePixelRatio));
-const windowSize = () => ({width: innerWidth, height: innerHeight});
 
 // Returns the arrangement with the largest pictures: {shown: pixels of the display for one of a
 // picture, size: of the page, stacked}; null if there is none.
 function arrangement() {
-  const room = windowSize();
   for (let shown = fullScale(); shown >= 1; --shown)
-    for (const stacked of isStaircase ? [false] : [false, true]) {
+    for (const stacked of [false, true]) {
       const size = shown / devicePixelRatio, needed = neededRoom(size, stacked);
-      if (needed.width <= room.width && needed.height <= room.height) return {shown, size, stacked};
+      if (needed.width <= innerWidth && needed.height <= innerHeight) return {shown, size, stacked};
     }
   return null;
 }
 
 // Returns the space that the smallest arrangements need, in words.
 function neededText() {
-  const rooms = (isStaircase ? [false] : [false, true]).map(stacked => neededRoom(1 / devicePixelRatio, stacked));
+  const rooms = [false, true].map(stacked => neededRoom(1 / devicePixelRatio, stacked));
   return [...new Set(rooms.map(r => `${Math.ceil(r.width)} x ${Math.ceil(r.height)}`))].join(" / ");
 }
 

@@ -22,8 +22,8 @@ function showPractice() {
   practice.isAnswered = false;
   practice.noisySide = Math.random() < 0.5 ? 0 : 1;
   drawPractice(practiceCanvases(), practiceLevels[practice.trial], practice.noisySide);
-  putText(byId("practice-title"), "practice", {trial: practice.trial + 1, count: practiceLevels.length});
-  putText(byId("practice-said"), "practice.question");
+  byId("practice-title").textContent = `To try: ${practice.trial + 1} of ${practiceLevels.length}`;
+  byId("practice-said").textContent = "Which one is noisier? Click or tap it.";
   for (const caption of document.querySelectorAll("#practice figcaption")) caption.textContent = "\u00a0";
   byId("practice-next").hidden = true;
 }
@@ -31,8 +31,8 @@ function showPractice() {
 function answerPractice(side) {
   if (practice.isAnswered) return;
   practice.isAnswered = true;
-  document.querySelectorAll("#practice figcaption").forEach((caption, i) => { putText(caption, i === practice.noisySide ? "example.noisy" : "example.clean"); });
-  putText(byId("practice-said"), side === practice.noisySide ? "practice.right" : "practice.wrong");
+  document.querySelectorAll("#practice figcaption").forEach((caption, i) => { caption.textContent = i === practice.noisySide ? "with noise" : "without"; });
+  byId("practice-said").textContent = side === practice.noisySide ? "Yes, that is the noisy one." : "No, it is the other one: look at its grain.";
   byId("practice-next").hidden = false;
   byId("practice-next").focus();
 }

@@ -1,12 +1,10 @@
 "use strict";
 // Which screen is shown, and how time goes by.
 
-const isStaircase = study.procedure === "staircase";
 let screenName = "";
 
-// In ms: an answer that comes sooner was not to what is shown; the time to look at the middle between
-// trials; the work after which eyes need a break.
-const timing = {shortest: 150, fixation: 500, breakAfter: 5 * 60e3};
+// In ms: an answer that comes sooner was not to what is shown; the work after which eyes need a break.
+const timing = {shortest: 150, breakAfter: 5 * 60e3};
 
 function showScreen(name) {
   screenName = name;
@@ -16,15 +14,14 @@ function showScreen(name) {
   scrollTo(0, 0);
 }
 
-// Tells those who do not see it; null: nothing.
-function say(key, values) {
-  byId("said").textContent = key ? textOf(key, values) : "";
+// Tells those who do not see it.
+function say(text) {
+  byId("said").textContent = text;
 }
 
-// Says how long it may take: a guess, by 3.5 s a trial, or 1.2 s a step on half of the ladder and 3 s
-// a look at a block.
+// Says how long it may take: a guess, by 1.2 s a step on half of the ladder and 3 s a look at a block.
 function guessMinutes() {
   const blocks = study.blocks.length, steps = blocks * (1 + study.repeats) * study.levels.length / 2;
-  const seconds = isStaircase ? 3.5 * planStaircase(study, 1).trials.length : 1.2 * steps + 6 * blocks;
-  return textOf("minutes", {low: Math.ceil(seconds / 60 + 2), high: Math.ceil(1.7 * seconds / 60 + 4)});
+  const seconds = 1.2 * steps + 6 * blocks;
+  return `about ${Math.ceil(seconds / 60 + 2)} to ${Math.ceil(1.7 * seconds / 60 + 4)} minutes`;
 }

@@ -29,11 +29,11 @@ function startSession(observer) {
     observer, seed: hashText(study.id + "\n" + observer), started: new Date().toISOString(), display: {}, events: []};
 }
 
-const replay = session => study.procedure === "staircase" ? replayStaircase(study, session) : replayAdjustment(study, session);
+const replay = session => replayAdjustment(study, session);
 
-// Returns the mean of a block's answers in spp, those from above and the repeated one included.
+// Returns the mean of a block's answers in spp, the repeated one included.
 function thresholdOf(answers, block) {
-  const spp = answers.filter(a => a.block === block && a.kind !== "catch").map(a => a.spp ?? study.levels[a.level]);
+  const spp = answers.filter(a => a.block === block && a.kind !== "catch").map(a => study.levels[a.level]);
   return spp.reduce((a, b) => a + b, 0) / spp.length;
 }
 
@@ -41,10 +41,10 @@ function thresholdOf(answers, block) {
 function answersOf(session) {
   const {answers} = replay(session);
   return {format: "lull-judge-answers", version: 1,
-    study: {id: study.id, viewpoint: study.viewpoint, procedure: study.procedure, blocks: study.blocks.length, levels: study.levels},
+    study: {id: study.id, viewpoint: study.viewpoint, procedure: "adjust", blocks: study.blocks.length, levels: study.levels},
     observer: session.observer, session: session.id, seed: session.seed, started: session.started, finished: session.finished,
     seconds: session.events.reduce((sum, event) => sum + event[event.length - 1], 0) / 1000,
-    display: session.display, person: session.person ?? null,
+    display: session.display,
     thresholds: study.blocks.map((_, block) => thresholdOf(answers, block)), answers};
 }
 

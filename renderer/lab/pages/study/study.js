@@ -1,11 +1,6 @@
 "use strict";
 // Leads through the screens: welcome, check of the display, the task, a pause, the end.
 
-const view = isStaircase
-  ? {make: makeStaircaseView, show: showStaircase, layOut: layOutStaircase}
-  : {make: makeAdjustView, show: showAdjust, layOut: layOutAdjust};
-
-const ownText = texts.own || "";
 let sessions = store.load();
 let session = null;     // the one under way
 let lastEvent = 0;      // when the last answer was given, or the task went on
@@ -20,7 +15,7 @@ function addEvent(...event) {
   lastEvent = now;
   keep();
   if (screenName !== "task") return true;
-  if (replay(session).round !== round) showRound();
+  if (replay(session).round !== round) showScreen("round");
   else if (now - begunWork > timing.breakAfter) pause("break");
   return true;
 }
@@ -31,7 +26,7 @@ function undo() {
   delete session.finished;
   lastEvent = performance.now();
   if (screenName !== "task") showScreen("task");
-  say("said.undo");
+  say("the last answer was taken back");
   keep();
 }
 
@@ -43,58 +38,45 @@ function keep() {
   byId("storage").hidden = store.works;
   byId("undo").disabled = !session.events.length;
   if (state.finished) finish();
-  else view.show(state);
-}
-
-function showRound() {
-  const {isDown} = replay(session);
-  putText(byId("round-title"), isDown ? "round.down" : "round");
-  putTexts(byId("round-text"), isDown ? "round.down.text" : "round.text");
-  showScreen("round");
+  else showAdjust(state);
 }
 
 // Only where both pictures can be seen as a whole.
 function goOn() {
   if (!arrangement()) { pause("window"); return; }
   showScreen("task");
-  view.layOut();
+  layOutAdjust();
   lastEvent = begunWork = performance.now();
-  if (!isStaircase) flicker(false);
+  flicker(false);
   keep();
 }
 
 // Pauses, for a break or because the "window" has become too small, or for no reason.
 function pause(reason) {
   store.save(sessions);
-  putText(byId("pause-title"), reason === "break" ? "pause.break" : "pause");
+  byId("pause-title").textContent = reason === "break" ? "Time for a break" : "A pause";
   byId("pause-why").hidden = !reason;
   byId("pause-why").classList.toggle("warning", reason === "window");
   byId("full-pause").hidden = reason !== "window";
-  if (reason === "break") putText(byId("pause-why"), "pause.why");
-  if (reason === "window") putText(byId("pause-why"), "window.small", {...windowSize(), needed: neededText()});
-  putText(byId("pause-kept"), "pause.kept", {name: session.observer});
+  if (reason === "break") byId("pause-why").textContent = "You have looked for some minutes: look out of a window for a while, as tired eyes see less noise.";
+  if (reason === "window") byId("pause-why").textContent = tooSmallText();
+  byId("pause-kept").textContent = `Your answers, ${session.observer}, are kept in this browser. You can close the page, and go on another day.`;
   showScreen("pause");
 }
 
 function finish() {
-  putText(byId("end-title"), "end", {name: session.observer});
+  byId("end-title").textContent = "Thank you, " + session.observer;
   showScreen("end");
 }
 
 const toggleFullScreen = () => document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
 
-// Whoever comes reads the researcher's text first.
-function begin() {
-  session = null;
-  if (ownText) showScreen("own");
-  else welcome();
-}
-
 function welcome() {
+  session = null;
   byId("known").replaceChildren(...sessions.map(s => make("li", {},
     make("button", {type: "button", click: () => { session = s; s.finished ? finish() : goOn(); }},
-      textOf(s.finished ? "known.finished" : "known.begun", {name: s.observer})),
-    " " + textOf("known.when", {when: new Date(s.started).toLocaleString(texts.language), count: s.events.length}))));
+      (s.finished ? "The answers of " : "Go on as ") + s.observer),
+    ` begun ${new Date(s.started).toLocaleString("en")}, ${s.events.length} answers`)));
   byId("known-part").hidden = !sessions.length;
   byId("name").value = "";
   showScreen("welcome");
@@ -105,7 +87,7 @@ function enterName(event) {
   event.preventDefault();
   const name = byId("name").value.trim();
   const known = sessions.some(s => s.observer === name);
-  byId("name-problem").textContent = known ? textOf("name.taken", {name}) : "";
+  byId("name-problem").textContent = known ? name + " has begun already; choose another name, or go on above." : "";
   byId("name").setAttribute("aria-invalid", known);
   if (known || !name) { byId("name").focus(); return; }
   showZoom();
@@ -118,7 +100,6 @@ function endCheck(event) {
   if (!arrangement()) { showWindow(); return; }
   session = startSession(byId("name").value.trim());
   session.display = displayFacts();
-  session.person = personFacts();
   sessions.push(session);
   startPractice(goOn);
 }
@@ -127,26 +108,18 @@ function taskKeys(event) {
   if (screenName !== "task" || event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === " ") {  // flickers wherever the focus is, and presses no button
     event.preventDefault();
-    if (!isStaircase && !event.repeat) flicker();
-  } else if (isStaircase && (event.key === "ArrowLeft" || event.key === "ArrowRight")) {
-    event.preventDefault();
-    if (!event.repeat) choose(event.key === "ArrowLeft" ? 0 : 1);
+    if (!event.repeat) flicker();
   } else if (event.key === "u" || event.key === "U") undo();
   else if (event.key === "p" || event.key === "P") pause();
 }
 
 function start() {
-  putAllTexts();
-  document.title = textOf("document", {viewpoint: study.viewpoint});
-  for (const element of document.querySelectorAll(".adjust")) element.hidden = isStaircase;
-  for (const element of document.querySelectorAll(".staircase")) element.hidden = !isStaircase;
+  document.title = "Where is noise? \u2013 " + study.viewpoint;
   byId("storage").hidden = store.works;
-  view.make();
+  makeAdjustView();
   makeCheck();
   makePractice();
-  putTexts(byId("time"), "welcome.time", {minutes: guessMinutes()});
-  byId("own-elements").append(...elementsOf(ownText));
-  byId("agree").addEventListener("click", welcome);
+  byId("time").textContent = `Sit as you usually do, in a room without glare. It takes ${guessMinutes()}; there are breaks, and you can pause at any time. Your answers stay in this browser until you save them as a file at the end. Nothing is sent.`;
   byId("name-form").addEventListener("submit", enterName);
   byId("check-form").addEventListener("submit", endCheck);
   byId("undo").addEventListener("click", undo);
@@ -154,17 +127,17 @@ function start() {
   byId("pause-button").addEventListener("click", () => pause());
   for (const id of ["full", "full-pause"]) byId(id).addEventListener("click", toggleFullScreen);
   for (const id of ["go-on", "round-on"]) byId(id).addEventListener("click", goOn);
-  for (const id of ["other", "other-end"]) byId(id).addEventListener("click", begin);
+  for (const id of ["other", "other-end"]) byId(id).addEventListener("click", welcome);
   byId("download").addEventListener("click", () => downloadAnswers(session));
   addEventListener("keydown", taskKeys);
   addEventListener("keyup", e => { if (screenName === "task" && e.key === " ") e.preventDefault(); });
   addEventListener("resize", () => {
     if (screenName !== "task") return;
-    if (arrangement()) view.layOut();
+    if (arrangement()) layOutAdjust();
     else pause("window");
   });
   document.addEventListener("visibilitychange", () => { if (document.hidden && screenName === "task") pause(); });
-  begin();
+  welcome();
 }
 
 start();

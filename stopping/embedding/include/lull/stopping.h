@@ -63,7 +63,7 @@ typedef enum lull_format {
 /* Settings of a stopper; initialise with zeros. */
 typedef struct lull_settings {
     int width, height; /* pixels of the whole picture, 40 to 65,536 */
-    /* The rule: a model by name ("entropy", the default; "noise", "paper") or file ("own.h5"), or
+    /* The rule: a model by name ("entropy", the default; "paper") or file ("own.h5"), or
      * another rule of `lull render --stop` ("entropy:0.64", "lnoise", "fixed:400"). At most one is
      * set; the other is NULL. */
     const char *model, *rule;
@@ -76,13 +76,13 @@ typedef struct lull_settings {
     int block;
     /* Spp between two pictures of a block, if constant; the first picture has as many. 0: any. The
      * default model and the rule `entropy` then check a picture 40 spp after the last checked one;
-     * "noise" and "paper" check at 40, 80, 120, ... spp (at 20, 60, 100, ... for pass = 20). The
+     * "paper" checks at 40, 80, 120, ... spp (at 20, 60, 100, ... for pass = 20). The
      * default model compares a picture with earlier ones at 1 / sqrt(2), 1 / 2, ... of its spp: it
      * votes if spp grow by at most 1.5x per picture, and never if they double (64, 128, 256). */
     int pass;
     int cap;        /* The most spp that the picture can have, if above 10,000; 0: not known. Like
                        `pass`, at most 16,777,216 */
-    double caution; /* Multiplies the noise that "entropy" and "noise" receive, and divides the
+    double caution; /* Multiplies the noise that "entropy" receives, and divides the
                        thresholds of the rules `entropy` and `lnoise` and all limits of peak noise:
                        2 stops later, 0.5 sooner; from 0.01 to 100, 0: 1 */
 } lull_settings;
@@ -104,15 +104,12 @@ typedef struct lull_rect {
 
 /* State of a block. No number is NaN. */
 typedef struct lull_answer {
-    int stop;         /* 1: needs no more samples; final */
-    int checked;      /* 1: the call checked the block; 0: the numbers are older */
-    int spp;          /* of the last picture, or of the one that stopped the block */
-    int next_spp;     /* smallest spp of the next check; 0: none */
-    int votes;        /* consecutive votes to stop */
-    int votes_needed; /* votes that stop the block; 1 for rules without votes */
-    /* Of a stopped block: range of spp intended to contain the human threshold in 80 of 100 cases,
-     * if the model has one; 0: unknown. */
-    int people_low, people_high;
+    int stop;             /* 1: needs no more samples; final */
+    int checked;          /* 1: the call checked the block; 0: the numbers are older */
+    int spp;              /* of the last picture, or of the one that stopped the block */
+    int next_spp;         /* smallest spp of the next check; 0: none */
+    int votes;            /* consecutive votes to stop */
+    int votes_needed;     /* votes that stop the block; 1 for rules without votes */
     double value;         /* value of the rule, */
     double threshold;     /* and its threshold */
     double probability;   /* that an observer sees noise (models); 1 before the first estimate;

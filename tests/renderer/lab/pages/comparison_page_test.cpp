@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "renderer/lab/pages/bench_page.h"
 #include "renderer/lab/pages/comparison_page.h"
 #include "tests/renderer/pages/page_data.h"
 
@@ -101,23 +100,15 @@ TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
     EXPECT_EQ(DataOf(MakeComparisonPage(TwoRows()))["notes"].size(), 0u);
 }
 
-TEST(MakeBenchPage, HasThePoints) {
-    BenchPoint point;
-    point.rule = "fixed";
-    point.setting = "20";
-    point.sampler = "sobol";
-    point.spp = 20;
-    point.figures.psnr = std::numeric_limits<double>::infinity();
-    Provenance provenance;
-    provenance.schedule.cap = 100;
-    const Json data =
-        DataOf(MakeBenchPage("room", provenance, {point}, {"sobol"}, {2, 2, std::vector<float>(12)},
-                             {.pixelsPerDegree = 60}, {"a note"}));
-    EXPECT_EQ(data["bench"]["points"][0]["rule"], "fixed");
-    EXPECT_TRUE(data["bench"]["points"][0]["psnr"].is_null());
-    EXPECT_EQ(data["viewing"]["name"], "100cd,60ppd,250lux");
-    EXPECT_EQ(data["viewing"]["threshold"], kVisibilityThreshold);
-    EXPECT_EQ(data["notes"][0], "a note");
+TEST(ComparisonJson, HasThePointsOfCurves) {
+    ComparisonReport report = TwoRows();
+    report.curvePoints = {{.rule = "fixed", .setting = "20", .spp = 20}};
+    report.curvePoints[0].figures.psnr = std::numeric_limits<double>::infinity();
+    const Json json = ComparisonJson(report), point = json["errorCurves"]["points"][0];
+    EXPECT_EQ(point["rule"], "fixed");
+    EXPECT_EQ(point["setting"], "20");
+    EXPECT_TRUE(point["psnr"].is_null());
+    EXPECT_FALSE(ComparisonJson(TwoRows()).contains("errorCurves"));
 }
 
 }  // namespace

@@ -21,9 +21,8 @@ Study TwoBlocks() {
 TEST(MakeStudyPage, NeedsNothingElseAndAsksForNothing) {
     const std::string page = MakeStudyPage(TwoBlocks(), {});
     for (const char* name :
-         {"study.css", "random.js", "adjust.js", "quest.js", "staircase.js", "session.js",
-          "pictures.js", "adjust_view.js", "staircase_view.js", "practice.js", "texts.js", "fit.js",
-          "screens.js", "check.js", "study.js", "format.js"}) {
+         {"study.css", "random.js", "adjust.js", "session.js", "pictures.js", "adjust_view.js",
+          "practice.js", "fit.js", "screens.js", "check.js", "study.js", "format.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_TRUE(Contains(page, std::string(EmbeddedFile(name)))) << name;
     }
@@ -38,13 +37,10 @@ TEST(MakeStudyPage, NeedsNothingElseAndAsksForNothing) {
 TEST(MakeStudyPage, HoldsWhatPeopleAreToldAndShown) {
     const TemporaryDirectory folder;
     const Study study = TwoBlocks();
-    const std::string page = folder.Write(
-        "study.html",
-        MakeStudyPage(study, {.procedure = StudyProcedure::Staircase, .repeats = 0.5}));
+    const std::string page = folder.Write("study.html", MakeStudyPage(study, {.repeats = 0.5}));
     const Json json = ReadStudyPage(page);
     EXPECT_EQ(json["id"], StudyId(study));
     EXPECT_EQ(json["viewpoint"], "<room>");
-    EXPECT_EQ(json["procedure"], "staircase");
     EXPECT_EQ(json["repeats"], 0.5);
     EXPECT_EQ(json["levels"], (std::vector<int>{20, 40}));
     EXPECT_EQ(json["blocks"][1]["x"], 2);
@@ -55,52 +51,13 @@ TEST(MakeStudyPage, HoldsWhatPeopleAreToldAndShown) {
               "data:image/png;base64," + Base64(EncodePng(DisplayPixels(6, 200), 2, 1)));
 }
 
-TEST(MakeStudyPage, ShowsAnOwnTextAndNoMarkup) {
-    const TemporaryDirectory folder;
-    const StudyTexts texts = ReadStudyTexts(
-        folder.Write("t.md", "# <b>Hello</b>\n</script>\n\n[title]\nWo ist *Rauschen*?\n"));
-    const std::string page = MakeStudyPage(TwoBlocks(), {.texts = texts});
-    EXPECT_TRUE(Contains(page, "\"# \\u003cb>Hello\\u003c/b>\\n\\u003c/script>\""));
-    EXPECT_TRUE(Contains(page, "\"title\":\"Wo ist *Rauschen*?\""));
-    EXPECT_TRUE(Contains(page, "\"begin\":\"Begin\""));  // as it was
-    EXPECT_EQ(ReadStudyPage(folder.Write("s.html", page))["id"], StudyId(TwoBlocks()));
-    EXPECT_TRUE(Contains(MakeStudyPage(TwoBlocks(), {}), "\"own\":\"\""));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyTexts(folder.Write("e.md", "")); }), "e.md: "));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyTexts(folder.File("none")); }), "none': "));
-    const std::string large = folder.Write("large.md", std::string(200000, 'a'));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadStudyTexts(large); }), "200000 bytes"));
-}
-
-TEST(ReadStudyTexts, TakesAllTextsOfThePageAndNamesOthers) {
-    const TemporaryDirectory folder;
-    // What --list-texts prints can be given back.
-    const StudyTexts all = ReadStudyTexts(folder.Write("all.md", DefaultStudyTexts()));
-    EXPECT_GT(all.size(), 80u);
-    EXPECT_EQ(AllStudyTexts(all), AllStudyTexts({}));
-    const auto problemOf = [&](const std::string& text) {
-        return ErrorOf([&] { ReadStudyTexts(folder.Write("t.md", text)); });
-    };
-    EXPECT_TRUE(Contains(problemOf("a\n[titel]\nb"), "t.md:2: [titel] is no text of the page"));
-    EXPECT_TRUE(Contains(problemOf("[title]\na\n[title]\nb"), "t.md:3: [title] comes twice"));
-    EXPECT_TRUE(Contains(problemOf("[title]\n\n"), "[title] is empty"));
-    EXPECT_TRUE(Contains(problemOf("[end]\n{nome}"), "[end] has {nome}"));
-    EXPECT_EQ(problemOf("[end]\nDanke, {name}"), "");
-}
-
-TEST(StaircaseOctaves, FallsWithTheAnswers) {
-    EXPECT_NEAR(StaircaseOctaves(20), 0.58, 1e-9);
-    EXPECT_NEAR(StaircaseOctaves(25), 0.50, 0.01);
-    EXPECT_NEAR(StaircaseOctaves(200), 0.12, 0.03);
-    EXPECT_NEAR(StaircaseOctaves(1), 1.62, 1e-9);
-}
-
 TEST(ReadStudyPage, RefusesOtherPages) {
     const TemporaryDirectory folder;
     const std::string page = MakeStudyPage(TwoBlocks(), {});
     std::string huge = page;  // a width that no int can hold
     huge.insert(huge.find("\"width\":") + 8, "99999999999");
     std::string unnamed = page;
-    unnamed.replace(unnamed.find("\"procedure\""), 11, "\"procedura\"");
+    unnamed.replace(unnamed.find("\"id\":"), 5, "\"di\":");
     for (const std::string& text :
          {std::string(), std::string("<html></html>"), page.substr(0, page.find("\"levels\"")),
           page.substr(0, page.find("pictures-1")), huge, unnamed}) {

@@ -48,7 +48,7 @@ TEST(Rivals, FindTheBestSetting) {
     const Blocks blocks;
     for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
         const std::vector<Rival> rivals = EvaluateRivals(blocks.blocks, chooseBy, 40);
-        ASSERT_EQ(rivals.size(), 6u);
+        ASSERT_EQ(rivals.size(), 5u);
         const Rival& noise = Find(rivals, "lnoise");
         // Three votes take 80 spp more than people, so that the best is a little above 0.5.
         EXPECT_NEAR(std::stod(noise.bestOfAll), 0.51, 0.02);
@@ -87,41 +87,6 @@ TEST(Rivals, TakeTheCheaperOfEqualSettings) {
     EXPECT_EQ(std::stod(cycles.bestOfAll), kCyclesThresholds[2]);
     EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
     EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.blocks[1].human / 2);
-}
-
-TEST(Rivals, ChooseTheMaskAsWell) {
-    // Blocks of different detail, whose people see noise masked with 12 until it is below 1.
-    Blocks blocks;
-    const double lightness = 50;
-    for (size_t i = 0; i < 9; ++i) {
-        const double amplitude = 2 + 0.1 * double(i), detail = 15.0 * double(i % 3);
-        BlockRecording& recording = blocks.recordings[i];
-        SetChannel(&recording, "lightness", [=](int) { return lightness; });
-        SetChannel(&recording, "deviation", [=](int) { return detail; });
-        // The fall since half of the spp is amplitude^2 / spp.
-        SetChannel(&recording, "h100", [=](int spp) { return amplitude * amplitude / spp; });
-        const auto seen = [=](int spp) {
-            const double drop[] = {amplitude / std::sqrt(spp)};
-            const SubBlockLightness picture{.mean = {float(lightness)},
-                                            .deviation = {float(detail)}};
-            return VisibleDrop(drop, picture, spp, {.mask = 12})[0];
-        };
-        int human = 20;
-        while (seen(human) >= 1) human += 20;
-        blocks.blocks[i].human = human;
-    }
-    const auto rivals = EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40);
-    const Rival& masked = Find(rivals, "entropy, mask");
-    EXPECT_TRUE(masked.bestOfAll.ends_with(", 12")) << masked.bestOfAll;
-    for (const ViewpointOutcome& viewpoint : masked.viewpoints) {
-        EXPECT_TRUE(viewpoint.setting.ends_with(", 12")) << viewpoint.setting;
-        EXPECT_NEAR(std::stod(viewpoint.setting), 1, 0.05);
-    }
-    const auto error = [&](const char* rule) {
-        return Score(Find(rivals, rule).viewpoints, {}).absoluteError;
-    };
-    EXPECT_LT(error("entropy, mask"), 150);
-    EXPECT_GT(error("entropy"), 3 * error("entropy, mask"));
 }
 
 TEST(Rivals, NeedTwoViewpoints) {

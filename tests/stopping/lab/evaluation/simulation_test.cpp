@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "stopping/network/model_file.h"
-#include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/lab/recordings/channel_recordings.h"
 #include "tests/stopping/network/random_network.h"
@@ -73,7 +72,7 @@ TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
                {.k = 2,
                 .n = 40,
                 .features = {Feature::VisibleDrop},
-                .pools = {{1}},
+                .takesMean = true,
                 .voteSpacing = 40,
                 .spacing = Spacing::Geometric,
                 .ratio = 1.5});
@@ -103,7 +102,7 @@ TEST(Simulation, VotesOnRecordedPasses) {
     SetChannel(&recording, "masked_noise",
                [](int spp) { return spp < 380 || spp == 420 ? 0.6 : 0.4; });
     const LabelledBlock block = MakeBlock(recording, 460);
-    const ErrorSeries series = MakeErrorSeries(block, LightnessNoiseRule(0.5));
+    const ErrorSeries series = MakeErrorSeries(block, ParseRule("lnoise:0.5"));
     EXPECT_EQ(series.needed, 3);
     EXPECT_EQ(FirstBelow(series, 0.7), 2);
     EXPECT_EQ(FirstBelow(series, 0.3), -1);
@@ -125,9 +124,9 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
     BlockRecording recording = EmptyRecording(700);
     SetChannel(&recording, "dammertz", [](int) { return 0.1; });
     const LabelledBlock block = MakeBlock(recording);
-    const ErrorSeries series = MakeErrorSeries(block, DammertzRule(0.05));
+    const ErrorSeries series = MakeErrorSeries(block, ParseRule("dammertz:0.05"));
     for (const RuleOutcome& outcome :
-         {SimulateRule(block, DammertzRule(0.05)), SimulateErrorRule(block, series, 0.05),
+         {SimulateRule(block, ParseRule("dammertz:0.05")), SimulateErrorRule(block, series, 0.05),
           SimulateCycles(block, 0.02)}) {
         EXPECT_EQ(outcome.stop, 700);
         EXPECT_TRUE(outcome.open);
@@ -140,7 +139,7 @@ TEST(Simulation, SaysWhereARecordingEndsTooEarly) {
 
     BlockRecording whole = EmptyRecording(10000);
     SetChannel(&whole, "dammertz", [](int) { return 0.1; });
-    const RuleOutcome never = SimulateRule(MakeBlock(whole), DammertzRule(0.05));
+    const RuleOutcome never = SimulateRule(MakeBlock(whole), ParseRule("dammertz:0.05"));
     EXPECT_EQ(never.stop, 10000);
     EXPECT_FALSE(never.open);
 }
@@ -157,11 +156,13 @@ TEST(Simulation, LimitsPeakNoise) {
     SetChannel(&recording, "masked_noise", [](int) { return 1e-3; });
     SetChannel(&recording, "half_noise",
                [](int spp) { return 2e3 * 100.0 / spp / std::pow(3, 0.25); });
-    EXPECT_EQ(SimulateRule(MakeBlock(recording), LightnessNoiseRule(0.65)).stop, 60);
+    Rule unlimited = rule;
+    unlimited.peak = {};
+    EXPECT_EQ(SimulateRule(MakeBlock(recording), unlimited).stop, 60);
     EXPECT_EQ(SimulateRule(MakeBlock(recording), rule).stop, 120);
     // Sweeps of thresholds have the numbers by themselves.
     EXPECT_EQ(MakeErrorSeries(MakeBlock(recording), rule).errors[0],
-              MakeErrorSeries(MakeBlock(recording), LightnessNoiseRule(0.65)).errors[0]);
+              MakeErrorSeries(MakeBlock(recording), unlimited).errors[0]);
 }
 
 TEST(Simulation, LooksWhenTheRuleDoes) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "stopping/network/human_range.h"
 #include "tests/stopping/lab/recordings/channel_recordings.h"
 
 namespace lull::two_figures_test {

@@ -17,8 +17,7 @@ struct ExampleAnswers {
     std::vector<int> starts = {};            // where the first blocks began; empty: not said
     int checks = 4, failed = 0, clicks = 3;
     double seconds = 12.5;
-    std::string display = R"({"gamma":2.2,"distanceCm":60})", person = "null";
-    std::string more = {};  // further entries of the answers, after a comma
+    std::string display = R"({"gamma":2.2,"distanceCm":60})";
 
     std::string Text() const {
         static const int spp[] = {20, 40, 80, 160, 320};
@@ -47,8 +46,8 @@ struct ExampleAnswers {
              << levels.size() << R"(,"levels":[20,40,80,160,320]},"observer":")" << observer
              << R"(","session":")" << session << R"(","seed":1,"started":")" << started
              << R"(","finished":"2026-01-01T01:00:00.000Z","seconds":)" << seconds
-             << R"(,"display":)" << display << R"(,"person":)" << person << R"(,"thresholds":[)"
-             << thresholds.str() << R"(],"answers":[)" << answers.str() << more << "]}";
+             << R"(,"display":)" << display << R"(,"thresholds":[)" << thresholds.str()
+             << R"(],"answers":[)" << answers.str() << "]}";
         return text.str();
     }
 };

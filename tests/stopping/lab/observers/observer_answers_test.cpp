@@ -45,14 +45,6 @@ TEST(ParseAnswers, ReadsWhatThePageSaves) {
     EXPECT_TRUE(ParseAnswers(ExampleAnswers{.clicks = 0}.Text()).isIdle);
 }
 
-TEST(ParseAnswers, ReadsStaircases) {
-    std::string text = With(ExampleAnswers{.levels = {1}}.Text(), "adjust", "staircase");
-    text = With(With(text, "\"level\":1", "\"spp\":47.5"), "[40]", "[47.5]");
-    EXPECT_EQ(ParseAnswers(text).thresholds, std::vector<double>{47.5});
-    ExpectProblem(With(text, "\"spp\":47.5", "\"spp\":10"), "'spp' is 10");
-    ExpectProblem(With(text, "\"spp\":47.5", "\"spp\":null"), "'spp' is null");
-}
-
 TEST(ParseAnswers, NamesWhatIsDamagedOrForeign) {
     const std::string good = ExampleAnswers{.repeats = {1}}.Text();
     for (size_t size = 0; size < good.size(); size += 7)
@@ -65,7 +57,7 @@ TEST(ParseAnswers, NamesWhatIsDamagedOrForeign) {
     ExpectProblem(With(good, "\"ada\"", "\"\""), "'observer'");
     ExpectProblem(With(good, "\"ada\"", "\"a\\nb\""), "'observer'");
     ExpectProblem(With(good, "\"room\"", "\"a;b\""), "; or /");
-    ExpectProblem(With(good, "adjust", "guess"), "unknown procedure");
+    ExpectProblem(With(good, "adjust", "staircase"), "unknown procedure 'staircase'");
     ExpectProblem(With(good, "20,40,80", "20,40,40"), "do not increase");
     ExpectProblem(With(good, "20,40,80", "20,1e300,80"), "'levels'");
     ExpectProblem(With(good, "\"blocks\":4", "\"blocks\":5"), "4 thresholds for 5 blocks");

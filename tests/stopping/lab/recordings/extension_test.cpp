@@ -8,7 +8,6 @@
 #include <string>
 
 #include "stopping/lab/evaluation/simulation.h"
-#include "stopping/network/human_range.h"
 #include "tests/stopping/lab/recordings/channel_recordings.h"
 
 namespace lull::extension_test {

@@ -122,13 +122,11 @@ TEST(PictureRecords, TrainModelsThatLookAtAnySpp) {
     const LabelledBlock block = Labelled(recording);
     const ModelSettings geometric{.k = 2,
                                   .features = {Feature::VisibleDrop},
-                                  .pools = {{1}},
+                                  .takesMean = true,
                                   .spacing = Spacing::Geometric,
                                   .ratio = 1.4142};
     EXPECT_GT(MakeSamples(std::span(&block, 1), geometric).Count(), 5u);
     EXPECT_THROW(MakeSamples(std::span(&block, 1), ModelSettings{}), std::invalid_argument);
-    EXPECT_EQ(MissingFeatures(recording, {.features = {Feature::H, Feature::DetailMaskedNoise}}),
-              std::vector<Feature>{Feature::DetailMaskedNoise});
 }
 
 TEST(TestBlocks, AreThoseThatAreNotListed) {

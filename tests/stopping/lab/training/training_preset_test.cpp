@@ -14,9 +14,8 @@ void ExpectTrainedBy(const TrainingPreset& preset, const Model& model) {
     EXPECT_EQ(a.n, b.n);
     EXPECT_EQ(a.m, b.m);
     EXPECT_EQ(a.features, b.features);
-    EXPECT_EQ(a.pools, b.pools);
+    EXPECT_EQ(a.takesMean, b.takesMean);
     EXPECT_EQ(a.snorm, b.snorm);
-    EXPECT_EQ(a.bnorm, b.bnorm);
     EXPECT_EQ(a.votes, b.votes);
     EXPECT_EQ(a.spacing, b.spacing);
     EXPECT_EQ(a.ratio, b.ratio);

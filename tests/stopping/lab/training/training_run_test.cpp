@@ -51,10 +51,7 @@ TEST(TrainAll, ScoresEachNetworkByWhatItHasNotSeen) {
     EXPECT_EQ(result->rules[0].viewpoints.size(), 2u);
     EXPECT_EQ(result->rules[0].viewpoints[1].name, "barn");
     EXPECT_EQ(result->rules[2].name, "blocks trained on");
-    EXPECT_EQ(result->logRatios.size(), size_t(kLogRatios));
-    EXPECT_NE(CertaintyText(*result), "");
     const auto record = MakeRecord(plan, splits.back(), *result, {});
-    EXPECT_EQ(record.at("certainty"), CertaintyText(*result));
     for (const char* figure : {"at least", "extended"})
         EXPECT_TRUE(record.at("judged on blocks trained on, " + std::string(figure))
                         .starts_with("critical error at 2 %: "));
@@ -65,7 +62,6 @@ TEST(TrainAll, ScoresEachNetworkByWhatItHasNotSeen) {
     const auto single = TrainAll(plan, MakeSplits(plan, data.Blocks()), &none, Watcher().Events());
     ASSERT_EQ(single->rules.size(), 2u);
     EXPECT_EQ(single->rules[0].name, "blocks left out");
-    EXPECT_EQ(CertaintyText(*single), "");
     for (size_t i = 0; i < 4; ++i)
         EXPECT_EQ(single->rules[0].viewpoints[0].blocks[i].outcome.stop,
                   result->rules[0].viewpoints[0].blocks[i].outcome.stop);
@@ -94,7 +90,6 @@ TEST(TrainAll, GoesOnFromItsCheckpoint) {
         ASSERT_TRUE(result);
         EXPECT_EQ((1 << 30) - rest.left, steps - before);
         EXPECT_EQ(result->network.lstm[0].kernel, expected->network.lstm[0].kernel);
-        EXPECT_EQ(result->logRatios, expected->logRatios);
         again.Remove();
         EXPECT_FALSE(std::filesystem::exists(file.path));
     }

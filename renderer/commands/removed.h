@@ -1,0 +1,26 @@
+// Commands and options of earlier versions, each refused by name with what to use instead.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace lull {
+
+struct Removed {
+    std::string_view command, option, instead;  // no option: the command itself
+};
+
+inline constexpr std::array kRemoved = {
+    Removed{"bench", "", "use lull compare --curves"},
+    Removed{"evaluate", "--figure", "draw from the CSV file of --curves"},
+    Removed{"study", "--answers", "there is one procedure, adjustment"},
+    Removed{"study", "--descending", "blocks are asked from below; --repeats asks twice"},
+    Removed{"study", "--list-texts", "edit the texts in the page"},
+    Removed{"study", "--procedure", "there is one procedure, adjustment"},
+    Removed{"study", "--questions", "ask observers yourself"},
+    Removed{"study", "--text", "edit the texts in the page"},
+    Removed{"train", "--bnorm", "use --snorm, as the paper"},
+    Removed{"train", "--noisy-weight", "use lull render --caution"},
+};
+
+}  // namespace lull
