@@ -1,4 +1,4 @@
-#include "stopping/python/arrays.h"
+#include "renderer/python/arrays.h"
 
 namespace lull {
 
@@ -13,6 +13,19 @@ std::string ShapeOf(const py::array& array) {
     for (py::ssize_t i = 0; i < array.ndim(); ++i)
         text += (i ? " x " : "") + std::to_string(array.shape(i));
     return text;
+}
+
+std::string TypeOf(const py::array& array) { return py::str(array.dtype()).cast<std::string>(); }
+
+void CheckShape(const py::array& image, const std::string& name, py::ssize_t height,
+                py::ssize_t width, int channels) {
+    const bool isFlat = channels == 1 && image.ndim() == 2;
+    if ((isFlat || image.ndim() == 3) && image.shape(0) == height && image.shape(1) == width &&
+        (isFlat || image.shape(2) >= channels))
+        return;
+    throw py::value_error(name + " has the shape " + ShapeOf(image) + "; needed are " +
+                          std::to_string(height) + " x " + std::to_string(width) + " x " +
+                          std::to_string(channels) + ": rows, columns, channels");
 }
 
 py::array FirstChannels(const py::array& pixels, int count) {

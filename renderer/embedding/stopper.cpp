@@ -1,4 +1,4 @@
-#include "stopping/embedding/stopper.h"
+#include "renderer/embedding/stopper.h"
 
 #include <tbb/task_arena.h>
 #include <zlib.h>
@@ -10,10 +10,11 @@
 #include <string>
 #include <utility>
 
+#include "renderer/embedding/model_folder.h"
+#include "renderer/embedding/picture.h"
+#include "renderer/embedding/require.h"
 #include "stopping/base/parallel.h"
 #include "stopping/base/state.h"
-#include "stopping/embedding/model_folder.h"
-#include "stopping/embedding/picture.h"
 #include "stopping/network/human_range.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
@@ -23,14 +24,9 @@ namespace lull {
 namespace {
 
 constexpr uint32_t kStopperTag = 0x32504f53;  // "SOP2"
-constexpr int kLargestSide = 1 << 16;         // pixels
 constexpr int kMostSpp = 1 << 24;
 constexpr double kLeastCaution = 0.01, kMostCaution = 100;  // as those of `lull render`
 constexpr int kBlockSide = 200;                             // of the blocks that people have judged
-
-void Require(bool holds, const std::string& message) {
-    if (!holds) throw std::invalid_argument(message);
-}
 
 void CheckSettings(const lull_settings& s) {
     const auto isSide = [](int pixels) {

@@ -1,4 +1,4 @@
-#include "stopping/embedding/model_folder.h"
+#include "renderer/embedding/model_folder.h"
 
 #include <dlfcn.h>
 

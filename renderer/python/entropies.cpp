@@ -1,6 +1,6 @@
-#include "stopping/python/entropies.h"
+#include "renderer/python/entropies.h"
 
-#include <lull/stopping.h>
+#include <lull/lull.h>
 #include <pybind11/numpy.h>
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "stopping/python/check.h"
-#include "stopping/python/picture.h"
+#include "renderer/python/check.h"
+#include "renderer/python/picture.h"
 
 namespace py = pybind11;
 

@@ -1,4 +1,4 @@
-#include "stopping/embedding/picture.h"
+#include "renderer/embedding/picture.h"
 
 #include <cmath>
 #include <cstddef>
@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "renderer/embedding/require.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {
@@ -95,7 +96,6 @@ std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
 }
 
 std::vector<double> LightnessOf(const lull_picture& picture) {
-    constexpr int kLargestSide = 1 << 16;
     const auto isSide = [](int pixels) { return pixels > 0 && pixels <= kLargestSide; };
     if (!isSide(picture.width) || !isSide(picture.height))
         throw std::invalid_argument("a picture of " + std::to_string(picture.width) + "x" +

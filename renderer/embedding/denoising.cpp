@@ -1,35 +1,20 @@
-// The function of lull/denoising.h: no exception leaves it, and every pointer is looked at first.
-#include <lull/denoising.h>
+#include "renderer/embedding/denoising.h"
 
-#include <array>
+#include <algorithm>
 #include <cstring>
-#include <new>
-#include <stdexcept>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "renderer/denoise/denoiser.h"
 #include "renderer/denoise/dependence.h"
+#include "renderer/embedding/require.h"
 #include "stopping/signals/picture_values.h"
 
 namespace lull {
 
 namespace {
-
-constexpr int kLargestSide = 1 << 16;
-
-// Of fixed length, so that running out of memory can be said too.
-thread_local std::array<char, 512> lastError = {};
-
-const char* Fail(const char* message) {
-    const size_t length = std::min(std::strlen(message), lastError.size() - 1);
-    std::memcpy(lastError.data(), message, length);
-    lastError[length] = 0;
-    return lastError.data();
-}
-
-void Require(bool condition, const std::string& message) {
-    if (!condition) throw std::invalid_argument(message);
-}
 
 // Copies the rows of an image from y0 on to planes from number `first` on. Values need not be
 // aligned.
@@ -136,20 +121,10 @@ void DenoiseInto(NoisyPicture picture, lull_denoised_picture* clean) {
 
 }  // namespace
 
-}  // namespace lull
-
-extern "C" const char* lull_denoise(const lull_noisy_picture* noisy, lull_denoised_picture* clean) {
-    try {
-        if (!noisy || !clean) return lull::Fail("a null pointer instead of a picture");
-        lull::NoisyPicture picture = lull::Read(*noisy);
-        lull::CheckOutput(*noisy, *clean);
-        lull::DenoiseInto(std::move(picture), clean);
-        return nullptr;
-    } catch (const std::bad_alloc&) {
-        return lull::Fail("out of memory");
-    } catch (const std::exception& e) {
-        return lull::Fail(e.what());
-    } catch (...) {
-        return lull::Fail("something unknown went wrong");
-    }
+void Denoise(const lull_noisy_picture& noisy, lull_denoised_picture* clean) {
+    NoisyPicture picture = Read(noisy);
+    CheckOutput(noisy, *clean);
+    DenoiseInto(std::move(picture), clean);
 }
+
+}  // namespace lull

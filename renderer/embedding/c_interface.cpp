@@ -1,4 +1,4 @@
-// The functions of lull/stopping.h: no exception leaves them, and every pointer is looked at first.
+// The functions of lull/lull.h: no exception leaves them, and every pointer is looked at first.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -7,8 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "stopping/embedding/picture.h"
-#include "stopping/embedding/stopper.h"
+#include "renderer/embedding/denoising.h"
+#include "renderer/embedding/picture.h"
+#include "renderer/embedding/stopper.h"
 #include "stopping/signals/attributes26.h"
 #include "stopping/signals/svd_entropy.h"
 
@@ -167,6 +168,10 @@ lull_status lull_attributes26(const lull_picture* picture, double* attributes) {
         std::ranges::copy(lull::ComputeAttributes(lightness, picture->width, picture->height),
                           attributes);
     });
+}
+
+lull_status lull_denoise(const lull_noisy_picture* noisy, lull_denoised_picture* clean) {
+    return Guarded([&] { lull::Denoise(*NotNull(noisy, "noisy"), NotNull(clean, "clean")); });
 }
 
 const char* lull_error_message(void) { return lull::lastError.data(); }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lull/stopping.h"
+#include "lull/lull.h"
 #include "stopping/signals/picture_values.h"
 
 namespace lull {

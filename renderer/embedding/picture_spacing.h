@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "lull/stopping.h"
+#include "lull/lull.h"
 
 namespace lull {
 

@@ -1,8 +1,8 @@
-#include "stopping/python/picture.h"
+#include "renderer/python/picture.h"
 
 #include <cstdlib>
 
-#include "stopping/python/arrays.h"
+#include "renderer/python/arrays.h"
 
 namespace lull {
 
@@ -11,18 +11,14 @@ namespace py = pybind11;
 namespace {
 
 py::array ToPixels(const py::array& array, const std::string& name, int width, int height) {
-    if (array.ndim() != 3 || array.shape(0) != height || array.shape(1) != width ||
-        array.shape(2) < 3)
-        throw py::value_error(name + " has the shape " + ShapeOf(array) + "; needed are " +
-                              std::to_string(height) + " x " + std::to_string(width) +
-                              " x 3: rows, columns, R G B");
+    CheckShape(array, name, height, width, 3);
     if (array.shape(2) > 3)
         Warn(name + " has " + std::to_string(array.shape(2)) +
              " channels, of which R, G and B are used without alpha; give " + name +
              "[..., :3] of the image over its background");
     if (py::isinstance<py::array_t<uint8_t>>(array)) return array;
     if (array.dtype().kind() != 'f')
-        throw py::value_error(name + " has the type " + py::str(array.dtype()).cast<std::string>() +
+        throw py::value_error(name + " has the type " + TypeOf(array) +
                               "; float32 (linear) or uint8 (sRGB) is needed");
     WarnOfColours(FirstChannels(array, 3), name);
     return py::isinstance<py::array_t<float>>(array) ? array : py::array_t<float>(array);

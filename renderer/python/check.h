@@ -1,7 +1,7 @@
 // Converts errors of the C interface to exceptions.
 #pragma once
 
-#include <lull/stopping.h>
+#include <lull/lull.h>
 #include <pybind11/pybind11.h>
 
 namespace lull {

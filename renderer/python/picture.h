@@ -1,7 +1,7 @@
 // Shows numpy arrays to the C interface.
 #pragma once
 
-#include <lull/stopping.h>
+#include <lull/lull.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 

@@ -1,4 +1,4 @@
-// Decides on all blocks of a picture, behind the C interface; lull/stopping.h describes the
+// Decides on all blocks of a picture, behind the C interface; lull/lull.h describes the
 // functions. Can be used by several threads at once.
 #pragma once
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "lull/stopping.h"
-#include "stopping/embedding/picture_spacing.h"
+#include "lull/lull.h"
+#include "renderer/embedding/picture_spacing.h"
 #include "stopping/rules/block_grid.h"
 #include "stopping/rules/rule.h"
 #include "stopping/signals/picture_values.h"
