@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <numeric>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/say.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/removed.h"
 #include "renderer/commands/talk.h"
 #include "renderer/mpi/job.h"
 
@@ -109,6 +111,21 @@ std::string NearestName(const std::string& word, const std::vector<std::string>&
     return isNear ? *nearest : "";
 }
 
+// Returns what to use instead of a command or an option that there is no longer; "" where all
+// are known, or not known at all.
+std::string ProblemOfRemoved(std::span<const char* const> words) {
+    for (const std::string_view word : words.subspan(1))
+        for (const Removed& removed : kRemoved)
+            if ((removed.command.empty() || words[1] == removed.command) &&
+                (removed.option.empty() || word.substr(0, word.find('=')) == removed.option))
+                return fmt::format("there is no {} any more; {}",
+                                   removed.option.empty()
+                                       ? fmt::format("command '{}'", removed.command)
+                                       : fmt::format("option {}", removed.option),
+                                   removed.instead);
+    return "";
+}
+
 // Returns which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
@@ -171,9 +188,9 @@ ExitCode Main(MpiJob* job, int argc, char** argv) {
     study::AddCommand(app, &command);
     for (CLI::App* each : app.get_subcommands({})) SetHelp(each);
     std::vector<const char*> words(argv, argv + argc);
-    if (const std::string problem = argc > 1 ? ProblemOfCommand(app, words[1]) : "";
-        !problem.empty())
-        return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
+    std::string problem = argc > 1 ? ProblemOfRemoved(words) : "";
+    if (argc > 1 && problem.empty()) problem = ProblemOfCommand(app, words[1]);
+    if (!problem.empty()) return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
     try {
         app.parse(argc, words.data());
     } catch (const CLI::ParseError& e) {
