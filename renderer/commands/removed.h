@@ -12,6 +12,9 @@ struct Removed {
 };
 
 inline constexpr std::array kRemoved = {
+    Removed{"selftest", "--long", "tests/hard_cases has the nightly run: LULL_LONG=1"},
+    Removed{"selftest", "--only", "the command has three checks"},
+    Removed{"selftest", "--seed", "the command has three checks, with one seed"},
     Removed{"", "--filtering", "images are filtered bilinearly; take more samples against moire"},
 };
 
