@@ -1,13 +1,12 @@
 #!/usr/bin/python3
-"""Renders scenes with lull and with Cycles, and says by how much they differ and who is faster.
+"""Renders glTF files with lull and with Cycles, and says by how much they differ and who is faster.
 
     apt-get install blender python3-numpy python3-openimageio
-    cmake --build --preset release --target lull pbrt_to_gltf
-    tests/side_by_side/side_by_side.py build/release OUT SCENE.pbrt|MODEL.glb...
+    cmake --build --preset release --target lull
+    tests/side_by_side/side_by_side.py build/release OUT MODEL.glb...
 
-Both render the same glTF file, which is made from a pbrt-v3 scene, and the same environment: same
-camera, light, bounces and filter, without denoising, clamping, thresholds of light or a limit of
-caustics. Images and measurements stay in the folder OUT; what is there already is not rendered
+Both render the same file and the same environment: same camera, light, bounces and filter, without
+denoising, clamping, thresholds of light or a limit of caustics. Images and measurements stay in the folder OUT; what is there already is not rendered
 again, so that --spp, --reference and the list of scenes can grow. Not part of CI.
 
 Seconds are those of processors, without loading, which is what the shortest render takes less its
@@ -34,21 +33,14 @@ class Scene:
     """One scene: its files, and for each render the CPU time."""
 
     def __init__(self, path, o):
-        self.path, self.o = os.path.abspath(path), o
-        parts = self.path.split(os.sep)
+        self.model, self.o = os.path.abspath(path), o
+        parts = self.model.split(os.sep)
         stem = os.path.splitext(parts[-1])[0]
         self.name = parts[-2] if stem == 'scene' else stem
         self.folder = os.path.join(os.path.abspath(o.out), self.name)
         os.makedirs(self.folder, exist_ok=True)
         self.seconds = Seconds(os.path.join(self.folder, 'seconds.json'))
-        self.model, self.environment = self.path, o.environment and os.path.abspath(o.environment)
-        if path.endswith('.pbrt'):
-            self.model = os.path.join(self.folder, self.name + '.glb')
-            sky = os.path.join(self.folder, 'environment.exr')
-            if not os.path.exists(self.model):
-                subprocess.run([os.path.join(o.build, 'tests/pbrt_to_gltf'), path,
-                                self.model, sky], check=True, stdout=subprocess.DEVNULL)
-            self.environment = sky if os.path.exists(sky) else None
+        self.environment = o.environment and os.path.abspath(o.environment)
 
     def file(self, name):
         return os.path.join(self.folder, name + '.exr')
@@ -216,7 +208,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('build', help='the build folder')
     parser.add_argument('out', help='folder for images and measurements')
-    parser.add_argument('scenes', nargs='+', help='pbrt-v3 scenes or .glb models')
+    parser.add_argument('scenes', nargs='+', help='.glb models')
     parser.add_argument('--size', default='160x160', help='of the images (160x160)')
     parser.add_argument('--block', type=int, default=40, help="pixels a side of lull's blocks (40)")
     parser.add_argument('--spp', default='16,64,256', help='samples per pixel (16,64,256)')
