@@ -1,4 +1,4 @@
-#include "renderer/python/denoising.h"
+#include "renderer/python/bindings.h"
 
 #include <lull/lull.h>
 #include <pybind11/numpy.h>

@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "renderer/python/arrays.h"
+#include "renderer/python/bindings.h"
 #include "renderer/python/check.h"
-#include "renderer/python/denoising.h"
-#include "renderer/python/entropies.h"
 #include "renderer/python/picture.h"
 
 namespace py = pybind11;
