@@ -10,10 +10,9 @@ file(GLOB models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/stopping/models/*.h5)
 install(TARGETS lull DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT python)
 install(TARGETS lull_formats DESTINATION ${CMAKE_INSTALL_LIBDIR}/lull COMPONENT python)
 install(FILES ${models} DESTINATION ${lull_data}/models COMPONENT python)
-install(TARGETS lull_stopping lull_denoising EXPORT lullTargets
+install(TARGETS lull_embedding EXPORT lullTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT python)
-install(FILES stopping/embedding/include/lull/stopping.h renderer/denoise/embedding/include/lull/denoising.h
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lull)
+install(FILES renderer/embedding/include/lull/lull.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lull)
 install(EXPORT lullTargets NAMESPACE lull:: DESTINATION ${lull_cmake})
 set(LULL_INSTALLED_MODELS ${lull_data}/models)
 configure_package_config_file(cmake/lullConfig.cmake.in ${PROJECT_BINARY_DIR}/lullConfig.cmake
@@ -22,13 +21,10 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/lullConfig.cmake ${PROJECT_BINARY_DIR}/lullConfigVersion.cmake
         DESTINATION ${lull_cmake})
-# The same for who uses pkg-config: `pkg-config --cflags --libs lull-stopping`.
+# The same for who uses pkg-config: `pkg-config --cflags --libs lull`.
 file(RELATIVE_PATH prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-foreach(library stopping denoising)
-  configure_file(cmake/lull.pc.in ${PROJECT_BINARY_DIR}/lull-${library}.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/lull-${library}.pc
-          DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-endforeach()
+configure_file(cmake/lull.pc.in ${PROJECT_BINARY_DIR}/lull.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/lull.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(FILES renderer/pages/uPlot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
         RENAME copyright.uPlot) # it is part of the program
@@ -64,8 +60,7 @@ if(TARGET lull_python_stubs)
             ${LULL_PYTHON_DIR} ${PROJECT_VERSION} "${LULL_ARCH}" ${wheel}
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${wheel}/tree
     VERBATIM)
-  add_dependencies(wheel lull lull_formats lull_stopping lull_denoising lull_python
-                   lull_denoising_python lull_python_files lull_python_stubs)
+  add_dependencies(wheel lull lull_formats lull_embedding lull_python lull_python_files lull_python_stubs)
 endif()
 
 # `cmake --build --preset release --target package` makes a Debian package of all that.
@@ -75,8 +70,8 @@ set(CPACK_PACKAGE_CONTACT "The authors of lull <lull@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "path tracer that knows when to stop")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
     "A path tracer for pbrt-v3 and glTF scenes that stops each part of a picture when people would
-see no more noise there; the library lull::stopping, for C, C++ and Python, tells other renderers
-when to, and lull::denoising takes the noise out of their pictures.")
+see no more noise there; its library, for C, C++ and Python, tells other renderers when to, and takes
+the noise out of their pictures.")
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -23,7 +23,6 @@ endfunction()
 # (tests/rooms_test.cpp checks that).
 function(lull_room target folder)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "/embedding/") # libraries of their own
   add_library(${target} STATIC ${sources})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
   lull_room_headers(${target} ${path})

@@ -120,8 +120,7 @@ def included(path):
     system, ours = set(), set()
     for name in INCLUDE.findall(text(path)):
         plain = name[1:-1]
-        candidates = (ROOT / plain, path.parent / plain, ROOT / "stopping/embedding/include" / plain,
-                      ROOT / "renderer/denoise/embedding/include" / plain)
+        candidates = (ROOT / plain, path.parent / plain, ROOT / "renderer/embedding/include" / plain)
         found = next((c for c in candidates if c.is_file()), None)
         if found:
             ours.add(found.resolve())

@@ -122,7 +122,7 @@ def manual(version, main, commands):
         if page.notes:
             lines += [".PP", ".nf", roff(page.notes), ".fi"]
     lines += [".SH ENVIRONMENT", ".TP", "\\fBLULL_MODELS\\fR",
-              "The folder of installed models, for programs that use the library (lull/stopping.h).",
+              "The folder of installed models, for programs that use the library (lull/lull.h).",
               ".SH EXIT STATUS", "0 success, 1 input or environment error, 2 usage error, "
               "130 interrupted."]
     return "\n".join(lines) + "\n"

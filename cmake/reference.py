@@ -14,10 +14,8 @@ import sys
 import manual
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-HEADERS = ("stopping/embedding/include/lull/stopping.h", "renderer/denoise/embedding/include/lull/denoising.h")
-MODULES = {"lull": ("renderer/python/lull/commands.py", "renderer/python/lull/program.py",
-                    "stopping/python/_stopping.pyi"),
-           "lull_denoising": ("renderer/python/lull_denoising.pyi",)}
+HEADER = "renderer/embedding/include/lull/lull.h"
+MODULE = ("renderer/python/lull/commands.py", "renderer/python/lull/program.py", "renderer/python/_lull.pyi")
 PUBLIC = {"render", "compare", "evaluate", "Rendering", "Comparison", "Error"}  # of the .py files
 
 
@@ -84,13 +82,9 @@ def main():
         raise SystemExit(__doc__)
     lull, file = sys.argv[1:3]
     parts = ["# Reference\n", "Written by `cmake/reference.py`, from the help, headers and docstrings.\n", "## Commands\n",
-             *commands(lull)]
-    for header in HEADERS:
-        parts += [f"## C: `lull/{pathlib.Path(header).name}`\n", *c_interface(header)]
-    for module, files in MODULES.items():
-        parts.append(f"## Python: `{module}`\n")
-        for source in files:
-            parts += python_interface(source)
+             *commands(lull), "## C: `lull/lull.h`\n", *c_interface(HEADER), "## Python: `lull`\n"]
+    for source in MODULE:
+        parts += python_interface(source)
     text = "\n".join(parts)
     if not is_check:
         pathlib.Path(file).write_text(text)

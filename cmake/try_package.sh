@@ -35,7 +35,7 @@ if [[ -e /usr/include/png.h ]]; then
     cmake -S examples -B build && cmake --build build
     build/watch_pngs 20 20.png 40.png 60.png
 fi
-if grep -q '/lull/_stopping\.[^/]*\.so$' files; then
+if grep -q '/lull/_lull\.[^/]*\.so$' files; then
     /usr/bin/python3 -c 'import lull; print(lull.Stopper(200, 200).blocks)'
 fi
 

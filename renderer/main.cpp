@@ -116,7 +116,7 @@ std::string NearestName(const std::string& word, const std::vector<std::string>&
 std::string ProblemOfRemoved(std::span<const char* const> words) {
     for (const std::string_view word : words.subspan(1))
         for (const Removed& removed : kRemoved)
-            if (words[1] == removed.command &&
+            if ((removed.command.empty() || words[1] == removed.command) &&
                 (removed.option.empty() || word.substr(0, word.find('=')) == removed.option))
                 return fmt::format("there is no {} any more; {}",
                                    removed.option.empty()

@@ -7,12 +7,17 @@
 namespace lull {
 
 struct Removed {
-    std::string_view command, option, instead;  // no option: the command itself
+    // Empty: all commands; no option: the command itself.
+    std::string_view command, option, instead;
 };
 
 inline constexpr std::array kRemoved = {
+    Removed{"", "--filtering", "images are filtered bilinearly; take more samples against moire"},
     Removed{"bench", "", "use lull compare --curves"},
     Removed{"evaluate", "--figure", "draw from the CSV file of --curves"},
+    Removed{"selftest", "--long", "tests/hard_cases has the nightly run: LULL_LONG=1"},
+    Removed{"selftest", "--only", "the command has three checks"},
+    Removed{"selftest", "--seed", "the command has three checks, with one seed"},
     Removed{"study", "--answers", "there is one procedure, adjustment"},
     Removed{"study", "--descending", "blocks are asked from below; --repeats asks twice"},
     Removed{"study", "--list-texts", "edit the texts in the page"},

@@ -132,7 +132,6 @@ Provenance MakeProvenance(const RenderSettings& settings, const Scene& scene,
                               : NameOf(scene.integrator, scene.isVolumetric),
             .threads = settings.scene.compile.threads,
             .substitute = settings.scene.substitute,
-            .filtering = settings.scene.compile.filtering,
             .resolution = film.resolution,
             .crop = {film.cropMin, film.cropMax}};
 }

@@ -106,9 +106,6 @@ void AddCompileOptions(CLI::App& app, CompileOptions* options) {
         ->check(Between(0, 4096))
         ->type_name("N")
         ->capture_default_str();
-    AddChoiceOption(app, "--filtering", &options->filtering,
-                    "Filter image textures bilinearly, or as pbrt-v3, which takes memory")
-        ->group("Advanced");
 }
 
 void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {

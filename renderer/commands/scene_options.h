@@ -23,7 +23,7 @@ struct SceneOptions {
 };
 
 // Adds SCENE, --resolution, --crop, --integrator, --max-depth, --threads, --substitute,
-// --filtering, --exposure, --environment, --environment-rotation, --camera, --orbit, --frame,
+// --exposure, --environment, --environment-rotation, --camera, --orbit, --frame,
 // --animation, --shutter, --variant, --solid-glass.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 

@@ -1,16 +1,20 @@
-// The Python module `lull_denoising`: the C interface with numpy arrays and exceptions.
-#include <lull/denoising.h>
+// The extension of the Python module `lull`: the C interface with numpy and exceptions.
+#include <lull/lull.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "stopping/python/arrays.h"
+#include "renderer/python/arrays.h"
+#include "renderer/python/bindings.h"
+#include "renderer/python/check.h"
+#include "renderer/python/picture.h"
 
 namespace py = pybind11;
 
@@ -18,170 +22,321 @@ namespace lull {
 
 namespace {
 
-constexpr int kLeastRest =
-    40;  // pixels; less at the right and at the bottom is no block of its own
+// How it stands with all blocks, for each number an array of rows x columns.
+struct Answer {
+    int columns;
+    std::vector<lull_answer> blocks;
 
-constexpr const char* kColourName = "a or b";
+    template <typename T, typename Field>
+    py::array_t<T> Of(Field lull_answer::*field) const {
+        return ValuesOf<T>(blocks, columns, field);
+    }
+    size_t StoppedCount() const {
+        return size_t(std::ranges::count(blocks, 1, &lull_answer::stop));
+    }
+    bool Stop() const { return StoppedCount() == blocks.size(); }
+    // Returns None where a number is not known.
+    py::object Known(double lull_answer::*field) const {
+        for (const lull_answer& block : blocks)
+            if (block.*field < 0) return py::none();
+        return Of<double>(field);
+    }
+};
 
-using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-// Returns an image as contiguous floats; channels beyond those wanted, such as alpha, are left out.
-Floats ToFloats(const py::array& array, const std::string& name, int channels, py::ssize_t height,
-                py::ssize_t width) {
-    const bool isFlat = channels == 1 && array.ndim() == 2;
-    if (!(isFlat || array.ndim() == 3) || array.shape(0) != height || array.shape(1) != width ||
-        (!isFlat && array.shape(2) < channels))
-        throw py::value_error(name + " has the shape " + ShapeOf(array) + "; needed are " +
-                              std::to_string(height) + " x " + std::to_string(width) + " x " +
-                              std::to_string(channels));
-    if (array.dtype().kind() != 'f')
-        throw py::value_error(name + " has the type " + py::str(array.dtype()).cast<std::string>() +
-                              "; linear floats are needed");
-    const py::array wanted = isFlat ? array : FirstChannels(array, channels);
-    if (name == kColourName)
-        WarnOfColours(wanted, name);
-    else if (channels == 3)
-        WarnOfValues(wanted, name);  // depths may be infinite
-    return Floats(wanted);
+std::string ReprOf(const lull_answer& a) {
+    const std::string votes = a.votes_needed > 1
+                                  ? py::str("{} of {} votes, ").format(a.votes, a.votes_needed)
+                                  : py::str();
+    return py::str("<lull.BlockAnswer: {} at {} spp, {}value {:.3g}, threshold {:.3g}>")
+        .format(a.stop ? "stopped" : "active", a.spp, votes, a.value, a.threshold);
 }
 
-// The arrays that a lull_halves points to.
-class Halves {
-  public:
-    Halves(const py::array& a, const py::array& b, const char* name, int channels,
-           py::ssize_t height, py::ssize_t width)
-        : a(ToFloats(a, name, channels, height, width)),
-          b(ToFloats(b, name, channels, height, width)) {}
+constexpr int kDebug = 10, kInfo = 20;  // levels of Python's logging
 
-    // Reads one image, a pair of them, or None.
-    static std::optional<Halves> Read(const py::object& given, const char* name, int channels,
-                                      py::ssize_t height, py::ssize_t width) {
-        if (given.is_none()) return {};
-        if (py::isinstance<py::array>(given)) {
-            const auto image = given.cast<py::array>();
-            return Halves(image, image, name, channels, height, width);
-        }
-        if (!py::isinstance<py::sequence>(given) || py::len(given) != 2)
-            throw py::value_error(std::string(name) + " must be an array, or a pair of arrays");
-        const auto pair = given.cast<py::sequence>();
-        return Halves(pair[0].cast<py::array>(), pair[1].cast<py::array>(), name, channels, height,
-                      width);
+py::object Logger() { return py::module_::import("logging").attr("getLogger")("lull.stopper"); }
+
+bool IsLogged(int level) { return Logger().attr("isEnabledFor")(level).cast<bool>(); }
+
+// A text with a NUL would silently stand for its beginning in C.
+void CheckText(const std::optional<std::string>& text, const char* name) {
+    if (text && text->find('\0') != std::string::npos)
+        throw py::value_error(std::string(name) + " holds a NUL character");
+}
+
+class Stopper {
+  public:
+    Stopper(int width, int height, const std::optional<std::string>& model,
+            const std::optional<std::string>& rule, const std::optional<std::string>& models,
+            int block, int passSpp, int cap, double caution)
+        : width(width), height(height) {
+        if (model && rule) throw py::value_error("model and rule are both given; one is needed");
+        if (!(caution > 0)) throw py::value_error("caution must be above 0");
+        if (block == 0) throw py::value_error("blocks of 0 pixels");
+        CheckText(model, "model");
+        CheckText(rule, "rule");
+        CheckText(models, "models");
+        lull_settings settings = {};
+        settings.width = width;
+        settings.height = height;
+        settings.model = model ? model->c_str() : nullptr;
+        settings.rule = rule ? rule->c_str() : nullptr;
+        settings.models = models ? models->c_str() : nullptr;
+        settings.block = block;
+        settings.pass = passSpp;
+        settings.cap = cap;
+        settings.caution = caution;
+        lull_stopper* made = nullptr;
+        Check(lull_stopper_create(&settings, &made));
+        handle.reset(made, lull_stopper_destroy);
     }
 
-    lull_halves View() const { return {a.data(), b.data(), 0, 0, 0}; }
+    Answer Observe(const py::array& image, int spp, const std::optional<py::array>& half) {
+        const Picture picture(image, half, width, height);
+        Answer answer = NoAnswer();
+        lull_status status;
+        {
+            const py::gil_scoped_release others;
+            status = lull_stopper_observe(handle.get(), &picture.view, spp, answer.blocks.data());
+        }
+        Check(status);
+        WarnOnce();
+        Log(answer, spp);
+        return answer;
+    }
+
+    lull_answer ObserveBlock(int block, const py::array& image, int spp,
+                             const std::optional<py::array>& half) {
+        const lull_rect rect = RectOf(block);
+        const Picture picture(image, half, rect.width, rect.height);
+        lull_answer answer;
+        lull_status status;
+        {
+            const py::gil_scoped_release others;
+            status = lull_stopper_observe_block(handle.get(), block, &picture.view, spp, &answer);
+        }
+        Check(status);
+        WarnOnce();
+        if (IsLogged(kDebug)) LogBlock(block, answer);
+        return answer;
+    }
+
+    Answer Last() const {
+        Answer answer = NoAnswer();
+        for (size_t i = 0; i < answer.blocks.size(); ++i)
+            Check(lull_stopper_answer(handle.get(), int(i), &answer.blocks[i]));
+        return answer;
+    }
+
+    std::vector<std::tuple<int, int, int, int>> Blocks() const {
+        std::vector<std::tuple<int, int, int, int>> blocks;
+        for (int i = 0; i < lull_stopper_block_count(handle.get()); ++i) {
+            const lull_rect rect = RectOf(i);
+            blocks.emplace_back(rect.x, rect.y, rect.width, rect.height);
+        }
+        return blocks;
+    }
+
+    py::array_t<bool> Active() const {
+        py::array_t<bool> mask({height, width});
+        const Answer answer = Last();
+        for (size_t i = 0; i < answer.blocks.size(); ++i) {
+            const lull_rect rect = RectOf(int(i));
+            for (int y = rect.y; y < rect.y + rect.height; ++y)
+                std::fill_n(mask.mutable_data(y, rect.x), rect.width, !answer.blocks[i].stop);
+        }
+        return mask;
+    }
+
+    bool Done() const { return lull_stopper_done(handle.get()) == 1; }
+    bool NeedsHalf() const { return lull_stopper_needs_half(handle.get()) == 1; }
+
+    py::bytes Save() const {
+        size_t size = 0;
+        Check(lull_stopper_save(handle.get(), nullptr, &size));
+        std::string bytes(size, 0);
+        Check(lull_stopper_save(handle.get(), bytes.data(), &size));
+        return py::bytes(bytes.data(), size);
+    }
+    void Restore(const py::bytes& state) {
+        const std::string_view bytes = state;
+        Check(lull_stopper_restore(handle.get(), bytes.data(), bytes.size()));
+    }
+
+    const int width, height;
 
   private:
-    Floats a, b;
+    void WarnOnce() {
+        const std::string warning = lull_stopper_warning(handle.get());
+        if (hasWarned || warning.empty()) return;
+        hasWarned = true;
+        Warn(warning);
+    }
+    void Log(const Answer& answer, int spp) const {
+        if (IsLogged(kInfo))
+            Logger().attr("info")("%d spp: %d of %d blocks have stopped", spp,
+                                  answer.StoppedCount(), answer.blocks.size());
+        if (!IsLogged(kDebug)) return;
+        for (size_t i = 0; i < answer.blocks.size(); ++i)
+            if (answer.blocks[i].spp == spp) LogBlock(int(i), answer.blocks[i]);
+    }
+    void LogBlock(int block, const lull_answer& answer) const {
+        Logger().attr("debug")("block %d: %s", block, ReprOf(answer));
+    }
+    lull_rect RectOf(int block) const {
+        lull_rect rect;
+        Check(lull_stopper_block_rect(handle.get(), block, &rect));
+        return rect;
+    }
+    Answer NoAnswer() const {
+        return {lull_stopper_column_count(handle.get()),
+                std::vector<lull_answer>(size_t(lull_stopper_block_count(handle.get())))};
+    }
+
+    std::shared_ptr<lull_stopper> handle;
+    bool hasWarned = false;
 };
 
-lull_halves ViewOf(const std::optional<Halves>& halves) {
-    return halves ? halves->View() : lull_halves{};
+std::optional<double> Known(double value) {
+    return value < 0 ? std::nullopt : std::optional(value);
 }
 
-// Returns where blocks begin along an axis, and its end.
-std::vector<int> CutsOf(int length, int side) {
-    std::vector<int> cuts;
-    for (int at = 0; at == 0 || at + kLeastRest <= length; at += side) cuts.push_back(at);
-    cuts.push_back(length);
-    return cuts;
+std::string ReprOf(const Answer& answer) {
+    const auto [least, most] = std::ranges::minmax(answer.blocks, {}, &lull_answer::spp);
+    return py::str("<lull.Answer: {} of {} blocks stopped, at {} to {} spp>")
+        .format(answer.StoppedCount(), answer.blocks.size(), least.spp, most.spp);
 }
 
-struct Denoised {
-    py::array_t<float> picture, error;
-    int columns = 0;
-    std::vector<lull_block_error> blocks;
-
-    py::array_t<double> Of(double lull_block_error::*field) const {
-        py::array_t<double> values({int(blocks.size()) / columns, columns});
-        for (size_t i = 0; i < blocks.size(); ++i) values.mutable_data()[i] = blocks[i].*field;
-        return values;
-    }
-    std::vector<std::tuple<int, int, int, int>> Rects() const {
-        std::vector<std::tuple<int, int, int, int>> rects;
-        for (const lull_block_error& b : blocks) rects.emplace_back(b.x, b.y, b.width, b.height);
-        return rects;
-    }
-};
-
-Denoised Denoise(const py::array& a, const py::array& b, const py::object& albedo,
-                 const py::object& normal, const py::object& depth, int block) {
-    if (a.ndim() != 3) throw py::value_error("a has the shape " + ShapeOf(a) + ", not H x W x 3");
-    if (block < kLeastRest)
-        throw py::value_error("blocks of " + std::to_string(block) + " pixels; at least " +
-                              std::to_string(kLeastRest) + " are needed");
-    const py::ssize_t height = a.shape(0), width = a.shape(1);
-    const Halves colour(a, b, kColourName, 3, height, width);
-    const auto albedos = Halves::Read(albedo, "albedo", 3, height, width),
-               normals = Halves::Read(normal, "normal", 3, height, width),
-               depths = Halves::Read(depth, "depth", 1, height, width);
-    const lull_noisy_picture noisy = {int(width),      int(height),     colour.View(),
-                                      ViewOf(albedos), ViewOf(normals), ViewOf(depths)};
-    Denoised result{py::array_t<float>({height, width, py::ssize_t(3)}),
-                    py::array_t<float>({height, width}),
-                    0,
-                    {}};
-    const std::vector<int> xs = CutsOf(int(width), block), ys = CutsOf(int(height), block);
-    result.columns = int(xs.size()) - 1;
-    for (size_t v = 0; v + 1 < ys.size(); ++v)
-        for (size_t u = 0; u + 1 < xs.size(); ++u)
-            result.blocks.push_back({xs[u], ys[v], xs[u + 1] - xs[u], ys[v + 1] - ys[v], 0, 0});
-    lull_denoised_picture clean = {result.picture.mutable_data(), result.error.mutable_data(),
-                                   result.blocks.data(), int(result.blocks.size())};
-    std::optional<std::string> wrong;
-    {
-        const py::gil_scoped_release others;
-        if (const char* message = lull_denoise(&noisy, &clean)) wrong = message;
-    }
-    if (wrong) throw py::value_error(*wrong);
-    return result;
+std::string ReprOf(const Stopper& stopper) {
+    const Answer answer = stopper.Last();
+    return py::str("<lull.Stopper of {} x {} pixels: {} of {} blocks stopped>")
+        .format(stopper.width, stopper.height, answer.StoppedCount(), answer.blocks.size());
 }
 
-std::string ReprOf(const Denoised& d) {
-    const auto worst = std::ranges::max(d.blocks, {}, &lull_block_error::upper);
-    return py::str(
-               "<lull_denoising.Denoised of {} x {} pixels: visible difference {:.2g} in its worst "
-               "block, hardly above {:.2g}>")
-        .format(d.picture.shape(1), d.picture.shape(0), worst.estimate, worst.upper);
+void BindBlockAnswer(py::module_& module) {
+    py::class_<lull_answer>(module, "BlockAnswer", "How it stands with a block.")
+        .def_property_readonly("stop", [](const lull_answer& a) { return a.stop == 1; })
+        .def_property_readonly("checked", [](const lull_answer& a) { return a.checked == 1; })
+        .def_readonly("spp", &lull_answer::spp)
+        .def_readonly("next_spp", &lull_answer::next_spp)
+        .def_readonly("votes", &lull_answer::votes)
+        .def_readonly("votes_needed", &lull_answer::votes_needed)
+        .def_readonly("value", &lull_answer::value)
+        .def_readonly("threshold", &lull_answer::threshold)
+        .def_property_readonly("probability",
+                               [](const lull_answer& a) { return Known(a.probability); })
+        .def_property_readonly("visible_noise",
+                               [](const lull_answer& a) { return Known(a.visible_noise); })
+        .def("__repr__", [](const lull_answer& a) { return ReprOf(a); });
+}
+
+void BindAnswer(py::module_& module) {
+    py::class_<Answer>(module, "Answer",
+                       "How it stands with all blocks: arrays of rows x columns. `probability` is "
+                       "None for rules that know none, `visible_noise` where no half was shown.")
+        .def_property_readonly("stop", &Answer::Stop, "Whether all blocks have stopped.")
+        .def_property_readonly("stopped",
+                               [](const Answer& a) { return a.Of<bool>(&lull_answer::stop); })
+        .def_property_readonly("checked",
+                               [](const Answer& a) { return a.Of<bool>(&lull_answer::checked); })
+        .def_property_readonly("spp", [](const Answer& a) { return a.Of<int>(&lull_answer::spp); })
+        .def_property_readonly("next_spp",
+                               [](const Answer& a) { return a.Of<int>(&lull_answer::next_spp); })
+        .def_property_readonly("votes",
+                               [](const Answer& a) { return a.Of<int>(&lull_answer::votes); })
+        .def_property_readonly("value",
+                               [](const Answer& a) { return a.Of<double>(&lull_answer::value); })
+        .def_property_readonly(
+            "threshold", [](const Answer& a) { return a.Of<double>(&lull_answer::threshold); })
+        .def_property_readonly("probability",
+                               [](const Answer& a) { return a.Known(&lull_answer::probability); })
+        .def_property_readonly("visible_noise",
+                               [](const Answer& a) { return a.Known(&lull_answer::visible_noise); })
+        .def("__repr__", [](const Answer& a) { return ReprOf(a); });
+}
+
+void BindStopper(py::module_& module) {
+    using namespace py::literals;
+    py::class_<Stopper>(
+        module, "Stopper",
+        "Decides on the blocks of a picture, from its first samples to its last.\n\n"
+        "Args:\n"
+        "    width, height: pixels of the picture, from 40 to 65,536 each.\n"
+        "    model: the name of an installed model ('entropy', the default; 'paper') or a\n"
+        "        file.\n"
+        "    rule: any other rule of `lull render --stop`, in place of a model.\n"
+        "    models: the folder of installed models.\n"
+        "    block: pixels a side of the blocks, 40 or more.\n"
+        "    pass_spp: the samples per pixel (spp) between two pictures; 0: they come at any spp.\n"
+        "    cap: the most spp, if above 10,000; 0: not known.\n"
+        "    caution: from 0.01 to 100; 2 allows half as much visible noise.\n\n"
+        "Raises:\n"
+        "    ValueError: for a setting out of its range, or an unknown rule.\n"
+        "    OSError: for a model or a file that cannot be read.")
+        .def(
+            py::init<int, int, const std::optional<std::string>&, const std::optional<std::string>&,
+                     const std::optional<std::string>&, int, int, int, double>(),
+            "width"_a, "height"_a, "model"_a = py::none(), py::kw_only(), "rule"_a = py::none(),
+            "models"_a = py::none(), "block"_a = 200, "pass_spp"_a = 0, "cap"_a = 0,
+            "caution"_a = 1.0)
+        .def("observe", &Stopper::Observe, "image"_a, "spp"_a, "half"_a = py::none(),
+             "Checks the picture after more samples.\n\n"
+             "Args:\n"
+             "    image: an array of height x width x 3, float32 (linear; 1 is white) or uint8\n"
+             "        (sRGB), with any strides; stopped blocks are not read.\n"
+             "    spp: its samples per pixel, more than at the last call.\n"
+             "    half: the mean of a fixed half of the samples, for rules that compare it.\n\n"
+             "Returns:\n"
+             "    An Answer.\n\n"
+             "Raises:\n"
+             "    ValueError: for another shape or type, invalid values, an spp that "
+             "is\n"
+             "        not above the last, or a half that is missing. Nothing has changed then.\n\n"
+             "Warns:\n"
+             "    UserWarning: of values that are not finite, negative or above white, of further\n"
+             "        channels, and of pictures too far apart for the rule ever to stop.")
+        .def("observe_block", &Stopper::ObserveBlock, "block"_a, "image"_a, "spp"_a,
+             "half"_a = py::none(),
+             "Does the same for one block.\n\n"
+             "Args:\n"
+             "    block: its number, row by row from 0.\n"
+             "    image, spp, half: as for observe(), of the block alone.\n\n"
+             "Returns:\n"
+             "    A BlockAnswer.\n\n"
+             "Raises:\n"
+             "    ValueError: as observe(), and for an unknown block.")
+        .def("answer", &Stopper::Last,
+             "Returns the last answer again.\n\nReturns:\n    An Answer; its spp are 0 before the "
+             "first picture.")
+        .def_property_readonly("blocks", &Stopper::Blocks,
+                               "The rectangles of the blocks: (x, y, width, height), row by row.")
+        .def_property_readonly("active", &Stopper::Active,
+                               "An array of height x width: True where more samples are needed.")
+        .def_property_readonly("done", &Stopper::Done, "Whether all blocks have stopped.")
+        .def_property_readonly("needs_half", &Stopper::NeedsHalf,
+                               "Whether the rule needs a half buffer.")
+        .def("save", &Stopper::Save,
+             "Serialises the state, for a checkpoint of the renderer.\n\n"
+             "Returns:\n    bytes, which this version on this machine can restore.")
+        .def("restore", &Stopper::Restore, "state"_a,
+             "Restores a state of save().\n\n"
+             "Args:\n    state: bytes of a stopper with the same settings.\n\n"
+             "Raises:\n    OSError: if they are damaged or of other settings; nothing has changed "
+             "then.")
+        .def_readonly("width", &Stopper::width)
+        .def_readonly("height", &Stopper::height)
+        .def("__repr__", [](const Stopper& s) { return ReprOf(s); });
 }
 
 }  // namespace
 
 }  // namespace lull
 
-PYBIND11_MODULE(lull_denoising, module) {
-    using namespace lull;
-    using namespace py::literals;
-    module.doc() =
-        "Denoises images of any renderer and estimates the remaining error.\n\n"
-        "    clean = lull_denoising.denoise(first, second, albedo=albedo, normal=normal)\n"
-        "    clean.picture, clean.upper.max()\n";
+PYBIND11_MODULE(_lull, module) {
+    module.attr("__version__") = lull_version();
 
-    py::class_<Denoised>(module, "Denoised", "A denoised image and its estimated error.")
-        .def_readonly("picture", &Denoised::picture, "H x W x 3, float32, linear.")
-        .def_readonly("error", &Denoised::error,
-                      "H x W: the estimated standard error of each pixel in L*.")
-        .def_property_readonly("blocks", &Denoised::Rects,
-                               "Rectangles of the blocks: (x, y, width, height), row by row.")
-        .def_property_readonly(
-            "estimate", [](const Denoised& d) { return d.Of(&lull_block_error::estimate); },
-            "Visible difference of each block from the true image, an array of rows x columns; "
-            "observers just accept 3.1.")
-        .def_property_readonly(
-            "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
-            "Upper bound of the visible difference, exceeded in 10 of 100 blocks.")
-        .def("__repr__", [](const Denoised& d) { return ReprOf(d); });
-
-    module.def("denoise", &Denoise, "a"_a, "b"_a, py::kw_only(), "albedo"_a = py::none(),
-               "normal"_a = py::none(), "depth"_a = py::none(), "block"_a = 200,
-               "Denoises an image, given as two half buffers.\n\n"
-               "Args:\n"
-               "    a, b: means of independent samples, H x W x 3, linear; e.g. renders with other "
-               "seeds.\n"
-               "    albedo: of first hits, H x W x 3, 0 to 1: an array, or a pair for a and b.\n"
-               "    normal: of first hits, H x W x 3, -1 to 1; likewise.\n"
-               "    depth: of first hits, H x W, above 0; likewise.\n"
-               "    block: side of the blocks of the error estimate, in pixels.\n\n"
-               "Returns: a Denoised.\n"
-               "Raises: ValueError for arrays of another shape, type or range, and for dependent a "
-               "and b.");
+    lull::BindBlockAnswer(module);
+    lull::BindAnswer(module);
+    lull::BindStopper(module);
+    lull::BindEntropies(module);
+    lull::BindDenoising(module);
 }

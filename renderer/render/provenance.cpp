@@ -41,8 +41,6 @@ std::vector<NamedProvenance> PartsOf(const Provenance& p) {
         parts.push_back({"integrator", "integrator", "integrator", p.integrator});
     if (!p.grades.empty()) parts.push_back({"grades", "judgedGrades", "judgedGrades", p.grades});
     if (!p.clock.empty()) parts.push_back({nullptr, "clock", "clock", p.clock});
-    if (p.filtering != TextureFiltering::Bilinear)
-        parts.push_back({"filtering", "filtering", "filtering", NameOf(p.filtering)});
     if (p.guide == GuideMode::Off) return parts;
     const std::string mode = NameOf(p.guide);
     parts.push_back(

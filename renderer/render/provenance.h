@@ -25,7 +25,6 @@ struct Provenance {
     std::string integrator = {};  // empty: paths from the camera alone
     int threads = 0;              // 0: all
     bool substitute = false;
-    TextureFiltering filtering = TextureFiltering::Bilinear;
     Vec2i resolution = {0, 0};
     PixelRect crop;
     std::string grades = {};  // how pictures are graded when noise is judged; empty: not

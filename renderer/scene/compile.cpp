@@ -96,7 +96,7 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     warnings.Try([&] { ReadMedia(description, scene.get(), warnings); });
 
     scene->textureSeconds = Timed([&] {
-        scene->textures = TextureTable(description, warnings, options.filtering);
+        scene->textures = TextureTable(description, warnings);
         scene->materials = MaterialTable(description, scene->textures, warnings);
     });
     warnings.Try([&] {

@@ -11,7 +11,6 @@ struct CompileOptions {
     // Choose and sample lights as pbrt-v3 does, for its estimator: by tables, however many there
     // are, and environment maps by their whole brightness.
     bool lightsAsPbrtV3 = false;
-    TextureFiltering filtering = TextureFiltering::Bilinear;
     int threads = 0;  // for all that is made in parallel; 0: one per core
 };
 

@@ -11,7 +11,7 @@ enum SurfaceNeeds : uint16_t {
     kNeedsUv = 1,                 // uv
     kNeedsTangents = 2,           // dpdu, dpdv: anisotropy
     kNeedsNormalDerivatives = 4,  // dndu, dndv as well: bump maps
-    kNeedsFootprint = 8,          // footprint of the camera ray's pixel: bump maps, noise, filters
+    kNeedsFootprint = 8,          // footprint of the camera ray's pixel: bump maps, noise
     kIsInterface = 16,            // nothing at all: paths go straight on, as nothing scatters
     kNeedsSecondUv = 32,          // uv1
     kNeedsColor = 64,             // color

@@ -8,7 +8,7 @@
 // it does not compare with people: `lull train --preset paper` and `lull evaluate` do, or paper.py
 // in this folder. The model "paper" is lull's own small network: the authors' weights are not part
 // of lull; a file with weights of Keras can be named instead.
-#include <lull/stopping.h>
+#include <lull/lull.h>
 
 #include "pictures.h"
 

@@ -1,7 +1,7 @@
 // Watches the pictures of any renderer: `watch_pngs a_64.png b_90.png ...`, PNG files at any
 // samples per pixel, which are the last number in their names, in any order. Says of each whether
 // blocks of it still need samples.
-#include <lull/stopping.h>
+#include <lull/lull.h>
 
 #include "pictures.h"
 

@@ -1,5 +1,5 @@
 /* The header is C: this file is compiled as such, and says what C sees. */
-#include <lull/stopping.h>
+#include <lull/lull.h>
 
 int lull_header_in_c(void);
 

@@ -266,7 +266,7 @@ class StopperTest(unittest.TestCase):
         self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 1 of 1 blocks stopped>")
 
     def test_stub_names_all_there_is(self):
-        stub = ast.parse(pathlib.Path(lull.__file__).with_name("_stopping.pyi").read_text())
+        stub = ast.parse(pathlib.Path(lull.__file__).with_name("_lull.pyi").read_text())
         for kind in (node for node in stub.body if isinstance(node, ast.ClassDef)):
             members = [n for n in kind.body if not isinstance(n, ast.Expr)]  # a docstring is one
             named = {n.target.id if isinstance(n, ast.AnnAssign) else n.name for n in members}

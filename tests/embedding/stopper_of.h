@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <lull/stopping.h>
+#include <lull/lull.h>
 
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
-// Inputs built to break a path tracer or a stopping rule, each with a known answer. The program's
-// `selftest` and the test program run the same cases; neither is known here.
+// Inputs built to break a path tracer or a stopping rule, each with a known answer. The page and
+// the test program run the same cases; neither is known here.
 #pragma once
 
 #include <cstdint>

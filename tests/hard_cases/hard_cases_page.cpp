@@ -20,12 +20,10 @@ constexpr const char* kIntroduction =
     "    cmake --build --preset release --target hard_cases_page\n"
     "    build/release/tests/hard_cases/hard_cases_page stopping/models/entropy.h5 \\\n"
     "        >tests/hard_cases/README.md\n\n"
-    "`lull selftest` checks the same on any machine in a minute, and the tests do. A case passes "
-    "if "
-    "ours is at most the\ntolerance from the answer. Radiance is rendered with both estimators and "
-    "shown for the worse; its tolerance is 4.5\nstandard errors as measured, plus that in the "
-    "note. "
-    "Counts of failures have no tolerance at all.\n";
+    "The tests run the same cases. A case passes if ours is at most the tolerance from the answer. "
+    "Radiance is rendered with\nboth estimators and shown for the worse; its tolerance is 4.5 "
+    "standard errors as measured, plus that in the note. Counts of\nfailures have no tolerance at "
+    "all.\n";
 
 constexpr const char* kHeavyTails =
     "\n## Bias of stopped images\n\n"

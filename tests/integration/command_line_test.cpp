@@ -38,7 +38,6 @@ TEST(CommandLine, RefusesWrongUsage) {
           "render scene.pbrt --seed -1",
           "render scene.pbrt --seed 1.5",
           "render scene.pbrt --seed 18446744073709551616",
-          "selftest --seed 18446744073709551616",
           "render scene.pbrt --seed 0x10",
           "render scene.pbrt --spp 0x10",
           "render scene.pbrt --spp 010",
@@ -69,7 +68,6 @@ TEST(CommandLine, RefusesWrongUsage) {
           "render scene.pbrt --spp 4 --stop fixed:5",
           "render scene.pbrt --sampler halton",
           "render scene.pbrt --estimator best",
-          "render scene.pbrt --filtering ewa",
           "render scene.pbrt -o image.jpg",
           "render scene.pbrt -o image",
           "render scene.pbrt --max-depth -1",
@@ -113,6 +111,7 @@ TEST(CommandLine, SuggestsOptions) {
     EXPECT_EQ(errorOf("--ssp=3"), "lull: error: there is no option --ssp; did you mean --spp?\n");
     EXPECT_TRUE(Contains(errorOf("--quantum"), "; lull render --help lists"));
     EXPECT_TRUE(errorOf("--spp none").starts_with("lull: error: "));
+    EXPECT_TRUE(Contains(errorOf("--filtering=pbrt-v3"), "no option --filtering any more; images"));
 }
 
 TEST(CommandLine, NamesImagesAfterTheScene) {
@@ -248,29 +247,6 @@ TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
         EXPECT_TRUE(exr.attributes.contains(name)) << name;
     ASSERT_TRUE(exr.Find("spp"));
     EXPECT_EQ(exr.Find("spp")->values, std::vector<float>(12 * 8, 6));
-}
-
-TEST(CommandLine, FiltersImagesWhereAskedFor) {
-    const SceneDirectory directory;
-    const std::vector<Rgb> stripes = {Rgb::Zero(), Rgb::Ones(), Rgb::Zero(),
-                                      Rgb::Ones(), Rgb::Zero(), Rgb::Ones()};
-    WritePng(directory.File("stripes.png"), stripes, 6, 1);
-    directory.Write("striped.pbrt",
-                    SceneText("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
-                              "\"stripes.png\" \"float uscale\" 9\n"
-                              "Material \"matte\" \"texture Kd\" \"t\"\n"
-                              "Shape \"sphere\" \"float radius\" .9"));
-    const auto render = [&](const std::string& options) {
-        ExpectSuccess(directory, "render striped.pbrt --spp 4 -o image.exr " + options);
-        return ReadExr(directory.File("image.exr"));
-    };
-    const ExrImage plain = render(""), same = render("--filtering bilinear");
-    const ExrImage filtered = render("--filtering pbrt-v3 --report r.json");
-    EXPECT_EQ(plain.Find("G")->values, same.Find("G")->values);
-    EXPECT_NE(plain.Find("G")->values, filtered.Find("G")->values);
-    EXPECT_FALSE(same.attributes.contains("filtering"));
-    EXPECT_EQ(std::get<std::string>(filtered.attributes.at("filtering")), "pbrt-v3");
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("r.json")), "\"filtering\": \"pbrt-v3\""));
 }
 
 TEST(CommandLine, KeepsPixelsWhateverTheThreadsBlocksAndPasses) {

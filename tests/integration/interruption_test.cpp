@@ -118,7 +118,6 @@ TEST(Interruption, RefusesToGoOnWithAnotherRender) {
     EXPECT_TRUE(Contains(errorOf("--crop 0,0.5,0,1"), "another crop"));
     EXPECT_TRUE(Contains(errorOf("--estimator pbrt-v3"), "another estimator"));
     EXPECT_TRUE(Contains(errorOf("--sampler sobol"), "another sampler"));
-    EXPECT_TRUE(Contains(errorOf("--filtering pbrt-v3"), "another filtering"));
     directory.Write("scene.pbrt", SceneText("Shape \"sphere\" \"float radius\" [.9]"));
     EXPECT_TRUE(Contains(errorOf(""), "another scene"));
     directory.Write("c.h5", "rubbish");

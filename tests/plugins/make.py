@@ -9,8 +9,6 @@ PBRT is a pbrt-v3 whose film has been told to write moments: where the environme
 PBRT_MOMENTS names a file, each pixel's mean (R, G, B), unbiased variance of one sample and number of
 samples, as seven doubles, row by row, for box-filtered pixels. References hold mean and variance as
 16-bit floats (R, G, B, variance.R, variance.G, variance.B) and the count as samplesPerPixel.
-Scenes of filtering ask for one sample a pixel, as far apart as its footprints then are, and get SAMPLES
-all the same, for which that pbrt-v3 takes footprints for as many samples as PBRT_SPACING says.
 """
 import csv
 import math
@@ -72,51 +70,6 @@ AttributeEnd
 Translate 0 0 .18
 Shape "sphere" "float radius" .2
 AttributeEnd''')
-
-
-def filtering(parameters):
-    """Shows an image on a floor that recedes, in all wrap modes, by all mappings, as colour, bump map and roughness."""
-    image = f'"imagemap" "string filename" "checks.png" {parameters}'
-    return scene(SKY + f'''Texture "floor" "spectrum" {image} "float uscale" 6 "float vscale" 50
-Material "matte" "texture Kd" "floor"
-Shape "trianglemesh" {QUAD} "point P" [-4 -5 0  4 -5 0  4 60 0  -4 60 0]
-AttributeBegin
-Translate -.7 .5 .9
-Texture "black" "spectrum" {image} "string wrap" "black" "float scale" 1.2 "float uscale" 3 "float vscale" 2
-  "float udelta" -1 "float vdelta" -.6
-Material "matte" "texture Kd" "black"
-Rotate -40 0 0 1
-Shape "trianglemesh" {QUAD} "point P" [-.9 0 -.4  .9 0 -.4  .9 0 .6  -.9 0 .6]
-AttributeEnd
-AttributeBegin
-Translate .7 -2 .35
-Scale .35 .35 .35
-Texture "around" "spectrum" {image} "string mapping" "spherical" "bool gamma" "false"
-Material "matte" "texture Kd" "around"
-Shape "sphere"
-AttributeEnd
-AttributeBegin
-Translate 0 -2.4 .4
-Scale .4 .4 .4
-Texture "roughness" "float" {image} "string wrap" "clamp" "float scale" .5 "float uscale" 3 "float vscale" 3
-Texture "height" "float" {image} "float scale" .2
-Material "plastic" "rgb Kd" [.3 .3 .3] "rgb Ks" [.6 .6 .6] "texture roughness" "roughness" "texture bumpmap" "height"
-Shape "sphere"
-AttributeEnd
-AttributeBegin
-Translate 1.1 0 .6
-Texture "along" "spectrum" {image} "string mapping" "planar" "vector v1" [3 0 0] "vector v2" [0 1 2]
-Material "matte" "texture Kd" "along"
-Shape "cylinder" "float radius" .5 "float zmin" -.6 "float zmax" .8
-AttributeEnd
-Translate .1 .6 .5
-Material "mirror"
-Shape "sphere" "float radius" .5
-Translate -.8 -2.6 -.2
-Texture "turned" "spectrum" {image} "string mapping" "cylindrical"
-Material "matte" "texture Kd" "turned"
-Shape "cylinder" "float radius" .25 "float zmin" -.3 "float zmax" .5''', '''LookAt 0 -5 .9  0 0 .4  0 0 1
-Camera "perspective" "float fov" 38''', samples=1)
 
 
 def material(text, extra=''):
@@ -207,8 +160,6 @@ Camera "realistic" "string lensfile" "lens.dat" "float aperturediameter" 6 "bool
     'texture-dots': texture('dots', '"float uscale" 7 "float vscale" 5 "rgb inside" [1 .2 .1] "rgb outside" [.1 .3 .9]'),
     'texture-windy': texture('windy'),
     'texture-wrinkled': texture('wrinkled', '"integer octaves" 5 "float roughness" .6'),
-    'filtering-ewa': filtering('"float maxanisotropy" 12'),
-    'filtering-trilinear': filtering('"bool trilinear" "true"'),
     'light-goniometric': scene('''AttributeBegin
 Translate .2 -.3 1.6
 Rotate 30 1 0 0
@@ -434,11 +385,6 @@ def write_scenes():
     write_png(os.path.join(folder, 'beam.png'),
               [[(x * 8, 40 + y * 13, (x // 4 + y // 4) % 2 * 200 + 30) for x in range(32)]
                for y in range(16)])
-    # Sides are none, so that it is.
-    rng = random.Random(3)
-    write_png(os.path.join(folder, 'checks.png'),
-              [[tuple(rng.randrange(150, 256) if (x // 3 + y // 5) % 2 else rng.randrange(0, 90) for _ in range(3))
-                for x in range(24)] for y in range(20)])
 
 
 def write_exr(path, pixels, samples):
@@ -472,13 +418,6 @@ def render_reference(pbrt, name):
         moments = os.path.join(scratch, 'moments')
         path = os.path.join(HERE, 'scenes', name + '.pbrt')
         environment = {**os.environ, 'PBRT_MOMENTS': moments}
-        if name.startswith('filtering-'):
-            with open(path) as file:
-                text = file.read().replace('"integer pixelsamples" 1', f'"integer pixelsamples" {SAMPLES}')
-            path = os.path.join(scratch, name + '.pbrt')
-            with open(path, 'w') as file:
-                file.write(text.replace('"checks.png"', f'"{HERE}/scenes/checks.png"'))
-            environment['PBRT_SPACING'] = '1'
         subprocess.run([pbrt, '--nthreads', '1', '--quiet', '--outfile', os.path.join(scratch, 'o.pfm'), path],
                        check=True, env=environment)
         with open(moments, 'rb') as file:
@@ -493,8 +432,6 @@ def render_reference(pbrt, name):
 SHOWN = {
     'camera-realistic': 'camera realistic, wide open',
     'camera-realistic-exposed': 'camera realistic, weights by exposure',
-    'filtering-ewa': 'imagemap filtered by EWA, with bump map',
-    'filtering-trilinear': 'imagemap filtered trilinearly, with bump map',
     'light-cylinder': 'diffuse area light, a cylinder',
     'material-disney': 'material disney, reflecting',
     'material-disney-below': 'material disney, scatterdistance',

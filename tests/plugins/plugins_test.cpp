@@ -78,18 +78,14 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     return result;
 }
 
-std::unique_ptr<const Scene> Load(const std::string& name, TextureFiltering filtering) {
-    CompileOptions options;
-    options.filtering = filtering;
-    return SceneIn(fmt::format("{}/scenes/{}.pbrt", LULL_PLUGINS_DIR, name), options);
+std::unique_ptr<const Scene> Load(const std::string& name) {
+    return SceneIn(fmt::format("{}/scenes/{}.pbrt", LULL_PLUGINS_DIR, name), CompileOptions());
 }
 
 class Plugins : public testing::TestWithParam<std::string> {};
 
 TEST_P(Plugins, LookAsInPbrt) {
-    const bool filters = GetParam().starts_with("filtering-");
-    const auto scene =
-        Load(GetParam(), filters ? TextureFiltering::PbrtV3 : TextureFiltering::Bilinear);
+    const auto scene = Load(GetParam());
     const PixelStatistics theirs = LoadReference(GetParam());
     const int samples = FromEnvironment("LULL_PLUGIN_SAMPLES", 256);
     for (const Estimator estimator : {Estimator::PbrtV3, Estimator::Combined}) {
@@ -101,29 +97,10 @@ TEST_P(Plugins, LookAsInPbrt) {
             GetParam(), estimator == Estimator::PbrtV3 ? "pbrt-v3" : "combined", c.energyRatio,
             c.energySigma, 100 * c.pixelsOut, 100 * c.tilesOut);
         fmt::print("{}\n", line);
-        // Scenes of filtering have a bump map, whose mirrored light stays above the surface here.
-        const double tolerance = filters ? 0.005 : 0.002;
-        EXPECT_TRUE(std::abs(c.energyRatio - 1) < tolerance || std::abs(c.energySigma) < 3.5)
-            << line;
+        EXPECT_TRUE(std::abs(c.energyRatio - 1) < 0.002 || std::abs(c.energySigma) < 3.5) << line;
         EXPECT_LE(c.pixelsOut, 0.01) << line;  // single samples have tails that the normal has not
-        EXPECT_LE(c.tilesOut, filters ? 0.04 : 0) << line;
+        EXPECT_EQ(c.tilesOut, 0) << line;
         EXPECT_EQ(ours.rejected, 0);
-    }
-}
-
-// What the scenes of filtering show is seen: without it, and filtered the other way, they differ.
-TEST(Filtering, Shows) {
-    for (const char* name : {"filtering-ewa", "filtering-trilinear"}) {
-        const PixelStatistics theirs = LoadReference(name);
-        const auto tilesOut = [&](const char* scene, TextureFiltering filtering) {
-            return Compare(MeasurePixels(*Load(scene, filtering), Estimator::PbrtV3,
-                                         SamplerKind::Random, 512, 7),
-                           theirs)
-                .tilesOut;
-        };
-        const char* other = name[10] == 'e' ? "filtering-trilinear" : "filtering-ewa";
-        EXPECT_GT(tilesOut(name, TextureFiltering::Bilinear), 0.1) << name;
-        EXPECT_GT(tilesOut(other, TextureFiltering::PbrtV3), 0) << name;
     }
 }
 

@@ -252,18 +252,14 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
     }
     Bsdf bsdf(frame, hit->n, 1, material.turnsNormal);
     AddLobes(material,
-             MaterialInputs{textures,
-                            {hit->p, hit->uv, hit->dpdx, hit->dpdy, hit->duvdx, hit->duvdy},
-                            materials,
-                            hit},
+             MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials, hit},
              &bsdf);
     return bsdf;
 }
 
 std::optional<SubsurfaceProfile> MaterialTable::Profile(const TextureTable& textures,
                                                         const SurfaceInteraction& hit) const {
-    const MaterialInputs in{
-        textures, {hit.p, hit.uv, hit.dpdx, hit.dpdy, hit.duvdx, hit.duvdy}, materials, &hit};
+    const MaterialInputs in{textures, {hit.p, hit.uv, hit.dpdx, hit.dpdy}, materials, &hit};
     return Visit(materials[hit.material].kind,
                  [&](const auto& kind) -> std::optional<SubsurfaceProfile> {
                      if constexpr (requires { kind.Profile(in); })

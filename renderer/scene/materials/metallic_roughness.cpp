@@ -32,7 +32,6 @@ auto Look(const UvSlot<Texture>& slot, const MaterialInputs& in) {
         return in.textures.Evaluate(slot.texture, in.context);
     TextureContext context = in.context;
     context.uv = in.hit->uv1;
-    context.duvdx = context.duvdy = Vec2f::Zero();  // not known for these
     return in.textures.Evaluate(slot.texture, context);
 }
 

@@ -10,7 +10,7 @@ void ApplyBumpMap(const FloatTexture& displacement, const TextureTable& textures
     const float du = half.x() > 0 ? half.x() : kSmallStep;
     const float dv = half.y() > 0 ? half.y() : kSmallStep;
     const auto height = [&](const Vec3f& p, const Vec2f& uv) {
-        const TextureContext at{p, uv, hit->dpdx, hit->dpdy, hit->duvdx, hit->duvdy};
+        const TextureContext at{p, uv, hit->dpdx, hit->dpdy};
         return textures.Evaluate(displacement, at);
     };
     const float h = height(hit->p, hit->uv);

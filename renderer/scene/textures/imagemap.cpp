@@ -32,18 +32,6 @@ Wrap GetWrap(const TextureInput& input, const char* parameter) {
     return Wrap::Repeat;
 }
 
-// Bounds the cost of a look-up; a pixel that is seen at an angle of 0.1 degrees is 570 times as
-// long as wide.
-float GetMaxAnisotropy(const TextureInput& input) {
-    const float value = input.entity.parameters.GetFloat("maxanisotropy", 8);
-    if (input.filtering == TextureFiltering::PbrtV3 && !(value > 0 && value <= 1024))
-        throw Error(input.entity.loc,
-                    fmt::format("texture \"{}\": \"maxanisotropy\" has to be above 0 and at most "
-                                "1024 to filter by it",
-                                Printable(input.entity.textureName)));
-    return value;
-}
-
 // Reads which channels the texture is made of.
 TextureChannels GetChannels(const TextureInput& input, bool isFloat) {
     if (!isFloat) return TextureChannels::Rgb;
@@ -69,7 +57,7 @@ T FromRgb(const Rgb& c) {
 }  // namespace
 
 template <typename T>
-Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input) {
+Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
     const TextureEntity& entity = input.entity;
     const Parameters& parameters = entity.parameters;
     const std::string filename = parameters.GetString("filename", "");
@@ -79,8 +67,8 @@ Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input
     const Wrap wrap = GetWrap(input, "wrap");
     const Wrap wrapT = parameters.GetString("wrapt", "").empty() ? wrap : GetWrap(input, "wrapt");
     ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), wrap, wrapT};
-    const bool trilinear = parameters.GetBool("trilinear", false);
-    const float maxAnisotropy = GetMaxAnisotropy(input);
+    parameters.GetBool("trilinear", false);  // known, without effect
+    parameters.GetFloat("maxanisotropy", 8);
 
     try {
         const std::vector<EmbeddedImage>& images = input.description.images;
@@ -104,14 +92,10 @@ Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input
             fmt::format("{} of \"{}\"", map.image->notFinite, Printable(filename, 200)));
     if (map.image->uniform && map.wrap != Wrap::Black && map.wrapT != Wrap::Black)
         return TextureHandle<T>{FromRgb<T>(map.scale * *map.image->uniform)};
-    if (input.filtering == TextureFiltering::PbrtV3)
-        return FilteredImageMap<T>{map.mapping,
-                                   input.images.GetPyramid(map.image, map.scale, wrap, wrapT),
-                                   trilinear, maxAnisotropy};
     return map;
 }
 
-template Made<float, ImageMap<float>, FilteredImageMap<float>> MakeImageMap(const TextureInput&);
-template Made<Rgb, ImageMap<Rgb>, FilteredImageMap<Rgb>> MakeImageMap(const TextureInput&);
+template Made<float, ImageMap<float>> MakeImageMap(const TextureInput&);
+template Made<Rgb, ImageMap<Rgb>> MakeImageMap(const TextureInput&);
 
 }  // namespace lull

@@ -3,38 +3,9 @@
 
 #include "renderer/scene/textures/image_lookup.h"
 #include "renderer/scene/textures/mapping.h"
-#include "renderer/scene/textures/mip_pyramid.h"
 #include "renderer/scene/textures/texture_image.h"
 
 namespace lull {
-
-// Looks up image files with pbrt-v3's filtering, if asked for. Uses the finest level wherever the
-// footprint is not known, which is at all but the camera's hits: pbrt-v3's path and volpath carry
-// no ray differentials beyond these either, not even through mirrors.
-template <typename T>
-struct FilteredImageMap {
-    Mapping2D mapping;
-    std::shared_ptr<const MipPyramid> pyramid;  // never null; of one channel where T is float
-    bool trilinear;                             // else EWA
-    float maxAnisotropy;
-};
-
-template <typename T>
-T Evaluate(const FilteredImageMap<T>& map, const TextureTable&, const TextureContext& c) {
-    if (c.dpdx.isZero(0) && c.dpdy.isZero(0))
-        return map.pyramid->template Bilinear<T>(0, Map(map.mapping, c));
-    const MappedFootprint f = MapFootprint(map.mapping, c);
-    if (map.trilinear) {
-        const float width = std::max(f.dx.cwiseAbs().maxCoeff(), f.dy.cwiseAbs().maxCoeff());
-        return map.pyramid->template Trilinear<T>(f.st, width);
-    }
-    return map.pyramid->template Ewa<T>(f.st, f.dx, f.dy, map.maxAnisotropy);
-}
-
-template <typename T>
-SurfaceNeeds Needs(const FilteredImageMap<T>& map, const TextureTable&) {
-    return Needs(map.mapping) | kNeedsFootprint;
-}
 
 template <typename T>
 struct ImageMap {
@@ -79,9 +50,9 @@ SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
 // sRGB-encoded; by default as its extension suggests), "scale" (after linearisation), "channel" (of
 // a float texture: "red", "green", "blue" or "alpha" instead of the luminance), "wrap" ("repeat",
 // "black", "clamp", "mirrored"; "wrapt" for the second axis alone) and the mapping. "trilinear" and
-// "maxanisotropy" (8; up to 1024) have an effect with pbrt-v3's filtering. pbrt-v3's grey
-// substitutes an image that cannot be read.
+// "maxanisotropy" have no effect: the finest level is interpolated. pbrt-v3's grey substitutes an
+// image that cannot be read.
 template <typename T>
-Made<T, ImageMap<T>, FilteredImageMap<T>> MakeImageMap(const TextureInput& input);
+Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input);
 
 }  // namespace lull

@@ -30,57 +30,10 @@ Vec2f MapPosition(const PlanarMapping& m, const Vec3f& p) {
     return m.offset + Vec2f(p.dot(m.vs), p.dot(m.vt));
 }
 
-MappedFootprint FootprintOf(const UvMapping& m, const TextureContext& c) {
-    return {m.scale.cwiseProduct(c.uv) + m.offset, m.scale.cwiseProduct(c.duvdx),
-            m.scale.cwiseProduct(c.duvdy)};
-}
-
-MappedFootprint FootprintOf(const AffineUvMapping& m, const TextureContext& c) {
-    const auto move = [&](const Vec2f& d) {
-        return Vec2f(m.s[0] * d.x() + m.s[1] * d.y(), m.t[0] * d.x() + m.t[1] * d.y());
-    };
-    return {m(c.uv), move(c.duvdx), move(c.duvdy)};
-}
-
-MappedFootprint FootprintOf(const PlanarMapping& m, const TextureContext& c) {
-    return {MapPosition(m, c.p), Vec2f(c.dpdx.dot(m.vs), c.dpdx.dot(m.vt)),
-            Vec2f(c.dpdy.dot(m.vs), c.dpdy.dot(m.vt))};
-}
-
-// Takes differences over `share` of the footprint, and folds differences in t beyond a half, as
-// pbrt-v3 does. That is meant for the seam where an angle jumps by 1, but there the difference over
-// the share is large, and becomes another large one: seams are blurred there and here.
-template <typename Mapping>
-MappedFootprint FootprintByDifferences(const Mapping& m, const TextureContext& c, float share) {
-    const Vec2f st = MapPosition(m, c.p);
-    const auto difference = [&](const Vec3f& move) {
-        if (move.isZero(0)) return Vec2f(0, 0);
-        Vec2f d = (MapPosition(m, c.p + share * move) - st) / share;
-        if (d.y() > 0.5f)
-            d.y() = 1 - d.y();
-        else if (d.y() < -0.5f)
-            d.y() = -(d.y() + 1);
-        return d;
-    };
-    return {st, difference(c.dpdx), difference(c.dpdy)};
-}
-
-MappedFootprint FootprintOf(const SphericalMapping& m, const TextureContext& c) {
-    return FootprintByDifferences(m, c, 0.1f);
-}
-
-MappedFootprint FootprintOf(const CylindricalMapping& m, const TextureContext& c) {
-    return FootprintByDifferences(m, c, 0.01f);
-}
-
 }  // namespace
 
 Vec2f MapByPosition(const Mapping2D& mapping, const Vec3f& p) {
     return Visit(mapping, [&](const auto& m) { return MapPosition(m, p); });
-}
-
-MappedFootprint MapFootprint(const Mapping2D& mapping, const TextureContext& c) {
-    return Visit(mapping, [&](const auto& m) { return FootprintOf(m, c); });
 }
 
 Mapping2D MakeMapping2D(const TextureInput& input) {

@@ -60,14 +60,6 @@ inline Vec2f Map(const Mapping2D& mapping, const TextureContext& c) {
     return MapByPosition(mapping, c.p);
 }
 
-// A point of texture space, and how far it moves from one sample to the next across and down
-// the image: pbrt-v3's approximations of it, 0 where that is not known.
-struct MappedFootprint {
-    Vec2f st, dx, dy;
-};
-
-MappedFootprint MapFootprint(const Mapping2D& mapping, const TextureContext& c);
-
 // Maps world space to the space of solid textures. pbrt-v3 applies the current transformation
 // matrix itself here, not its inverse ("Scale 10 10 10" makes a pattern ten times *finer*), and
 // scenes are tuned to that.

@@ -13,13 +13,13 @@ namespace lull {
 
 struct FloatTextureNode {
     std::variant<Scale<float>, MixTexture<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
-                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>, FilteredImageMap<float>>
+                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>>
         kind;
 };
 
 struct SpectrumTextureNode {
     std::variant<Scale<Rgb>, MixTexture<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
-                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors, FilteredImageMap<Rgb>>
+                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors>
         kind;
 };
 
@@ -146,11 +146,10 @@ TextureTable::~TextureTable() = default;
 TextureTable::TextureTable(TextureTable&&) noexcept = default;
 TextureTable& TextureTable::operator=(TextureTable&&) noexcept = default;
 
-TextureTable::TextureTable(const Description& description, Warnings& warnings,
-                           TextureFiltering filtering) {
+TextureTable::TextureTable(const Description& description, Warnings& warnings) {
     TextureImages images;
     for (const TextureEntity& entity : description.textures) {
-        const TextureInput input{entity, description, *this, images, warnings, filtering};
+        const TextureInput input{entity, description, *this, images, warnings};
         // Each texture takes a place in both lists, so that its index is its place in the
         // description; the one of the other type is never referred to.
         auto asFloat = ConstantTexture<float>(0);

@@ -4,30 +4,19 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/base/enum_names.h"
 #include "renderer/base/math.h"
 #include "renderer/input/description.h"
 #include "renderer/scene/interaction.h"
 
 namespace lull {
 
-// How images are filtered: bilinearly on the finest level, which is all that thousands of
-// samples need, or as in pbrt-v3, from smaller copies where camera rays hit.
-enum class TextureFiltering { Bilinear, PbrtV3 };
-template <>
-struct EnumNames<TextureFiltering> {
-    static constexpr std::pair<TextureFiltering, const char*> all[] = {
-        {TextureFiltering::Bilinear, "bilinear"}, {TextureFiltering::PbrtV3, "pbrt-v3"}};
-};
-
 // Inputs of a texture. As in pbrt-v3, noise leaves out octaves finer than the
 // distance between samples, which is 0, for full detail, if it is not known.
 struct TextureContext {
     Vec3f p;  // world
     Vec2f uv;
-    // Of p and of uv, from one sample to the next across and down the image.
+    // Of p, from one sample to the next across and down the image.
     Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();
-    Vec2f duvdx = Vec2f::Zero(), duvdy = Vec2f::Zero();
 };
 
 // Refers to a texture of a TextureTable, or is a constant, which is evaluated without a look-up.
@@ -50,7 +39,7 @@ class TextureTable {
     // Makes every texture of the description; warns of parameters without effect. Constant 1
     // substitutes an unsupported kind, pbrt-v3's grey an unreadable image. Errors are kept in the
     // warnings.
-    TextureTable(const Description&, Warnings&, TextureFiltering = TextureFiltering::Bilinear);
+    TextureTable(const Description&, Warnings&);
     TextureTable();  // empty
     ~TextureTable();
     TextureTable(TextureTable&&) noexcept;

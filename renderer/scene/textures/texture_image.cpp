@@ -93,22 +93,6 @@ Image ExtractChannel(const Image& image, TextureChannels wanted) {
     return grey;
 }
 
-// Returns the texels `scale` times as bright, rows from the bottom.
-std::vector<float> Decode(const TextureImage& image, float scale) {
-    std::vector<float> decoded;
-    std::visit(
-        [&](const auto& texels) {
-            decoded.reserve(texels.values.size());
-            for (const auto v : texels.values)
-                if constexpr (std::is_same_v<decltype(v), const uint8_t>)
-                    decoded.push_back(scale * image.decode[v]);
-                else
-                    decoded.push_back(scale * float(v));
-        },
-        image.texels);
-    return decoded;
-}
-
 }  // namespace
 
 size_t TextureImage::Bytes() const {
@@ -192,20 +176,8 @@ std::shared_ptr<const TextureImage> TextureImages::Get(const EmbeddedImage& imag
                 [&] { return ReadImage(image.name, image.type, image.bytes); });
 }
 
-std::shared_ptr<const MipPyramid> TextureImages::GetPyramid(
-    const std::shared_ptr<const TextureImage>& image, float scale, Wrap wrapS, Wrap wrapT) {
-    std::shared_ptr<const MipPyramid>& pyramid = pyramids[{image, scale, wrapS, wrapT}];
-    if (!pyramid)
-        pyramid =
-            std::make_shared<const MipPyramid>(image->width, image->height, image->IsGrey() ? 1 : 3,
-                                               Decode(*image, scale), wrapS, wrapT);
-    return pyramid;
-}
-
 size_t TextureImages::Bytes() const {
     size_t bytes = 0;
-    for (const auto& [key, pyramid] : pyramids) bytes += pyramid->Bytes();
-    if (bytes > 0) return bytes;
     std::set<const TextureImage*> counted;
     for (const auto& [key, image] : images)
         if (counted.insert(image.get()).second) bytes += image->Bytes();

@@ -11,7 +11,6 @@
 
 #include "renderer/image/image.h"
 #include "renderer/input/description.h"
-#include "renderer/scene/textures/mip_pyramid.h"
 
 namespace lull {
 
@@ -56,12 +55,7 @@ class TextureImages {
     std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, bool gamma,
                                             TextureChannels channels);
 
-    // Returns the image, multiplied by `scale`, with its smaller copies. It must be one of these
-    // images.
-    std::shared_ptr<const MipPyramid> GetPyramid(const std::shared_ptr<const TextureImage>&,
-                                                 float scale, Wrap wrapS, Wrap wrapT);
-
-    // Returns the memory taken by images, or by the pyramids alone if there are any.
+    // Returns the memory taken by images.
     size_t Bytes() const;
 
   private:
@@ -71,9 +65,6 @@ class TextureImages {
 
     std::map<std::tuple<std::string, bool, TextureChannels>, std::shared_ptr<const TextureImage>>
         images;
-    std::map<std::tuple<std::shared_ptr<const TextureImage>, float, Wrap, Wrap>,
-             std::shared_ptr<const MipPyramid>>
-        pyramids;
     // The last one read, as other channels of it are often asked for next.
     std::string lastName;
     Image last;

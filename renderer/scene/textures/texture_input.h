@@ -15,13 +15,12 @@ struct TextureInput {
     const TextureTable& table;  // holds all textures before this one
     TextureImages& images;
     Warnings& warnings;
-    TextureFiltering filtering = TextureFiltering::Bilinear;
 };
 
-// The result of a maker: a new texture of its kind or kinds, or the handle of an equivalent texture
-// or constant.
-template <typename T, typename... Kind>
-using Made = std::variant<TextureHandle<T>, Kind...>;
+// The result of a maker: a new texture of its kind, or the handle of an equivalent texture or
+// constant.
+template <typename T, typename Kind>
+using Made = std::variant<TextureHandle<T>, Kind>;
 
 // Reads a texture parameter of type T, float or Rgb.
 template <typename T>

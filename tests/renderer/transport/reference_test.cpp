@@ -136,18 +136,15 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     return result;
 }
 
-std::unique_ptr<const Scene> LoadScene(const std::filesystem::path& file, Estimator estimator,
-                                       TextureFiltering filtering) {
+std::unique_ptr<const Scene> LoadScene(const std::filesystem::path& file, Estimator estimator) {
     CompileOptions options;
     options.lightsAsPbrtV3 = estimator == Estimator::PbrtV3;
     options.film.resolution = Vec2i(128, 128);
-    options.filtering = filtering;
     return SceneIn(file.string(), options);
 }
 
-// Returns whether pbrt-v3's texture filtering shows at 128x128, so that the test has to ask for it:
-// pbrt-v3 looks up small images of bump maps and textures from the camera, which smooths them.
-// Without its filtering pbrt-v3 differs from itself in the same tiles:
+// Returns whether pbrt-v3's texture filtering shows at 128x128: it looks up small images of bump
+// maps and textures from the camera, which smooths them.
 //   staircase               nine imagemaps, a bump map
 //   contemporary-bathroom   eight imagemaps, three float ones, a bump map
 //   crown                   bump maps of most of the gold
@@ -161,10 +158,7 @@ TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
     const std::string name = std::get<0>(GetParam());
     const Estimator estimator = std::get<1>(GetParam());
     LULL_SHARED_FILE(file, "references/" + name + ".exr");
-    const auto filtering =
-        ShowsTextureFiltering(name) ? TextureFiltering::PbrtV3 : TextureFiltering::Bilinear;
-    const auto scene =
-        LoadScene(SharedFolder() / "pbrt-scenes" / name / "scene.pbrt", estimator, filtering);
+    const auto scene = LoadScene(SharedFolder() / "pbrt-scenes" / name / "scene.pbrt", estimator);
     const Reference reference = LoadReference(file.string());
     const int samples = FromEnvironment("LULL_REFERENCE_SPP", 64);
 

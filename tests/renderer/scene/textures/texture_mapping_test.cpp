@@ -76,48 +76,5 @@ TEST(Mapping, RefusesUnknownNames) {
     EXPECT_EQ(Map(mapping, At(0.25f, 0.5f)), Vec2f(0.25f, 0.5f));
 }
 
-TEST(MapFootprint, SaysHowFarTheMappedPointMoves) {
-    Mat4d place = Mat4d::Identity();
-    place(0, 3) = 0.3;
-    const auto kind = [](const char* name) { return StringParameter("mapping", name); };
-    const Mapping2D mappings[] = {
-        Make({FloatParameter("uscale", {2}), FloatParameter("vscale", {-3}),
-              FloatParameter("udelta", {10})}),
-        AffineUvMapping{{1, 2, 300}, {-3, 0.5f, 4}},
-        Make({kind("planar"), VectorParameter("v1", 1, 2, 3), VectorParameter("v2", 0, -1, 4),
-              FloatParameter("udelta", {1})}),
-        Make({kind("spherical")}, place), Make({kind("cylindrical")}, place)};
-    for (const Mapping2D& mapping : mappings) {
-        TextureContext c{{0.7f, 0.5f, -0.4f}, {0.2f, 0.6f}};
-        c.dpdx = {0.002f, 0.01f, -0.004f};
-        c.dpdy = {0.01f, 0, 0.006f};
-        c.duvdx = {0.003f, -0.002f};
-        c.duvdy = {0.001f, 0.005f};
-        const MappedFootprint f = MapFootprint(mapping, c);
-        EXPECT_EQ(f.st, Map(mapping, c));
-        TextureContext right = c, below = c;
-        right.p += c.dpdx;
-        right.uv += c.duvdx;
-        below.p += c.dpdy;
-        below.uv += c.duvdy;
-        const float tolerance = 4e-4f;
-        EXPECT_LT((Map(mapping, right) - f.st - f.dx).norm(), tolerance) << mapping.index();
-        EXPECT_LT((Map(mapping, below) - f.st - f.dy).norm(), tolerance) << mapping.index();
-        const MappedFootprint unknown = MapFootprint(mapping, TextureContext{c.p, c.uv});
-        EXPECT_EQ(unknown.st, f.st);
-        EXPECT_TRUE(unknown.dx.isZero(0) && unknown.dy.isZero(0));
-    }
-}
-
-// As pbrt-v3 does it, which folds the difference after it has divided by the step.
-TEST(MapFootprint, FoldsTheSeamOfAngles) {
-    const Mapping2D mapping = Make({StringParameter("mapping", "spherical")});
-    TextureContext c{{1, -1e-4f, 0}, {}};
-    c.dpdx = {0, 0.1f, 0};
-    const float jump = (Map(mapping, AtPoint({1, 0.0099f, 0})).y() - Map(mapping, c).y()) / 0.1f;
-    ASSERT_LT(jump, -9);
-    EXPECT_NEAR(MapFootprint(mapping, c).dx.y(), -(jump + 1), 1e-4f);
-}
-
 }  // namespace
 }  // namespace lull

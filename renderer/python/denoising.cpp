@@ -1,0 +1,176 @@
+#include "renderer/python/bindings.h"
+
+#include <lull/lull.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "renderer/python/arrays.h"
+#include "renderer/python/check.h"
+
+namespace py = pybind11;
+
+namespace lull {
+
+namespace {
+
+// Pixels; less at the right and at the bottom is no block of its own.
+constexpr int kLeastRest = 40;
+
+constexpr const char* kColourName = "a or b";
+
+using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+// Returns an image as contiguous floats; channels beyond those wanted, such as alpha, are left out.
+Floats ToFloats(const py::array& array, const std::string& name, int channels, py::ssize_t height,
+                py::ssize_t width) {
+    CheckShape(array, name, height, width, channels);
+    if (array.dtype().kind() != 'f')
+        throw py::value_error(name + " has the type " + TypeOf(array) +
+                              "; linear floats are needed");
+    const py::array wanted = array.ndim() == 2 ? array : FirstChannels(array, channels);
+    if (name == kColourName)
+        WarnOfColours(wanted, name);
+    else if (channels == 3)
+        WarnOfValues(wanted, name);  // depths may be infinite
+    return Floats(wanted);
+}
+
+// The arrays that a lull_halves points to.
+class Halves {
+  public:
+    Halves(const py::array& a, const py::array& b, const char* name, int channels,
+           py::ssize_t height, py::ssize_t width)
+        : a(ToFloats(a, name, channels, height, width)),
+          b(ToFloats(b, name, channels, height, width)) {}
+
+    // Reads one image, a pair of them, or None.
+    static std::optional<Halves> Read(const py::object& given, const char* name, int channels,
+                                      py::ssize_t height, py::ssize_t width) {
+        if (given.is_none()) return {};
+        if (py::isinstance<py::array>(given)) {
+            const auto image = given.cast<py::array>();
+            return Halves(image, image, name, channels, height, width);
+        }
+        if (!py::isinstance<py::sequence>(given) || py::len(given) != 2)
+            throw py::value_error(std::string(name) + " must be an array, or a pair of arrays");
+        const auto pair = given.cast<py::sequence>();
+        return Halves(pair[0].cast<py::array>(), pair[1].cast<py::array>(), name, channels, height,
+                      width);
+    }
+
+    lull_halves View() const { return {a.data(), b.data(), 0, 0, 0}; }
+
+  private:
+    Floats a, b;
+};
+
+lull_halves ViewOf(const std::optional<Halves>& halves) {
+    return halves ? halves->View() : lull_halves{};
+}
+
+// Returns where blocks begin along an axis, and its end.
+std::vector<int> CutsOf(int length, int side) {
+    std::vector<int> cuts;
+    for (int at = 0; at == 0 || at + kLeastRest <= length; at += side) cuts.push_back(at);
+    cuts.push_back(length);
+    return cuts;
+}
+
+struct Denoised {
+    py::array_t<float> picture, error;
+    int columns = 0;
+    std::vector<lull_block_error> blocks;
+
+    py::array_t<double> Of(double lull_block_error::*field) const {
+        return ValuesOf<double>(blocks, columns, field);
+    }
+    std::vector<std::tuple<int, int, int, int>> Rects() const {
+        std::vector<std::tuple<int, int, int, int>> rects;
+        for (const lull_block_error& b : blocks) rects.emplace_back(b.x, b.y, b.width, b.height);
+        return rects;
+    }
+};
+
+Denoised Denoise(const py::array& a, const py::array& b, const py::object& albedo,
+                 const py::object& normal, const py::object& depth, int block) {
+    if (a.ndim() != 3) throw py::value_error("a has the shape " + ShapeOf(a) + ", not H x W x 3");
+    if (block < kLeastRest)
+        throw py::value_error("blocks of " + std::to_string(block) + " pixels; at least " +
+                              std::to_string(kLeastRest) + " are needed");
+    const py::ssize_t height = a.shape(0), width = a.shape(1);
+    const Halves colour(a, b, kColourName, 3, height, width);
+    const auto albedos = Halves::Read(albedo, "albedo", 3, height, width),
+               normals = Halves::Read(normal, "normal", 3, height, width),
+               depths = Halves::Read(depth, "depth", 1, height, width);
+    const lull_noisy_picture noisy = {int(width),      int(height),     colour.View(),
+                                      ViewOf(albedos), ViewOf(normals), ViewOf(depths)};
+    Denoised result{py::array_t<float>({height, width, py::ssize_t(3)}),
+                    py::array_t<float>({height, width}),
+                    0,
+                    {}};
+    const std::vector<int> xs = CutsOf(int(width), block), ys = CutsOf(int(height), block);
+    result.columns = int(xs.size()) - 1;
+    for (size_t v = 0; v + 1 < ys.size(); ++v)
+        for (size_t u = 0; u + 1 < xs.size(); ++u)
+            result.blocks.push_back({xs[u], ys[v], xs[u + 1] - xs[u], ys[v + 1] - ys[v], 0, 0});
+    lull_denoised_picture clean = {result.picture.mutable_data(), result.error.mutable_data(),
+                                   result.blocks.data(), int(result.blocks.size())};
+    lull_status status;
+    {
+        const py::gil_scoped_release others;
+        status = lull_denoise(&noisy, &clean);
+    }
+    Check(status);
+    return result;
+}
+
+std::string ReprOf(const Denoised& d) {
+    const auto worst = std::ranges::max(d.blocks, {}, &lull_block_error::upper);
+    return py::str(
+               "<lull.Denoised of {} x {} pixels: visible difference {:.2g} in its worst "
+               "block, hardly above {:.2g}>")
+        .format(d.picture.shape(1), d.picture.shape(0), worst.estimate, worst.upper);
+}
+
+}  // namespace
+
+void BindDenoising(py::module_& module) {
+    using namespace py::literals;
+    py::class_<Denoised>(module, "Denoised", "A denoised image and its estimated error.")
+        .def_readonly("picture", &Denoised::picture, "H x W x 3, float32, linear.")
+        .def_readonly("error", &Denoised::error,
+                      "H x W: the estimated standard error of each pixel in L*.")
+        .def_property_readonly("blocks", &Denoised::Rects,
+                               "Rectangles of the blocks: (x, y, width, height), row by row.")
+        .def_property_readonly(
+            "estimate", [](const Denoised& d) { return d.Of(&lull_block_error::estimate); },
+            "Visible difference of each block from the true image, an array of rows x columns; "
+            "observers just accept 3.1.")
+        .def_property_readonly(
+            "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
+            "Upper bound of the visible difference, exceeded in 10 of 100 blocks.")
+        .def("__repr__", [](const Denoised& d) { return ReprOf(d); });
+
+    module.def("denoise", &Denoise, "a"_a, "b"_a, py::kw_only(), "albedo"_a = py::none(),
+               "normal"_a = py::none(), "depth"_a = py::none(), "block"_a = 200,
+               "Denoises an image, given as two half buffers.\n\n"
+               "Args:\n"
+               "    a, b: means of independent samples, H x W x 3, linear; e.g. renders with other "
+               "seeds.\n"
+               "    albedo: of first hits, H x W x 3, 0 to 1: an array, or a pair for a and b.\n"
+               "    normal: of first hits, H x W x 3, -1 to 1; likewise.\n"
+               "    depth: of first hits, H x W, above 0; likewise.\n"
+               "    block: side of the blocks of the error estimate, in pixels.\n\n"
+               "Returns: a Denoised.\n"
+               "Raises: ValueError for arrays of another shape, type or range, and for dependent a "
+               "and b.");
+}
+
+}  // namespace lull
