@@ -102,7 +102,7 @@ TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
 
 TEST(ComparisonJson, HasThePointsOfCurves) {
     ComparisonReport report = TwoRows();
-    report.curvePoints = {{.rule = "fixed", .setting = "20", .spp = 20}};
+    report.curvePoints = {{.rule = "fixed", .setting = "20", .spp = 20, .figures = {}}};
     report.curvePoints[0].figures.psnr = std::numeric_limits<double>::infinity();
     const Json json = ComparisonJson(report), point = json["errorCurves"]["points"][0];
     EXPECT_EQ(point["rule"], "fixed");
