@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Makes a wheel, which pip installs, from a tree of `cmake --install`.
 
-wheel.py TREE PYTHON_DIR VERSION ARCH FOLDER: PYTHON_DIR is where the modules are in TREE, ARCH for
+wheel.py TREE PYTHON_DIR VERSION ARCH FOLDER [PLATFORM]: PYTHON_DIR is where the modules are in TREE, ARCH for
 which processor they are built ("": any). Run by the Python that the modules are for. In the wheel
 everything lies as in TREE, so that it finds the rest as it does there; the libraries of the system
-that it needs are not in it.
+that it needs are not in it, unless TREE has them; PLATFORM then says what it runs on, such as manylinux_2_36_x86_64.
+The name `lull` is another's on the index of Python packages; the module is `lull` all the same.
 """
 import base64
 import hashlib
@@ -16,7 +17,7 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).parents[1]
 METADATA = """Metadata-Version: 2.1
-Name: lull
+Name: lull-render
 Version: {version}
 Summary: path tracer that knows when to stop
 License: Apache-2.0
@@ -47,16 +48,17 @@ def contents(tree, python_dir, data):
 
 
 def main():
-    if len(sys.argv) != 6:
+    if len(sys.argv) not in (6, 7):
         raise SystemExit(__doc__)
-    tree, python_dir, version, arch, folder = sys.argv[1:]
+    tree, python_dir, version, arch, folder = sys.argv[1:6]
+    platform = sys.argv[6] if len(sys.argv) == 7 else sysconfig.get_platform()
     if len(pathlib.Path(python_dir).parts) != 3:  # as lib/python3.11/site-packages has
         raise SystemExit(f"LULL_PYTHON_DIR={python_dir}: a wheel needs it to be LIB/PYTHON/PACKAGES")
     if arch:
         version += "+" + re.sub(r"[^a-z0-9]+", ".", arch.lower())
     python = "cp%d%d" % sys.version_info[:2]
-    tag = f"{python}-{python}-" + re.sub(r"[-.]", "_", sysconfig.get_platform())
-    info, data = f"lull-{version}.dist-info", f"lull-{version}.data"
+    tag = f"{python}-{python}-" + re.sub(r"[-.]", "_", platform)
+    info, data = f"lull_render-{version}.dist-info", f"lull_render-{version}.data"
     files = {name: path.read_bytes() for name, path in contents(pathlib.Path(tree), python_dir, data)}
     files[f"{info}/METADATA"] = METADATA.format(version=version, python="%d.%d" % sys.version_info[:2]).encode()
     files[f"{info}/WHEEL"] = WHEEL.format(tag=tag).encode()
@@ -69,7 +71,7 @@ def main():
         rows += f"{name},sha256={digest},{len(content)}\n"
     files[record] = (rows + f"{record},,\n").encode()
 
-    wheel = pathlib.Path(folder, f"lull-{version}-{tag}.whl")
+    wheel = pathlib.Path(folder, f"lull_render-{version}-{tag}.whl")
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             entry = zipfile.ZipInfo(name)  # of 1980: the same files make the same wheel

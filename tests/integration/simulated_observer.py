@@ -1,7 +1,6 @@
 """Works through a study of `lull study`, as an observer who sees noise by a rule."""
 import json
 import pathlib
-import random
 import time
 
 # A person takes time to look; a program that plays one says that it did.
