@@ -60,7 +60,9 @@ def main():
     tag = f"{python}-{python}-" + re.sub(r"[-.]", "_", platform)
     info, data = f"lull_render-{version}.dist-info", f"lull_render-{version}.data"
     files = {name: path.read_bytes() for name, path in contents(pathlib.Path(tree), python_dir, data)}
-    files[f"{info}/METADATA"] = METADATA.format(version=version, python="%d.%d" % sys.version_info[:2]).encode()
+    address = re.search(r'HOMEPAGE_URL "(.+)"', (ROOT / "CMakeLists.txt").read_text())
+    metadata = METADATA.format(version=version, python="%d.%d" % sys.version_info[:2])
+    files[f"{info}/METADATA"] = (metadata + (f"Home-page: {address[1]}\n" if address else "")).encode()
     files[f"{info}/WHEEL"] = WHEEL.format(tag=tag).encode()
     files[f"{info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     files[f"{info}/LICENSE.uPlot"] = (ROOT / "renderer/pages/uPlot/LICENSE").read_bytes()
