@@ -217,7 +217,7 @@ TEST(Install, WheelWorksWherePipPutsIt) {
     const std::string make = "'" LULL_PYTHON "' '" LULL_WHEEL "' tree '" LULL_PYTHON_DIR
                              "' " LULL_VERSION " 'x86-64-v3' ";
     const std::string wheel = here(make + ".");
-    EXPECT_TRUE(Contains(wheel, "lull-" LULL_VERSION "+x86.64.v3-cp3")) << wheel;
+    EXPECT_TRUE(Contains(wheel, "lull_render-" LULL_VERSION "+x86.64.v3-cp3")) << wheel;
     here("mkdir again && " + make + "again && cmp *.whl again/*.whl");
     here("rm -r tree && env/bin/python -m pip install -q --no-index *.whl >&2");
     EXPECT_EQ(here("env/bin/lull --version"), "lull " LULL_VERSION "\n");
@@ -232,7 +232,7 @@ TEST(Install, WheelWorksWherePipPutsIt) {
     EXPECT_TRUE(out.starts_with("<lull.Answer: 0 of 1 blocks stopped, at 40 to 40 spp>\n2\n"))
         << out;
     EXPECT_TRUE(Contains(out, "/env/lib/python3")) << out;
-    here("env/bin/python -m pip uninstall -q -y lull >&2 && test ! -e env/bin/lull");
+    here("env/bin/python -m pip uninstall -q -y lull-render >&2 && test ! -e env/bin/lull");
 }
 
 // A package, made of what is built, unpacked and run: nothing of the system is changed.
