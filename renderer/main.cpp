@@ -25,6 +25,11 @@ namespace {
 // The subcommands that several ranks can share.
 constexpr std::array kSharedCommands = {"render", "compare", "bench", "record"};
 
+// Options that earlier versions had, and what to use instead.
+constexpr std::pair<std::string_view, const char*> kRemovedOptions[] = {
+    {"--guide", "--denoise, or --integrator bdpt for light through glass"},
+    {"--guide-memory", "--denoise, or --integrator bdpt for light through glass"}};
+
 // Lists the options of a command that has common ones: by --help these, and those that no other
 // command has, by --help-all all of them by subject.
 class BriefHelp : public CLI::Formatter {
@@ -138,6 +143,8 @@ std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
         std::ranges::find_if(rest, [](const auto& w) { return w.starts_with("-"); });
     if (option == rest.end()) return "unexpected argument '" + rest.front() + "'" + help;
     const std::string word = option->substr(0, option->find('='));
+    for (const auto& [name, instead] : kRemovedOptions)
+        if (word == name) return fmt::format("{} was removed; use {}", name, instead);
     std::vector<std::string> names;
     for (const CLI::Option* known : command.get_options())
         for (const std::string& name : known->get_lnames()) names.push_back("--" + name);

@@ -14,7 +14,7 @@ from crops import crop, sheet
 
 SCENES = pathlib.Path(__file__).resolve().parent
 CORNELL = ["cornell/scene.pbrt", "--resolution", "100x100"]
-DARK = ["dark/scene.pbrt", "--resolution", "200x200", "--crop", "0,0.5,0.5,1", "--spp", "128", "--sampler", "sobol"]
+DARK = ["dark/scene.pbrt", "--resolution", "200x200", "--crop", "0,0.5,0.5,1", "--spp", "128"]
 CAUSTIC = ["caustic/scene.pbrt", "--resolution", "200x200", "--crop", "0.5,1,0.5,1", "--spp", "64", "--sampler", "sobol"]
 GLOSSY = ["glossy/scene.pbrt", "--resolution", "200x200", "--crop", "0.2,0.7,0.5,1"]
 CAUTION = [
@@ -27,10 +27,10 @@ CAUTION = [
 ]
 REMEDIES = [
     {"cz_path": ("caustic, path", CAUSTIC),
-     "dk_off": ("dark, path", DARK),
+     "dk_off": ("dark, path", DARK + ["--sampler", "sobol"]),
      "dn4": ("glossy, --denoise --spp 4", GLOSSY + ["--spp", "4", "--denoise"])},
     {"cz_bdpt": ("--integrator bdpt", CAUSTIC + ["--integrator", "bdpt"]),
-     "dk_on": ("--guide on", DARK + ["--guide", "on"]),
+     "dk_on": ("--denoise", DARK + ["--denoise"]),
      "dnstop": ("--denoise", GLOSSY + ["--denoise"])},
 ]
 

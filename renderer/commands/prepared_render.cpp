@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "renderer/commands/denoising.h"
-#include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/layer_options.h"
 #include "renderer/mpi/job.h"
@@ -97,8 +96,6 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->grades = NamesOf(p.grades);
     provenance->logRatios = p.rule.logRatios;
     provenance->trend = p.rule.trend;
-    provenance->guide = p.request.guide.mode;
-    provenance->guideMegabytes = p.request.guide.megabytes;
 }
 
 RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) {
@@ -143,7 +140,6 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     p->film.layers.groups =
         ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);
     CheckFilmFits(region, FilmFor(*render.scene, p->film), BytesBeside(request));
-    CheckGuide(request.guide, *render.scene, render.settings.estimator);
     SetProvenance(*p, &render.provenance);
     p->histories.resize(p->blocks.size());
     return p;

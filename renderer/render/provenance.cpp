@@ -43,12 +43,6 @@ std::vector<NamedProvenance> PartsOf(const Provenance& p) {
     if (!p.clock.empty()) parts.push_back({nullptr, "clock", "clock", p.clock});
     if (p.filtering != TextureFiltering::Bilinear)
         parts.push_back({"filtering", "filtering", "filtering", NameOf(p.filtering)});
-    if (p.guide == GuideMode::Off) return parts;
-    const std::string mode = NameOf(p.guide);
-    parts.push_back(
-        {"guide", nullptr, nullptr, fmt::format("{} of {} MB", mode, p.guideMegabytes)});
-    parts.push_back(
-        {nullptr, "guide", nullptr, mode + (p.guideFigures.isUsed ? ": used" : ": not used")});
     return parts;
 }
 

@@ -290,26 +290,6 @@ TEST(Bench, WritesPointsForBothSamplersAndOtherRenderers) {
         EXPECT_FALSE(Contains(entry.path().string(), "checkpoint")) << entry.path();
 }
 
-TEST(Bench, GuidesPathsToo) {
-    const SceneDirectory directory;
-    const Outcome outcome = ExpectSuccess(directory,
-                                          "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
-                                          "--samplers sobol --guide on -o room --report room.html");
-    EXPECT_TRUE(Contains(outcome.err, "learned from")) << outcome.err;
-    const std::string csv = ReadBytes(directory.File("room.csv"));
-    // Both have the same points; that of the cap is another image's, not the reference.
-    for (const char* part :
-         {"\nfixed,20,sobol,20,", "\nfixed,20,sobol+guide,20,", "\nlearned,,sobol+guide,"})
-        EXPECT_TRUE(Contains(csv, part)) << part << csv;
-    EXPECT_FALSE(Contains(csv, "sobol+guide,60,0,")) << csv;
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("room.html")), "sobol+guide"));
-    // Where auto does not guide, there are no such points.
-    const Outcome few = ExpectSuccess(directory,
-                                      "bench scene.pbrt --resolution 48x44 --block 44 --cap 60 "
-                                      "--samplers sobol --guide auto -o few");
-    EXPECT_FALSE(Contains(ReadBytes(directory.File("few.csv")), "guide"));
-}
-
 TEST(Bench, DenoisesToo) {
     const SceneDirectory directory;
     ExpectSuccess(directory,
@@ -372,7 +352,6 @@ TEST(Bench, SaysWhatIsWrong) {
                   {"others.csv:1: ", "name,seconds,file.exr"});
     ExpectFailure(directory, "bench scene.pbrt --external lost.csv", {"lost.exr"});
     ExpectFailure(directory, "bench scene.pbrt --rule dammertz:x", {"--rule", "'x'"}, 2);
-    ExpectFailure(directory, "bench scene.pbrt --guide on --estimator pbrt-v3", {"--guide on"});
     ExpectFailure(directory, "bench scene.pbrt --samplers random,random",
                   {"--samplers: random is given twice"}, 2);
     EXPECT_EQ(RunLull(directory, "bench scene.pbrt --samplers halton").exitCode, 2);

@@ -8,7 +8,6 @@
 
 #include "renderer/base/clocks.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/option_values.h"
 #include "renderer/commands/render_job.h"
@@ -26,7 +25,6 @@ namespace {
 
 struct Options {
     RenderSettings render;
-    GuideOptions guide;
     std::vector<std::string> samplers;  // none: the usual ones
     std::vector<std::string> rules;     // beside those that are always measured
     bool denoise = false;
@@ -40,10 +38,6 @@ and of the other stopping rules over a range of their settings. It also gives th
 measured CPU time, divided by the number of threads. Errors are relative to --reference, or else to
 the image of the first sampler at the cap. That image contains the samples of its sampler's other
 images, so that their error is understated near the cap.
-
-With --guide, each sampler renders again with guided paths, "sobol-halves+guide"; the time between rounds of
-learning is part of the seconds of each of these points. With auto, there are such points only where
-the guide is used.
 
 With --denoise, images that the rule `denoised` stops (with --rule also at other thresholds than
 its own) are rendered again and denoised. The time of this and of the checks is counted.
@@ -67,7 +61,6 @@ void AddOptions(CLI::App& app, Options* o) {
         ->delimiter(',')
         ->check(CLI::IsMember(ChoicesOf<SamplerKind>()))
         ->type_name("S,S");
-    AddGuideOptions(app, &o->guide);
     app.add_option("--rule", o->rules, "Measure this rule, too; can be given again")
         ->take_all()
         ->type_name("RULE");
@@ -108,23 +101,11 @@ std::vector<MonitoredRule> MakeRules(const Options& options, const RenderJob& re
     return rules;
 }
 
-// One variant of rendering, with a curve of its own.
-struct Variant {
-    SamplerKind sampler = SamplerKind::Sobol;
-    bool isGuided = false;
-};
-
-std::string NameOf(const Variant& variant) {
-    return NameOf(variant.sampler) + (variant.isGuided ? "+guide" : "");
-}
-
-std::vector<Variant> Variants(const Options& options) {
-    std::vector<Variant> variants;
-    for (const bool isGuided : {false, true})
-        for (const std::string& name : options.samplers)
-            if (!isGuided || options.guide.mode != GuideMode::Off)
-                variants.push_back({*ValueNamed<SamplerKind>(name), isGuided});
-    return variants;
+std::vector<SamplerKind> SamplersOf(const Options& options) {
+    std::vector<SamplerKind> samplers;
+    for (const std::string& name : options.samplers)
+        samplers.push_back(*ValueNamed<SamplerKind>(name));
+    return samplers;
 }
 
 void CheckSamplers(const std::vector<std::string>& samplers) {
@@ -133,8 +114,8 @@ void CheckSamplers(const std::vector<std::string>& samplers) {
             throw UsageError("--samplers: " + sampler + " is given twice");
 }
 
-std::string CheckpointName(const Options& options, const Variant& variant) {
-    return fmt::format("{}.{}.checkpoint", options.output, NameOf(variant));
+std::string CheckpointName(const Options& options, SamplerKind sampler) {
+    return fmt::format("{}.{}.checkpoint", options.output, NameOf(sampler));
 }
 
 // All that the renders of the scene have in common.
@@ -156,8 +137,8 @@ void CheckFiles(Bench* bench) {
     const Options& options = bench->options;
     std::vector<NamedFile> outputs = {{"-o", options.output + ".csv"},
                                       {"--report", options.report}};
-    for (const Variant& variant : Variants(options))
-        outputs.push_back({"the checkpoint", CheckpointName(options, variant)});
+    for (const SamplerKind sampler : SamplersOf(options))
+        outputs.push_back({"the checkpoint", CheckpointName(options, sampler)});
     std::vector<NamedFile> inputs = {{"--reference", options.reference},
                                      {"--external", options.external}};
     for (const ExternalImage& image : bench->external)
@@ -183,8 +164,7 @@ std::unique_ptr<Bench> Prepare(const Options& options, MpiJob* ranks) {
     for (const ExternalImage& external : bench->external)
         bench->externalImages.push_back(ReadImageOfSize(external.file, region));
     render.Compile();
-    for (const Variant& variant : Variants(options)) render.CheckSampler(variant.sampler);
-    CheckGuide(options.guide, *render.scene, options.render.estimator);
+    for (const SamplerKind sampler : SamplersOf(options)) render.CheckSampler(sampler);
     bench->sceneHash = SceneHash(render.input.description);
     return bench;
 }
@@ -211,29 +191,22 @@ class PointCounter {
     const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-// Returns how to render a variant.
-SessionOptions MakeOptions(const Bench& bench, const Variant& variant) {
-    const Options& options = bench.options;
+// Returns how to render with a sampler.
+SessionOptions MakeOptions(const Bench& bench, SamplerKind sampler) {
     Provenance provenance = bench.render.provenance;
-    provenance.sampler = variant.sampler;
-    if (variant.isGuided) {
-        provenance.guide = options.guide.mode;
-        provenance.guideMegabytes = options.guide.megabytes;
-    }
+    provenance.sampler = sampler;
     for (const MonitoredRule& rule : bench.rules) provenance.criterion += rule.text + " ";
     SessionOptions how = bench.render.MakeSessionOptions(false);
-    how.render.sampler = variant.sampler;
-    if (variant.isGuided) how.guide = options.guide;
+    how.render.sampler = sampler;
     how.checkpoint.isKept = true;
     how.identity = IdentityOf(provenance, bench.sceneHash);
-    how.film.layers.features = options.denoise;
+    how.film.layers.features = bench.options.denoise;
     return how;
 }
 
-// Adds the points of a variant, of which the first render's whole image is the reference, unless
-// another was given.
-void AddPoints(const Variant& variant, const MonitoredRender& monitored,
-               const GuideFigures& guidance, Bench* bench) {
+// Adds the points of a sampler. The whole image of the first is the reference, unless another was
+// given.
+void AddPoints(SamplerKind sampler, const MonitoredRender& monitored, Bench* bench) {
     const bool makesReference = !bench->reference;
     const int threads = monitored.result.threads;
     if (makesReference) bench->reference = TakeWholeImage(monitored).image;
@@ -241,36 +214,31 @@ void AddPoints(const Variant& variant, const MonitoredRender& monitored,
     for (BenchPoint point :
          MeasurePoints(monitored, bench->rules, *bench->reference, bench->options.display, threads,
                        [&] { counter.Add(); })) {
-        point.sampler = NameOf(variant);
+        point.sampler = NameOf(sampler);
         point.sharesReference = makesReference;
-        point.seconds += guidance.seconds;
-        point.threadSeconds += guidance.seconds * threads;
         bench->points.push_back(std::move(point));
     }
 }
 
-// Renders a variant, or continues an earlier run, and adds its points: none, where --guide auto
-// does not guide. Returns false if it was interrupted. The ranks share the render, and the first
-// measures.
-bool BenchVariant(const Variant& variant, Bench* bench) {
+// Renders with a sampler, or continues an earlier run, and adds its points. Returns false if it was
+// interrupted. The ranks share the render, and the first measures.
+bool BenchSampler(SamplerKind sampler, Bench* bench) {
     RenderJob& render = bench->render;
     RenderSettings& settings = render.settings;
     const PixelRect& region = render.input.region;
-    settings.checkpoint = ResumeIfThere(CheckpointName(bench->options, variant),
+    settings.checkpoint = ResumeIfThere(CheckpointName(bench->options, sampler),
                                         bench->options.render.checkpoint.interval);
     render.LockCheckpoint();
     std::vector<BlockHistory> histories(MakeBlocks(region, settings.schedule).size());
-    SessionOptions how = MakeOptions(*bench, variant);
+    SessionOptions how = MakeOptions(*bench, sampler);
     how.render.makeCriterion = MakeMonitors(bench->rules, region, settings.schedule,
                                             {.snapshots = true, .goesOn = true}, &histories);
     Session session(*render.scene, region, how);
-    if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(variant));
+    if (!settings.quiet) TalkOf(settings).Note("rendering with " + NameOf(sampler));
     const RenderResult result = render.Run(&session);
     if (result.cancelled) return false;
-    if (variant.isGuided && !session.Guidance().isUsed) return true;
     if (session.Leads())
-        AddPoints(variant, {session.Context(), session.Options(), result, histories},
-                  session.Guidance(), bench);
+        AddPoints(sampler, {session.Context(), session.Options(), result, histories}, bench);
     return true;
 }
 
@@ -285,9 +253,6 @@ std::vector<std::string> Notes(const Options& options) {
     notes.push_back(
         "Seconds are the measured CPU time, of the samples and of the rule, divided "
         "by the number of threads.");
-    if (options.guide.mode != GuideMode::Off)
-        notes.push_back(
-            "The seconds of guided points have all the time between rounds of learning in them.");
     return notes;
 }
 
@@ -313,20 +278,20 @@ ExitCode RunBench(Options options, MpiJob* ranks) {
     CheckSamplers(options.samplers);
     options.output = BeginningOfNames(options.output, SceneName(settings.scene.file) + ".bench");
     const std::unique_ptr<Bench> bench = Prepare(options, ranks);
-    const std::vector<Variant> variants = Variants(options);
+    const std::vector<SamplerKind> samplers = SamplersOf(options);
     bool isInterrupted = false;
     std::vector<std::string> names;
-    for (const Variant& variant : variants) {
-        names.push_back(NameOf(variant));
-        if ((isInterrupted = !BenchVariant(variant, bench.get()))) break;
+    for (const SamplerKind sampler : samplers) {
+        names.push_back(NameOf(sampler));
+        if ((isInterrupted = !BenchSampler(sampler, bench.get()))) break;
     }
     if (const auto code = bench->render.End(isInterrupted)) return *code;
     for (size_t i = 0; i < bench->external.size(); ++i)
         bench->points.push_back(MeasureExternal(bench->external[i], bench->externalImages[i],
                                                 *bench->reference, options.display));
     WriteBench(*bench, names);
-    for (const Variant& variant : variants)
-        std::filesystem::remove(CheckpointName(options, variant));
+    for (const SamplerKind sampler : samplers)
+        std::filesystem::remove(CheckpointName(options, sampler));
     return kDone;
 }
 
