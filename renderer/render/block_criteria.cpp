@@ -103,7 +103,6 @@ BlockCheck BlockCriteria::Check(int index, const Block& block, int spp, double s
     view.spp = spp;
     view.seconds = seconds;
     BlockCheck check;
-    check.variance = view.variance;
     if (criterion) {
         check.decision = criterion->Observe(view);
         check.networkNoise = criterion->NetworkNoise();

@@ -77,7 +77,7 @@ ViewNeed NeedOf(const ModelSettings& settings) {
 
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
     CheckView(view, NeedOf(settings));
-    BlockMeasures measures{.spp = view.spp, .variance = view.variance};
+    BlockMeasures measures{.spp = view.spp};
     MeasureDisplayed(view, settings, &measures);
     if (Needs(settings, Feature::DetailMaskedNoise)) MeasureStatistics(view, &measures);
     if (Needs(settings, Feature::VisibleDrop))
