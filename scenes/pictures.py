@@ -80,7 +80,7 @@ def remedies():
     labelled_crops("remedies", [
         [("caustic, path", "caustic", caustic), ("dark, path", "dark", dark),
          ("glossy, --denoise --spp 4", "glossy", dict(glossy, spp=4))],
-        [("--integrator bdpt", "caustic", dict(caustic, integrator="bdpt")), ("--guide on", "dark", dict(dark, guide="on")),
+        [("--integrator bdpt", "caustic", dict(caustic, integrator="bdpt")), ("--denoise", "dark", dict(resolution="200x200", crop="0,0.5,0.5,1", denoise=True)),
          ("--denoise", "glossy", glossy)]]).save(PICTURES / "remedies.jpg", quality=92)
 
 

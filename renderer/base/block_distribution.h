@@ -27,48 +27,29 @@ class BlockDistribution {
         Vec2f place = u;
         float pmf;
         const Vec2i block = blocks.SampleDiscrete(&place, &pmf);
-        const Vec2f st = SampleIn(block, place, pdf);
-        *pdf *= pmf;
-        return st;
-    }
-    // Returns the density at a point of the unit square.
-    float Pdf(const Vec2f& st) const {
-        Vec2i block;
-        const float pdf = PdfIn(st, &block);
-        return pdf * blocks.Pmf(block);
-    }
-
-    // Return the number of blocks along each axis, and a block's probability, for sampling of
-    // blocks by other probabilities.
-    Vec2i BlockCounts() const {
-        return {(columns + kSide - 1) / kSide, (rows + kSide - 1) / kSide};
-    }
-    float BlockPmf(const Vec2i& block) const { return blocks.Pmf(block); }
-    // Returns a point of a block, by a place in the unit square, and the density, given the block.
-    Vec2f SampleIn(const Vec2i& block, Vec2f place, float* pdf) const {
         *pdf = scale;
-        const int32_t table = tables[size_t(block.y()) * size_t(blocks.Columns()) + block.x()];
         Vec2f cell = kSide * (block.cast<float>() + place);
-        if (table >= 0) {
+        if (const int32_t table = TableOf(block); table >= 0) {
             const Cells& in = cells[table];
             const int row = Choose(in.rows, &place.y(), pdf);
             const int column = Choose(in.columns[row], &place.x(), pdf);
             *pdf *= kSide * kSide;
             cell = (kSide * block + Vec2i(column, row)).cast<float>() + place;
         }
+        *pdf *= pmf;
         return {std::min(cell.x() / float(columns), kOneMinusEpsilon),
                 std::min(cell.y() / float(rows), kOneMinusEpsilon)};
     }
-    // Returns the density at a point of the unit square, and its block, given which it is.
-    float PdfIn(const Vec2f& st, Vec2i* block) const {
+    // Returns the density at a point of the unit square.
+    float Pdf(const Vec2f& st) const {
         const int column = std::clamp(int(st.x() * float(columns)), 0, columns - 1);
         const int row = std::clamp(int(st.y() * float(rows)), 0, rows - 1);
-        *block = {column / kSide, row / kSide};
-        const int32_t table = tables[size_t(block->y()) * size_t(blocks.Columns()) + block->x()];
-        if (table < 0) return scale;
+        const Vec2i block(column / kSide, row / kSide);
+        const int32_t table = TableOf(block);
+        if (table < 0) return scale * blocks.Pmf(block);
         const Cells& in = cells[table];
         return scale * (kSide * kSide) * Pmf(in.rows, row % kSide) *
-               Pmf(in.columns[row % kSide], column % kSide);
+               Pmf(in.columns[row % kSide], column % kSide) * blocks.Pmf(block);
     }
 
   private:
@@ -81,6 +62,9 @@ class BlockDistribution {
         std::array<Sums, kSide> columns;
     };
 
+    int32_t TableOf(const Vec2i& block) const {
+        return tables[size_t(block.y()) * size_t(blocks.Columns()) + block.x()];
+    }
     static float Pmf(const Sums& sums, int i) { return i == 0 ? sums[0] : sums[i] - sums[i - 1]; }
     // Chooses an element; `u` in [0, 1) becomes the place in it, and `pmf` is multiplied by its
     // probability.

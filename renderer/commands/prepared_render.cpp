@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "renderer/commands/denoising.h"
-#include "renderer/commands/guide_options.h"
 #include "renderer/commands/input_files.h"
 #include "renderer/commands/layer_options.h"
 #include "renderer/mpi/job.h"
@@ -94,8 +93,6 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();
     provenance->grades = NamesOf(p.grades);
-    provenance->guide = p.request.guide.mode;
-    provenance->guideMegabytes = p.request.guide.megabytes;
 }
 
 RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) {
@@ -135,7 +132,6 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     p->film.layers.groups =
         ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);
     CheckFilmFits(region, FilmFor(*render.scene, p->film), BytesBeside(request));
-    CheckGuide(request.guide, *render.scene, render.settings.estimator);
     SetProvenance(*p, &render.provenance);
     p->histories.resize(p->blocks.size());
     return p;

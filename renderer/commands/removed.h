@@ -13,6 +13,8 @@ struct Removed {
 
 inline constexpr std::array kRemoved = {
     Removed{"", "--filtering", "images are filtered bilinearly; take more samples against moire"},
+    Removed{"", "--guide", "use --denoise, or --integrator bdpt for light through glass"},
+    Removed{"", "--guide-memory", "use --denoise, or --integrator bdpt for light through glass"},
     Removed{"bench", "", "use lull compare --curves"},
     Removed{"evaluate", "--figure", "draw from the CSV file of --curves"},
     Removed{"selftest", "--long", "tests/hard_cases has the nightly run: LULL_LONG=1"},

@@ -53,7 +53,6 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.render.display = p->display.get();
     AddListeners(*p, &how.render.events);
     how.film = p->film;
-    how.guide = p->request.guide;
     how.clock = p->clock;
     // An interruption or a preview finds the whole image, whatever its sample counts.
     how.render.schedule.inSteps = true;
@@ -93,9 +92,7 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     if (const double seconds = p->request.pictures.preview; seconds > 0)
         session->Preview(seconds,
                          [=](const RenderResult& result) { WritePreview(*p, session, result); });
-    RenderResult result = p->render.Run(session);
-    p->render.provenance.guideFigures = session->Guidance();
-    return result;
+    return p->render.Run(session);
 }
 
 // Denoised image of a finished render.

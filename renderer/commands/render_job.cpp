@@ -148,7 +148,6 @@ SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sa
     events.onFinish = [printer](const RenderProgress& p) { printer->Finish(p); };
     const Talk talk = TalkOf(settings);
     events.onResume = [talk](const std::string& message) { talk.Note(message); };
-    if (!settings.quiet) events.onLearning = events.onResume;
     events.onWarning = [talk](const std::string& message) { talk.Warn(message); };
     options.estimator = settings.estimator;
     options.film.grid = GridOf(settings.schedule);

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/guide_options.h"
 #include "renderer/commands/layer_options.h"
 #include "renderer/commands/option_values.h"
 #include "renderer/commands/render_files.h"
@@ -108,7 +107,6 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
         })
         ->type_name("R.html|R.json");
     AddDenoiserOptions(app, o);
-    AddGuideOptions(app, &o->guide);
     AddAovOptions(app, &o->aovs);
     AddLightGroupOption(app, &o->lightGroups);
     AddPictureOptions(app, &o->pictures);
@@ -130,8 +128,6 @@ void CheckRequest(const RenderRequest& request) {
         throw UsageError("--pixel: a path is of one image; choose it with --frame");
     if (request.sequence && !request.clock.until.empty())
         throw UsageError("--until: it is one moment for all frames; --time holds for each");
-    if (request.path.pixel && request.guide.mode != GuideMode::Off)
-        throw UsageError("--pixel: guided paths depend on all earlier samples; leave --guide out");
     // Where all samples belong to one half, nothing says how large their noise is.
     const int cap = request.render.cap.value_or(int(kLeastDenoisedSpp));
     const int fixed = FixedSpp(request.Rule());

@@ -12,7 +12,6 @@ namespace lull::render {
 struct RenderRequest {
     RenderSettings render;
     ClockOptions clock;
-    GuideOptions guide;
     std::string output, report;  // empty: as the scene says; none
     std::optional<std::string> stop;
     int spp = 0;  // 0: as the rule says

@@ -11,11 +11,11 @@
 
 namespace lull {
 
-// Sums up samples of a tile: how noisy they are, and how long their paths.
+// Sums up samples of a tile: how noisy they are, and what each strategy of light paths adds to
+// that.
 struct SampleSpread {
-    double squares = 0;    // of luminance, about the means of its pixels
-    int64_t freedom = 0;   // how many of these are independent
-    int64_t vertices = 0;  // of paths, without the camera
+    double squares = 0;   // of luminance, about the means of its pixels
+    int64_t freedom = 0;  // how many of these are independent
     int64_t samples = 0;
     double connected = 0;  // squares of the luminance that connections have found
     double light = 0;      // of that of light paths, one by one, in the round
@@ -85,12 +85,11 @@ class Film {
     int64_t SampleCount() const;
     int64_t RejectedCount() const;
 
-    // Returns the number, below TileCount(), of the tile that a pixel is in.
+    // Returns the number of the tile that a pixel is in, row by row.
     size_t TileAt(const Vec2i& p) const {
         const Vec2i tile = TileOf(p);
         return size_t(tile.y()) * size_t(tiles.Region().Width()) + size_t(tile.x());
     }
-    size_t TileCount() const { return tiles.Pixels().size(); }
 
     // Returns where the samples of a tile are summed up; null: they are not.
     SampleSpread* SpreadOf(const PixelRect& tile) {

@@ -90,18 +90,15 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
 }  // namespace
 
 double StopTrend::Abscissa(double spp) const {
-    return -std::log(std::max(1 / spp - InverseOf(Reference()), 1e-9));
+    return -std::log(std::max(1 / spp - InverseOf(rule.reference), 1e-9));
 }
 
 double StopTrend::SppAt(double abscissa) const {
-    return 1 / (std::exp(-abscissa) + InverseOf(Reference()));
+    return 1 / (std::exp(-abscissa) + InverseOf(rule.reference));
 }
 
-void StopTrend::Add(int spp, const Decision& decision, double newVariance,
-                    std::optional<double> noise) {
+void StopTrend::Add(int spp, const Decision& decision, std::optional<double> noise) {
     if (rule.undecided > 0 && !noise) return;
-    if (newVariance != variance) bins = {};
-    variance = newVariance;
     const double level = Level(rule, decision, noise);
     Bin& bin = bins[size_t(PlaceOf(spp))];
     bin.abscissa += float(Abscissa(spp));

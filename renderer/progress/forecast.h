@@ -19,12 +19,10 @@ class StopTrend {
   public:
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
 
-    // Adds a decision of the criterion at `spp` > 0, which increases. `variance` is that of the
-    // BlockView; a change of it discards all earlier decisions. `noise` is
+    // Adds a decision of the criterion at `spp` > 0, which increases. `noise` is
     // Criterion::NetworkNoise(): for a rule that has it, a decision without it (one from a
     // checkpoint) is ignored.
-    void Add(int spp, const Decision& decision, double variance = 1,
-             std::optional<double> noise = {});
+    void Add(int spp, const Decision& decision, std::optional<double> noise = {});
 
     // Describes the last two doublings by a straight line of the level over Abscissa(). Levels
     // above `certain` are left out: a network that is as sure as it can be does not say by how
@@ -52,8 +50,6 @@ class StopTrend {
     int VotesLeft() const;
 
   private:
-    double Reference() const { return variance * rule.reference; }
-
     static constexpr int kBinsPerOctave = 8, kBins = 24 * kBinsPerOctave;
     static int PlaceOf(int spp);
 
@@ -62,7 +58,6 @@ class StopTrend {
     };
 
     RuleTrend rule;
-    double variance = 1;
     std::array<Bin, kBins> bins = {};
     int lastSpp = 0, spacing = 0, votes = 0;
     double threshold = 0, highest = 0;

@@ -1,7 +1,6 @@
 #include "renderer/render/block_criteria_internal.h"
 
 #include "renderer/base/clocks.h"
-#include "renderer/learning/learners.h"
 #include "renderer/render/peers.h"
 #include "stopping/rules/lnoise.h"
 #include "stopping/signals/lightness_noise.h"
@@ -103,9 +102,7 @@ BlockCheck BlockCriteria::Check(int index, const Block& block, int spp, double s
     BlockView view = ViewOf(index, block, NeedAt(index, spp), complete);
     view.spp = spp;
     view.seconds = seconds;
-    if (context.learners) view.variance = context.learners->Variance(*context.film, block.pixels);
     BlockCheck check;
-    check.variance = view.variance;
     if (criterion) {
         check.decision = criterion->Observe(view);
         check.networkNoise = criterion->NetworkNoise();

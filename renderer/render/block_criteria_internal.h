@@ -12,7 +12,6 @@ struct BlockCheck {
     BlockAnswer answer;
     Decision decision;  // of the criterion, which may not have checked the block
     std::optional<double> networkNoise = {};  // Criterion::NetworkNoise()
-    double variance = 1;                      // as the criterion was told, see BlockView
     double seconds = 0;  // of processors, that it took, the view of the pixels included
 };
 

@@ -17,9 +17,9 @@ namespace lull {
 
 namespace {
 
-constexpr std::string_view kFormat = "lull checkpoint 4";
-constexpr std::array<std::string_view, 3> kOlderFormats = {"lull checkpoint 1", "lull checkpoint 2",
-                                                           "lull checkpoint 3"};
+constexpr std::string_view kFormat = "lull checkpoint 5";
+constexpr std::array<std::string_view, 4> kOlderFormats = {
+    "lull checkpoint 1", "lull checkpoint 2", "lull checkpoint 3", "lull checkpoint 4"};
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 
@@ -95,6 +95,14 @@ void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film) {
         plane.Get(part, &reader);
     });
     if (MostSamples(rect, *film) < 0) throw Error("it has impossible counts of samples");
+}
+
+// Returns the shares of light rounds.
+BdptShares SharesIn(const Hdf5Group& root) {
+    const std::vector<float> shares = root.Array<float>("shares", std::array<int64_t, 1>{2});
+    if (!(shares[0] >= 0 && shares[0] <= 1 && shares[1] > 0 && shares[1] <= 1))
+        throw Error("its shares of light paths are damaged");
+    return {.lightPaths = shares[0], .connections = shares[1]};
 }
 
 void CheckFormat(const Hdf5Group& root) {
@@ -187,14 +195,15 @@ void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderSta
 }  // namespace
 
 void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
-                     const RenderState& state, const Film& film,
-                     std::span<const std::byte> guide) try {
+                     const RenderState& state, const Film& film) try {
     Hdf5Group root = Hdf5Group::CreateInMemory();
     root.SetString("format", std::string(kFormat));
     root.SetStrings("identity", Lines(identity));
     root.SetStrings("planes", Lines(PlanesOf(film)));
     root.AddArray<double>("seconds", std::array<int64_t, 1>{1}, std::array{state.seconds});
-    if (!guide.empty()) AddBytes(root, "guide", guide);
+    if (state.shares)
+        root.AddArray<float>("shares", std::array<int64_t, 1>{2},
+                             std::array{state.shares->lightPaths, state.shares->connections});
     for (size_t i = 0; i < state.blocks.size(); ++i) {
         Hdf5Group group = root.MakeGroup(GroupName(i));
         AddBytes(group, "books", PackBooks(state.blocks[i]));
@@ -215,7 +224,7 @@ void WriteCheckpoint(const std::string& path, const RenderIdentity& identity,
 }
 
 RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identity, Film* film,
-                           std::vector<std::byte>* guide, MayDiffer mayDiffer) try {
+                           MayDiffer mayDiffer) try {
     CheckSeal(path);
     const Hdf5Group root = Hdf5Group::Open(path);
     CheckFormat(root);
@@ -224,7 +233,7 @@ RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identi
     CheckPlanes(ParseIdentity(root.Strings("planes")), *film);
     RenderState state;
     state.seconds = root.Array<double>("seconds", std::array<int64_t, 1>{1})[0];
-    if (guide && root.HasArray("guide")) *guide = BytesOf(root, "guide");
+    if (root.HasArray("shares")) state.shares = SharesIn(root);
     for (size_t i = 0; root.HasGroup(GroupName(i)); ++i) {
         const Hdf5Group group = root.Group(GroupName(i));
         state.blocks.push_back(UnpackBooks(BytesOf(group, "books")));

@@ -6,7 +6,6 @@
 
 #include "renderer/base/clocks.h"
 #include "renderer/base/color.h"
-#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 
 namespace lull {
@@ -29,17 +28,16 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
             if (light && end > first) light->Begin(pixel);
             double sum = 0, squares = 0;  // of luminance
-            PathCounts counts;
+            float connected = 0;
             for (uint32_t k = first; k < end; ++k) {
-                const PathSample sample = take(sampler, pixel, k, spread ? &counts : nullptr);
+                const PathSample sample = take(sampler, pixel, k, spread ? &connected : nullptr);
                 sums.Add(sample.radiance, sample.rejected);
                 ++samples;
                 if (!spread) continue;
                 const double y = double(Luminance(sample.radiance));
                 sum += y;
                 squares += Sqr(y);
-                spread->vertices += counts.vertices;
-                spread->connected += Sqr(y * double(counts.connected));
+                spread->connected += Sqr(y * double(connected));
                 ++spread->samples;
             }
             if (light && end > first) {
@@ -71,7 +69,10 @@ Executor::Executor(const RenderContext& context, const RenderOptions& options,
       tasks([this] { RunTile(); }, given.onException),
       context(context),
       options(options),
-      hooks(std::move(given)) {}
+      hooks(std::move(given)) {
+    if (context.lightRounds && context.interrupted && context.interrupted->shares)
+        context.lightRounds->SetShares(*context.interrupted->shares);
+}
 
 RenderResult Executor::Run() {
     RestartIntervals();
@@ -102,8 +103,7 @@ bool Executor::IsPauseDue() const {
 }
 
 void Executor::BeginLightRound(const std::function<void()>& writeCheckpoint) {
-    context.learners->Begin(schedule.Unlocked());
-    context.lightRounds->Begin(schedule.Unlocked(), context.learners->Paths().shares);
+    context.lightRounds->Begin(schedule.Unlocked());
     if (context.lightRounds->IsCutShort() && !isLastRound) writeCheckpoint();
     isLastRound = context.lightRounds->IsCutShort();
 }
@@ -115,14 +115,10 @@ void Executor::BeginLight() {
 }
 
 bool Executor::EndRound() {
-    if (!context.learners || !schedule.Unlocked().NoPassUnderWay()) return false;
-    const bool goesOn = !IsCancelled() && schedule.IsRoundOver();
-    context.learners->EndRound(context.film, {schedule.Unlocked().Options().roundEnd, goesOn});
-    if (!goesOn) return false;
-    if (context.lightRounds)
-        BeginLight();
-    else
-        schedule.BeginRound(RoundEndOf(context));
+    if (!context.lightRounds || !schedule.Unlocked().NoPassUnderWay()) return false;
+    context.lightRounds->Learn(context.film);
+    if (IsCancelled() || !schedule.IsRoundOver()) return false;
+    BeginLight();
     return true;
 }
 
@@ -152,29 +148,27 @@ void Executor::RunTile() {
 int64_t Executor::TakeSamples(const Tile& tile) {
     const Sampler sampler(options.sampler, options.seed);
     Film* film = context.film;
-    SampleSpread* spread =
-        context.learners ? context.learners->SpreadOf(film, tile.pixels) : nullptr;
+    SampleSpread* spread = film->SpreadOf(tile.pixels);
     const auto render = [&](const auto& take) {
         if (!context.lightRounds) return RenderTile(take, tile, sampler, film, spread, nullptr);
         RoundLight light(*context.lightRounds, film);
         return RenderTile(take, tile, sampler, film, spread, &light);
     };
     if (film->layers.IsEmpty()) {
-        const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index, PathCounts* counts) {
-            return context.source(s, pixel, index, {.counts = counts});
+        const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index, float* connected) {
+            return context.source(s, pixel, index, {.connected = connected});
         };
         return render(alone);
     }
     const LightGroups& wanted = film->layers.Options().groups;
     std::optional<GroupRadiance> groups;
     if (wanted.Count() > 0) groups.emplace(wanted);
-    const auto withLayers = [&, asks = film->layers.NeedFirstHits()](Sampler& s, const Vec2i& pixel,
-                                                                     uint32_t index,
-                                                                     PathCounts* counts) {
+    const auto withLayers = [&, asks = film->layers.NeedFirstHits()](
+                                Sampler& s, const Vec2i& pixel, uint32_t index, float* connected) {
         LayerSample summed{.index = index, .groups = groups ? &*groups : nullptr};
         const SampleDetail detail{.firstHit = asks ? &summed.hit : nullptr,
                                   .groups = groups ? &*groups : nullptr,
-                                  .counts = counts};
+                                  .connected = connected};
         const PathSample sample = context.source(s, pixel, index, detail);
         summed.radiance = sample.radiance;
         film->layers.Add(pixel, summed);
@@ -203,10 +197,16 @@ std::vector<int> Executor::Undo() {
     return blocks;
 }
 
+RenderState Executor::State() {
+    RenderState state{ledger.Blocks(schedule.Unlocked()), criteria.Save(), ledger.Seconds()};
+    if (context.lightRounds) state.shares = context.lightRounds->Shares();
+    return state;
+}
+
 void Executor::WriteCheckpoint() {
     const Checkpointing& checkpoints = context.checkpoints;
     if (checkpoints.write && !isLastRound && !(schedule.Unlocked().Done() && !checkpoints.atEnd))
-        checkpoints.write({ledger.Blocks(schedule.Unlocked()), criteria.Save(), ledger.Seconds()});
+        checkpoints.write(State());
     nextCheckpoint = ledger.Seconds() + checkpoints.interval;
 }
 

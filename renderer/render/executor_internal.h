@@ -34,11 +34,9 @@ class Executor {
     int DecideBlock(int block);
     // Spawns the tiles that are ready.
     void SpawnReady() { tasks.Spawn(schedule.ReadyTiles()); }
-    // With no task at work: if a round is over, learns from it, begins the next and returns true.
-    bool EndRound();
-    // Then, too: begins a round of light paths, none of which are traced. Calls `writeCheckpoint`
-    // before a round that the cap cuts short, after which none is written: with a larger cap it
-    // would be longer, and whoever goes on begins it again.
+    // With no task at work: begins a round of light paths, none of which are traced. Calls
+    // `writeCheckpoint` before a round that the cap cuts short, after which none is written: with a
+    // larger cap it would be longer, and whoever goes on begins it again.
     void BeginLightRound(const std::function<void()>& writeCheckpoint);
     // Lets no more tiles begin, and waits for those under way.
     void Quiesce();
@@ -68,7 +66,10 @@ class Executor {
     double nextCheckpoint = 0, nextPreview = 0;  // seconds, as the ledger has them
 
   private:
+    // With no task at work: if a round is over, learns from it, begins the next and returns true.
+    bool EndRound();
     void BeginLight();
+    RenderState State();
     void RunTile();
     int64_t TakeSamples(const Tile&);
 

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <limits>
 
-#include "renderer/learning/strategy_learner.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {
@@ -11,6 +10,63 @@ namespace lull {
 namespace {
 
 constexpr uint32_t kChunk = 1024;  // light paths that a thread takes
+
+// Costs of a light path, and of a subpath from a light with its connections, in camera's subpaths
+// with the light that is sampled at their vertices (renderer/docs/transport.md).
+constexpr double kCostOfLightPath = 1, kCostOfConnections = 2.5;
+
+// Moves a share half of the way, on a scale of ratios, to where `variance` at a share of 1, over
+// `cost`, has it beside the variance of camera's subpaths, whose cost is 1.
+float Moved(float share, double variance, double cost, double ofCamera, float least) {
+    if (!(ofCamera > 0)) return share;
+    const double best = std::sqrt(variance / cost / ofCamera);
+    return std::clamp(float(std::sqrt(double(share) * best)), least, 1.f);
+}
+
+// Variances of a sample, as sums over tiles by the square of their brightness.
+struct Variances {
+    double camera = 0, connections = 0, paths = 0;
+};
+
+Variances VariancesOf(const Film& film) {
+    const PixelRect& region = film.Region();
+    const std::vector<SampleSpread>& spreads = film.Spreads();
+    std::vector<double> brightness(spreads.size(), 0);
+    std::vector<int> pixels(spreads.size(), 0);
+    double mean = 0;
+    for (int y = region.min.y(); y < region.max.y(); ++y)
+        for (int x = region.min.x(); x < region.max.x(); ++x) {
+            const size_t tile = film.TileAt({x, y});
+            const double l = double(Luminance(film.MeanAt({x, y})));
+            brightness[tile] += l;
+            ++pixels[tile];
+            mean += l / double(region.Area());
+        }
+    Variances of;
+    for (size_t i = 0; i < spreads.size(); ++i) {
+        const SampleSpread& spread = spreads[i];
+        if (spread.freedom <= 0) continue;
+        const double l = brightness[i] / pixels[i] + 0.1 * mean, weight = pixels[i] / (l * l);
+        if (!(weight > 0 && weight < double(kInfinity))) continue;
+        const double samples = double(spread.samples);
+        of.camera += weight * spread.squares / double(spread.freedom);
+        of.connections += weight * spread.connected / samples;
+        of.paths += weight * spread.light / samples;
+    }
+    return of;
+}
+
+// Returns the part of the pixels that were active when the round began: blocks that have stopped in
+// it were.
+double ActivePart(const Schedule& schedule) {
+    const int first = schedule.LeastSpp();
+    int64_t active = 0, all = 0;
+    for (const Block& block : schedule.Blocks()) {
+        all += block.pixels.Area();
+        if (!block.stopped || block.spp > first) active += block.pixels.Area();
+    }
+    return double(active) / double(std::max<int64_t>(1, all));
+}
 
 }  // namespace
 
@@ -26,14 +82,13 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind,
 double LightRounds::FindUnit() const {
     constexpr uint32_t kMost = 1 << 16;
     constexpr int kEnough = 256;
-    constexpr BdptShares kShares = StrategyLearner::kFirst;
-    if (LightPathCount(scene, kShares) == 0) return 1;
+    if (LightPathCount(scene, kFirst) == 0) return 1;
     Sampler sampler(kind, seed);
     std::vector<Splat> splats;
     double sum = 0;
     int count = 0;
     for (uint32_t i = 0; i < kMost && count < kEnough; ++i) {
-        TraceLightPath(scene, kShares, sampler, 0, i, &splats);
+        TraceLightPath(scene, kFirst, sampler, 0, i, &splats);
         for (const Splat& splat : splats) {
             const double y = double(Luminance(splat.radiance));
             if (!(y > 0)) continue;
@@ -45,13 +100,16 @@ double LightRounds::FindUnit() const {
     return std::exp2(std::round(std::log2(std::clamp(sum / count, 1e-30, 1e30))));
 }
 
-void LightRounds::Begin(const Schedule& schedule, const BdptShares& shares) {
+void LightRounds::Begin(const Schedule& schedule) {
     const int first = schedule.LeastSpp();
     ScheduleOptions uncapped = schedule.Options();
     uncapped.cap = std::numeric_limits<int>::max();
     isCutShort = !schedule.Done() &&
                  PassEndAfter(first, uncapped) != PassEndAfter(first, schedule.Options());
-    Begin({first, PassEndAfter(first, schedule.Options()), shares});
+    BdptShares ofRound = shares;
+    ofRound.lightPaths = std::clamp(shares.lightPaths * float(std::sqrt(ActivePart(schedule))),
+                                    kLeast.lightPaths, 1.f);
+    Begin({first, PassEndAfter(first, schedule.Options()), ofRound});
 }
 
 void LightRounds::Begin(const LightRound& begun) {
@@ -72,6 +130,18 @@ bool LightRounds::Trace(const std::function<bool()>& isCancelled, int part, int 
         });
     });
     return isWhole;
+}
+
+void LightRounds::Learn(Film* film) {
+    const Variances of = VariancesOf(*film);
+    film->ForgetSpreads();
+    if (!(of.camera > 0)) return;
+    const double rest = std::max(of.camera - of.connections, 0.1 * of.camera);
+    shares.connections =
+        Moved(shares.connections, of.connections * double(round.shares.connections),
+              kCostOfConnections, rest, kLeast.connections);
+    shares.lightPaths = Moved(shares.lightPaths, of.paths * double(round.shares.lightPaths),
+                              kCostOfLightPath, of.camera, kLeast.lightPaths);
 }
 
 void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {

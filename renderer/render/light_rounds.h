@@ -8,7 +8,9 @@
 // integers. So film, checkpoints and rules see nothing but samples, an interrupted round's light
 // is traced again to the same bits, and the memory is that of one image.
 //
-// How many samples the strategies take is learned (learning/strategy_learner.h).
+// How many samples the strategies take is learned from the variance that they had in the round
+// before, as in stratified sampling (Neyman 1934): in proportion to the root of the variance over
+// the cost.
 #pragma once
 
 #include <functional>
@@ -28,6 +30,12 @@ struct LightRound {
 
 class LightRounds {
   public:
+    // With few connections the weights leave to other strategies all that these can find as well:
+    // only the rest makes them more.
+    static constexpr BdptShares kFirst{.lightPaths = 0.3f, .connections = 0.05f};
+    // Shares below which no strategy falls: it has to be seen where it would bring much.
+    static constexpr BdptShares kLeast{.lightPaths = 0.05f, .connections = 0.03f};
+
     // The scene, whose integrator is BdptIntegrator, must outlive it; of the film it is the region
     // and the light groups.
     LightRounds(const Scene&, const Film&, SamplerKind, uint64_t seed);
@@ -40,8 +48,13 @@ class LightRounds {
     int End() const { return round.end; }
     bool IsCutShort() const { return isCutShort; }
 
-    // Begins the round that the active blocks are in, or come to next.
-    void Begin(const Schedule&, const BdptShares&);
+    // Return and set the shares that were learned for all pixels, of an interrupted render.
+    const BdptShares& Shares() const { return shares; }
+    void SetShares(const BdptShares& learned) { shares = learned; }
+
+    // Begins the round that the active blocks are in, or come to next. Light paths are the fewer,
+    // the fewer pixels are left that wait for them.
+    void Begin(const Schedule&);
     // Begins this one, of which no light has been traced.
     void Begin(const LightRound&);
     // Traces one of `parts` of its light, on all threads of the task arena. Returns false if
@@ -50,6 +63,9 @@ class LightRounds {
     // The light that has been traced, to be merged where others trace the other parts: all of it
     // and that of each light group.
     std::vector<SplatPlane>& Planes() { return planes; }
+    // With no thread at work: learns the shares from the spreads of the round, which the film then
+    // forgets. If the render ends here, or is interrupted, whoever goes on has to know them.
+    void Learn(Film*);
 
   private:
     friend class RoundLight;
@@ -63,6 +79,7 @@ class LightRounds {
     const PixelRect region;
     SamplerKind kind;
     uint64_t seed;
+    BdptShares shares = kFirst;
     LightRound round;
     bool isCutShort = false;
     double unit = 1;

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 
 namespace lull {
@@ -19,8 +18,7 @@ ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& o
 }  // namespace
 
 int RoundEndOf(const RenderContext& context) {
-    return std::min(context.learners ? context.learners->RoundEnd() : kNoRoundEnd,
-                    context.lightRounds ? context.lightRounds->End() : kNoRoundEnd);
+    return context.lightRounds ? context.lightRounds->End() : kNoRoundEnd;
 }
 
 LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,

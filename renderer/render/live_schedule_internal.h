@@ -35,8 +35,7 @@ struct BlockAnswer {
     double noise = kUnknownNoise;
 };
 
-// Returns the spp at which the round ends that learners and light paths are in; kNoRoundEnd: there
-// are no rounds.
+// Returns the spp at which the round of light paths ends; kNoRoundEnd: there are no rounds.
 int RoundEndOf(const RenderContext&);
 
 // Costs a lock a call, a few for each tile.

@@ -25,9 +25,6 @@
 // With Start, tiles go to where there is time: the sums of those that have another owner are sent
 // to it, and it adds to them as the one before would have.
 //
-// While a guide is learned from the image's samples, rank 0 has all tiles; then it sends its
-// state to the others by Guide, and deals the tiles out to all.
-//
 // Where light is traced in rounds, all pixels go to rank 0 at the end of one, which learns from
 // them, and says Round. Each rank traces a part of the light, and has that of all others by Splats
 // before the passes of the round begin.

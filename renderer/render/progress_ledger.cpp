@@ -15,7 +15,7 @@ std::vector<StopTrend> MakeTrends(const RenderOptions& options,
     std::vector<StopTrend> made(results.size(), StopTrend(*options.trend));
     for (size_t i = 0; i < results.size(); ++i)
         for (const BlockDecision& record : results[i].decisions)
-            made[i].Add(record.spp, record.decision, 1, record.networkNoise);
+            made[i].Add(record.spp, record.decision, record.networkNoise);
     return made;
 }
 
@@ -52,8 +52,7 @@ void ProgressLedger::AddCheck(int block, int spp, const BlockCheck& check) {
     if (!check.decision.checked) return;
     result.decisions.push_back({spp, check.decision, check.networkNoise});
     std::lock_guard lock(mutex);
-    if (!trends.empty())
-        trends[size_t(block)].Add(spp, check.decision, check.variance, check.networkNoise);
+    if (!trends.empty()) trends[size_t(block)].Add(spp, check.decision, check.networkNoise);
 }
 
 TileEffort ProgressLedger::TakeEffort() {

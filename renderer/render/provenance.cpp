@@ -41,12 +41,6 @@ std::vector<NamedProvenance> PartsOf(const Provenance& p) {
         parts.push_back({"integrator", "integrator", "integrator", p.integrator});
     if (!p.grades.empty()) parts.push_back({"grades", "judgedGrades", "judgedGrades", p.grades});
     if (!p.clock.empty()) parts.push_back({nullptr, "clock", "clock", p.clock});
-    if (p.guide == GuideMode::Off) return parts;
-    const std::string mode = NameOf(p.guide);
-    parts.push_back(
-        {"guide", nullptr, nullptr, fmt::format("{} of {} MB", mode, p.guideMegabytes)});
-    parts.push_back(
-        {nullptr, "guide", nullptr, mode + (p.guideFigures.isUsed ? ": used" : ": not used")});
     return parts;
 }
 

@@ -7,7 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "renderer/learning/learning.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
 
@@ -29,9 +28,6 @@ struct Provenance {
     PixelRect crop;
     std::string grades = {};  // how pictures are graded when noise is judged; empty: not
     std::string clock = {};   // that ends the render, in words; empty: none
-    GuideMode guide = GuideMode::Off;
-    int guideMegabytes = 0;
-    GuideFigures guideFigures = {};  // of learning; not part of the identity
 };
 
 // Names a scene in thresholds files: the file without folder and extension, or the folder where the
@@ -47,7 +43,7 @@ struct NamedProvenance {
 };
 
 // Returns all parts, in the order of reports: the only list of properties stated of an image
-// besides its results. Without the hash of the scene, and the results of guides.
+// besides its results. Without the hash of the scene.
 std::vector<NamedProvenance> PartsOf(const Provenance&);
 
 // Returns a value as text: "yes", "800x600", "x0,x1,y0,y1".

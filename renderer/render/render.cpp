@@ -5,7 +5,6 @@
 
 #include <stdexcept>
 
-#include "renderer/learning/learners.h"
 #include "renderer/render/executor_internal.h"
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/rank.h"
@@ -44,23 +43,12 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
     return result;
 }
 
-SampleSource SamplesOf(const Scene& scene, const PathOptions& options) {
-    return [&scene, options](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                             const SampleDetail& detail) {
-        return RenderSample(scene, options, sampler, pixel, index, detail);
-    };
-}
-
-SampleSource SamplesOf(const Scene& scene, const Learners& learners, const LightRounds* rounds,
-                       bool throughSpecular) {
-    return [&, rounds, throughSpecular](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                        const SampleDetail& detail) {
-        PathOptions options = learners.Paths();
-        options.throughSpecular = throughSpecular;
-        if (rounds) options.shares = rounds->Round().shares;
-        SampleDetail all = detail;
-        all.records = &learners.Records();
-        return RenderSample(scene, options, sampler, pixel, index, all);
+SampleSource SamplesOf(const Scene& scene, const PathOptions& options, const LightRounds* rounds) {
+    return [&scene, options, rounds](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                     const SampleDetail& detail) {
+        PathOptions paths = options;
+        if (rounds) paths.shares = rounds->Round().shares;
+        return RenderSample(scene, paths, sampler, pixel, index, detail);
     };
 }
 

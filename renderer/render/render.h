@@ -35,6 +35,8 @@ struct RenderState {
     // Of each block, as Criterion::Save() has it; empty: all begin again.
     std::vector<std::vector<std::byte>> criteria;
     double seconds = 0;  // since the start of the first run
+    // What light rounds have learned; nothing: there are none, or they begin again.
+    std::optional<BdptShares> shares = {};
 };
 
 struct RenderResult;
@@ -57,12 +59,11 @@ struct RenderEvents {
     std::function<void(int rank, double seconds)> onGivenUp;
 
     // Of a Session: the progress when it ended, of the first rank alone; and lines on the
-    // checkpoint resumed, on learning, and on checkpoints that could not be written.
+    // checkpoint resumed, and on checkpoints that could not be written.
     std::function<void(const RenderProgress&)> onFinish;
-    std::function<void(const std::string&)> onResume, onLearning, onWarning;
+    std::function<void(const std::string&)> onResume, onWarning;
 };
 
-class Learners;
 class LightRounds;
 class Peers;
 
@@ -124,11 +125,7 @@ struct RenderContext {
     // Where an interrupted render left film and state; null: from the start. A block whose
     // `stopped` is set in a state without samples is left out.
     const RenderState* interrupted = nullptr;
-    // Learn from the samples, in rounds; the source samples as was learned (learners.h). Null:
-    // nothing is learned.
-    Learners* learners = nullptr;
-    // Traces light paths in rounds, with the shares that learners have found (light_rounds.h). The
-    // film keeps spreads. Null: none.
+    // Traces light paths in rounds, for a film that keeps spreads (light_rounds.h). Null: none.
     LightRounds* lightRounds = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
     // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
@@ -145,12 +142,8 @@ struct RenderContext {
 // callbacks; throws std::invalid_argument for a display on several ranks.
 RenderResult Render(const RenderContext&, const RenderOptions&);
 
-// Returns the scene as a source of samples; it, and the guide if there is one, must outlive the
-// source.
-SampleSource SamplesOf(const Scene&, const PathOptions&);
-// The same, traced as learners say at the time, and as the round of light paths needs it where
-// there is one; they must outlive it too. For `throughSpecular` see PathOptions.
-SampleSource SamplesOf(const Scene&, const Learners&, const LightRounds* = nullptr,
-                       bool throughSpecular = false);
+// Returns the scene as a source of samples, with the shares of the round of light paths where there
+// are some; both must outlive it.
+SampleSource SamplesOf(const Scene&, const PathOptions&, const LightRounds* = nullptr);
 
 }  // namespace lull

@@ -7,7 +7,6 @@
 #include "renderer/base/memory.h"
 #include "renderer/denoise/denoiser.h"
 #include "renderer/film/splat_plane.h"
-#include "renderer/learning/learners.h"
 #include "renderer/progress/time_limit.h"
 #include "renderer/render/first_look.h"
 #include "renderer/render/light_rounds.h"
@@ -76,11 +75,6 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
             std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
         context.lightRounds = lightRounds.get();
     }
-    learners = std::make_unique<Learners>(
-        scene, LearningFor(scene, options.guide, options.estimator, bool(options.clock)),
-        region.Area());
-    if (learners->IsEmpty()) learners.reset();
-    context.learners = learners.get();
 }
 
 Session::~Session() = default;
@@ -95,26 +89,10 @@ void Session::Resume() {
         Tell(onResume, "there is no {} yet: from the start", checkpoint.file);
         return;
     }
-    std::vector<std::byte> learned;
-    interrupted =
-        ReadCheckpoint(checkpoint.file, options.identity, &film, &learned, checkpoint.mayDiffer);
+    interrupted = ReadCheckpoint(checkpoint.file, options.identity, &film, checkpoint.mayDiffer);
     context.interrupted = &*interrupted;
-    if (learners) try {
-            learners->Take(learned, film);
-        } catch (const std::runtime_error& e) {
-            throw Error(checkpoint.file + ": " + e.what());
-        }
     Tell(onResume, "going on from {}{}", checkpoint.file,
          interrupted->criteria.empty() ? ", with another rule" : "");
-}
-
-GuideFigures Session::Guidance() const {
-    GuideFigures figures;
-    if (learners) figures = learners->Figures();
-    const auto whyNot = WhyNotGuided(scene, options.estimator);
-    if (options.guide.mode == GuideMode::Off || whyNot)
-        figures.why = whyNot.value_or("not requested");
-    return figures;
 }
 
 void Session::Preview(double seconds, std::function<void(const RenderResult&)> show) {
@@ -134,8 +112,6 @@ RenderResult Session::Run(const RenderFunction& render) {
     if (display && (interrupted || looks)) display->Show(region, film);
     if (options.agree) options.agree(TextOf(options.identity) + TextOf(PlanesOf(film)));
     RenderResult result = render(context, options.render);
-    if (options.guide.mode != GuideMode::Off)
-        Tell(events.onLearning, "{}", TextOf(Guidance(), options.guide.mode));
     if (display) display->Show(region, film);  // some may have been undone
     if (Leads() && events.onFinish) events.onFinish(result.progress);
     return result;
@@ -154,9 +130,7 @@ void Session::SetClock() {
 void Session::SetSource() {
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.film.layers.ThroughSpecular();
-    context.source = learners
-                         ? SamplesOf(scene, *learners, lightRounds.get(), paths.throughSpecular)
-                         : SamplesOf(scene, paths);
+    context.source = SamplesOf(scene, paths, lightRounds.get());
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the
@@ -172,8 +146,7 @@ void Session::KeepCheckpoints() {
 // Warns of a checkpoint that could not be written, and returns the warning; "" if it was. The
 // warning `said` is not repeated: a disk stays full for more than one attempt.
 std::string Session::TryToWrite(const RenderState& state, const std::string& said) try {
-    WriteCheckpoint(options.checkpoint.file, options.identity, state, film,
-                    learners ? learners->Save() : std::vector<std::byte>());
+    WriteCheckpoint(options.checkpoint.file, options.identity, state, film);
     return "";
 } catch (const Error& e) {
     if (e.what() != said) Tell(options.render.events.onWarning, "no checkpoint: {}", e.what());

@@ -1,12 +1,11 @@
-// Runs a render as a user configures it: Render() with its film, checkpoints, path guiding,
-// clock, viewer and other ranks. Messages go to callbacks.
+// Runs a render as a user configures it: Render() with its film, checkpoints, clock, viewer
+// and other ranks. Messages go to callbacks.
 //
 //     Session session(scene, region, options);
 //     session.Resume();
 //     const RenderResult result = session.Run();
 #pragma once
 
-#include "renderer/learning/learning.h"
 #include "renderer/render/checkpoint.h"
 
 namespace lull {
@@ -37,7 +36,6 @@ struct SessionOptions {
     FilmOptions film;  // with the half where there are features
     // Whether the film gets a first look (first_look.h) before the samples; not on several ranks.
     bool firstLook = false;
-    GuideOptions guide;
     CheckpointOptions checkpoint;
     // Settings that decide the pixels, for checkpoints and for ranks, which have to agree on them.
     RenderIdentity identity;
@@ -53,7 +51,7 @@ using RenderFunction = std::function<RenderResult(const RenderContext&, const Re
 
 class Session {
   public:
-    // The scene must outlive it. Where it cannot be guided it is not, see Guidance().
+    // The scene must outlive it.
     Session(const Scene&, const PixelRect& region, SessionOptions);
     ~Session();
     Session(const Session&) = delete;
@@ -70,8 +68,6 @@ class Session {
     // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
     Film& GetFilm() { return film; }
-    // Returns the state of learning, or the reason for none; empty without a guide.
-    GuideFigures Guidance() const;
     // Return the image and its provenance.
     const RenderContext& Context() const { return context; }
     const RenderOptions& Options() const { return options.render; }
@@ -87,7 +83,6 @@ class Session {
     SessionOptions options;
     Film film;
     std::optional<RenderState> interrupted;
-    std::unique_ptr<Learners> learners;  // null: nothing is learned
     std::unique_ptr<LightRounds> lightRounds;
     RenderContext context;
 };

@@ -73,7 +73,7 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result) {
     for (size_t i = 0; i < result.blocks.size(); ++i) {
         const auto& decisions = result.blocks[i].decisions;
         for (const BlockDecision& record : decisions)
-            trends[i].Add(record.spp, record.decision, 1, record.networkNoise);
+            trends[i].Add(record.spp, record.decision, record.networkNoise);
         blocks.push_back(result.blocks[i].block);
         Block& block = blocks.back();
         if (!block.IsAtCap() || decisions.empty()) continue;

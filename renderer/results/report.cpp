@@ -52,25 +52,6 @@ void AddCapped(const Provenance& provenance, const RenderResult& result, Json* r
         (*report)["totals"]["neededCap"] = cap;
 }
 
-Json GuideJson(const Provenance& p) {
-    const GuideFigures& f = p.guideFigures;
-    Json json = {{"mode", NameOf(p.guide)}, {"memory", p.guideMegabytes},
-                 {"used", f.isUsed},        {"why", f.why},
-                 {"rounds", f.rounds},      {"from", f.from},
-                 {"spp", f.samples},        {"seconds", f.seconds},
-                 {"bytes", f.bytes},        {"leaves", f.leaves}};
-    if (p.guide == GuideMode::Auto && f.rounds > 0) {
-        json["variance"] = f.comparison.variance;
-        json["varianceError"] = f.comparison.error;
-        json["vertices"] = f.comparison.vertices;
-    }
-    if (f.directLight)
-        json["directLight"] = {{"used", f.usesDirectLight},
-                               {"variance", f.directLight->variance},
-                               {"varianceError", f.directLight->error}};
-    return json;
-}
-
 Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
     const Savings savings = ComputeSavings(result, provenance.schedule.cap);
     return {{"blocks", result.blocks.size()},
@@ -119,7 +100,6 @@ Json ProvenanceJson(const Provenance& p) {
     Json json;
     for (const NamedProvenance& part : PartsOf(p))
         if (part.json) json[part.json] = std::visit(valueJson, part.value);
-    if (p.guide != GuideMode::Off) json["guide"] = GuideJson(p);
     return json;
 }
 

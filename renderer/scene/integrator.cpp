@@ -57,10 +57,6 @@ int MaxDepth(const Integrator& integrator) {
     return std::visit([](const auto& kind) { return kind.maxDepth; }, integrator);
 }
 
-bool CanBeGuided(const Integrator& integrator) {
-    return std::visit([](const auto& kind) { return kind.kCanBeGuided; }, integrator);
-}
-
 Integrator MakeIntegrator(const Entity& entity, int maxDepth, bool isVolumetric,
                           const char* beyondBdpt, Warnings& warnings) {
     const auto warn = [&](const char* name, const std::string& why) {

@@ -12,9 +12,6 @@ namespace lull {
 
 // Paths from the camera, with light sampled at each vertex: pbrt-v3's "path" and "volpath".
 struct PathIntegrator {
-    // Whether a Guide can choose its directions, for which the render is cut into rounds.
-    static constexpr bool kCanBeGuided = true;
-
     int maxDepth = 5;       // bounces, >= 0
     float rrThreshold = 1;  // Russian roulette ends paths of a throughput below
 
@@ -24,7 +21,6 @@ struct PathIntegrator {
 
 // Paths from the camera and from lights, connected in all ways: pbrt-v3's "bdpt".
 struct BdptIntegrator {
-    static constexpr bool kCanBeGuided = false;
     // Of maxDepth: longer subpaths from lights would have to be kept.
     static constexpr int kMostBounces = 100;
 
@@ -48,7 +44,6 @@ std::vector<std::string> IntegratorNames();
 std::string NameOf(const Integrator&, bool isVolumetric);
 std::string TextOf(const Integrator&);  // its parameters in words
 int MaxDepth(const Integrator&);
-bool CanBeGuided(const Integrator&);
 
 // Reads a scene's directive, with a warning if it substitutes another kind. `beyondBdpt` is the
 // reason for "path" in place of "bdpt"; null: none. `maxDepth`, unless negative, replaces the

@@ -160,16 +160,11 @@ Rgb Li(const BdptIntegrator&, const Scene& scene, const PathOptions& options, Sa
     const auto follow = [&](auto recorder) {
         const Rgb L = Follow(context, start, recorder, &connected);
         const float luminance = Luminance(L);
-        if (detail.counts && luminance > 0)
-            detail.counts->connected = Luminance(connected) / luminance;
+        if (detail.connected && luminance > 0) *detail.connected = Luminance(connected) / luminance;
         return L;
     };
-    if (!detail.firstHit && !detail.groups) return follow(NoRecorder());
-    FirstHit unseen;
-    const FirstHitRecorder firstHit(scene, options, start.ray.d, start.camera.time,
-                                    detail.firstHit ? detail.firstHit : &unseen);
-    if (!detail.groups) return follow(firstHit);
-    return follow(GroupRecorder(firstHit, detail.groups));
+    if (!FirstHitRecorder::IsNeeded(detail)) return follow(NoRecorder());
+    return follow(FirstHitRecorder(scene, options, start.ray.d, start.camera.time, detail));
 }
 
 }  // namespace lull

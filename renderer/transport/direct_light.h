@@ -1,74 +1,17 @@
 // Estimates the light that arrives at a vertex of a path directly from lights.
 #pragma once
 
-#include "renderer/transport/guided_path.h"
 #include "renderer/transport/path_media.h"
 
 namespace lull {
 
-// Holds a sample of a light, and of which tile of the environment map it is.
-struct TiledSample {
-    int index;  // of the light
-    std::optional<LightSample> light;
-    int tile = -1;  // none
-    // The density of the light's own sampling, by power, over that of what is used.
-    float powerRatio = 1;
-};
-
-// Returns how lights are chosen at the vertex.
-template <typename Media, typename Vertex>
-[[gnu::always_inline]] inline LightChoice ChoiceAt(const PathContext<Media>& context,
-                                                   const Vertex& v, size_t lightPlace,
-                                                   LearnedPlace learned) {
-    if (context.learned && context.learned->choices) [[unlikely]] {
-        const std::span<const float> sums = context.learned->choices->At(learned.lightCell);
-        if (sums.back() > 0) return LightChoice(sums);
-    }
-    return v.Choice(context.scene.lights, lightPlace);
-}
-
-// Tells the records what a sample of light `index` has brought: luminance, had the light been
-// chosen for sure, at the vertex and in the image. Of the environment map it is one of `tile`, see
-// TiledSample. Takes values, which so can stay in registers.
-[[gnu::noinline]] inline void Record(const PathRecords& records, const LightTable& lights,
-                                     LearnedPlace place, int index, int tile, float powerRatio,
-                                     float atVertex, float inImage) {
-    if (records.environment && tile >= 0) {
-        const auto& environment = std::get<InfiniteLight>(lights[index]);
-        records.environment->Add(records.environmentGuide->NumberOf(place.tiles), tile,
-                                 atVertex * kPi / (powerRatio * environment.TotalLuminance()));
-    }
-    if (records.choices)
-        records.choices->Add(place.lightCell + size_t(index), inImage / records.usualForLights);
-}
-
-// Samples light `index`; the environment map by its tiles there, if the path knows them.
-template <typename Media>
-[[gnu::always_inline]] inline TiledSample SampleTiled(const PathContext<Media>& context,
-                                                      const Vec3f& p, int index,
-                                                      const TileShares* tiles) {
-    const LightTable& lights = context.scene.lights;
-    const Vec2f u = context.sampler.Get2D();
-    if (!tiles || index != lights.Environment()) [[likely]]  // made in place: copies take long
-        return {.index = index, .light = lights.Sample(index, p, u)};
-    TiledSample sample{.index = index, .light = {}};
-    const auto& environment = std::get<InfiniteLight>(lights[index]);
-    sample.light = environment.Sample(*tiles, u, &sample.tile);
-    if (context.records && context.records->environment)
-        context.records->environment->Prefetch(context.records->environmentGuide->NumberOf(tiles),
-                                               sample.tile);
-    sample.powerRatio =
-        environment.Tiles()->Shares().Probability(sample.tile) / tiles->Probability(sample.tile);
-    return sample;
-}
-
 // Returns the light that a sample of light `index` brings to the vertex, weighted against sampling
 // of directions. `pmf` is the probability of having chosen the light.
-template <typename Media, typename Vertex, typename Guiding>
+template <typename Media, typename Vertex>
 [[gnu::always_inline]] inline Rgb SampleLight(const PathContext<Media>& context, const Vertex& v,
-                                              const Guiding& guiding, const TiledSample& sample,
-                                              float pmf) {
-    const std::optional<LightSample>& light = sample.light;
+                                              int index, float pmf) {
+    const LightTable& lights = context.scene.lights;
+    const auto light = lights.Sample(index, v.Position(), context.sampler.Get2D());
     if (!light || IsBlack(light->L)) return Rgb::Zero();
     // With a BSDF ray of its own, direct light is sampled without the specular lobes; the ray that
     // continues the path is sampled from all of them. A light that rays cannot hit keeps
@@ -80,9 +23,8 @@ template <typename Media, typename Vertex, typename Guiding>
                                        : v.EvaluateEvenly(light->wi);
     if (IsBlack(value.f)) return Rgb::Zero();
     const float weight = light->isDelta ? 1
-                         : hasOwnRay
-                             ? PowerHeuristic(light->pdf, value.pdf)
-                             : PowerHeuristic(light->pdf * pmf, guiding.Pdf(value.pdf, light->wi));
+                         : hasOwnRay    ? PowerHeuristic(light->pdf, value.pdf)
+                                        : PowerHeuristic(light->pdf * pmf, value.pdf);
     const float cosine = v.Cosine(light->wi);
     const Rgb L = value.f * light->L * (cosine * weight / (light->pdf * pmf));
     if constexpr (!Media::kExist) {
@@ -95,19 +37,15 @@ template <typename Media, typename Vertex, typename Guiding>
         } else if (!seen) {
             return Rgb::Zero();
         }
-        return light->isOnMap ? Rgb(arriving * context.scene.lights.Radiance(sample.index, *light))
-                              : arriving;
+        return light->isOnMap ? Rgb(arriving * lights.Radiance(index, *light)) : arriving;
     } else {
         const auto visibility = context.media.See(context, v, *light);
         if (IsBlack(visibility.share)) return Rgb::Zero();
-        const Rgb share =
-            light->isOnMap
-                ? Rgb(visibility.share * context.scene.lights.Radiance(sample.index, *light))
-                : visibility.share;
+        const Rgb share = light->isOnMap ? Rgb(visibility.share * lights.Radiance(index, *light))
+                                         : visibility.share;
         if (light->isDelta || hasOwnRay || !visibility.isOutOfReach.any()) return L * share;
-        // Light that no ray can reach keeps pbrt-v3's weight, too, whatever has been learned.
-        const float evenly =
-            PowerHeuristic(light->pdf * sample.powerRatio, v.EvaluateEvenly(light->wi).pdf);
+        // Light that no ray can reach keeps pbrt-v3's weight, too.
+        const float evenly = PowerHeuristic(light->pdf, v.EvaluateEvenly(light->wi).pdf);
         return visibility.isOutOfReach.select(
                    value.f * light->L * (cosine * evenly / (light->pdf * pmf)), L) *
                share;
@@ -143,21 +81,17 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
            (v.Cosine(sample->wi) * PowerHeuristic(sample->pdf, lightPdf) / (sample->pdf * pmf));
 }
 
-// Samples direct light as the estimator says, after FindLearned() and PlaceOf(): chooses one light
-// of those at the vertex, tells the path how likely each was, and the recorder of its light.
-template <typename Media, typename Vertex, typename Guiding, typename Recorder>
+// Samples direct light as the estimator says, after PlaceOf(): chooses one light of those at the
+// vertex, tells the path how likely each was, and the recorder of its light.
+template <typename Media, typename Vertex, typename Recorder>
 [[gnu::always_inline]] inline Rgb SampleDirectLight(const PathContext<Media>& context,
-                                                    const Vertex& v, const Guiding& guiding,
-                                                    Recorder& recorder, Path* path) {
-    path->choice = ChoiceAt(context, v, path->lightPlace, path->learned);
+                                                    const Vertex& v, Recorder& recorder,
+                                                    Path* path) {
+    path->choice = v.Choice(context.scene.lights, path->lightPlace);
     float pmf;
     const int index = path->choice.Sample(context.sampler.Get1D(), &pmf);
     if (!(pmf > 0)) return Rgb::Zero();
-    const TiledSample sample = SampleTiled(context, v.Position(), index, path->learned.tiles);
-    Rgb L = SampleLight(context, v, guiding, sample, pmf);
-    if (context.learned && context.records) [[unlikely]]
-        Record(*context.records, context.scene.lights, path->learned, index, sample.tile,
-               sample.powerRatio, Luminance(L) * pmf, Luminance(path->beta * L) * pmf);
+    Rgb L = SampleLight(context, v, index, pmf);
     if (context.estimator == Estimator::PbrtV3)
         L += SampleDirectionForLight(context, v, index, pmf);
     recorder.FindLight(*path, index, L);

@@ -15,12 +15,23 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
 
 class FirstHitRecorder : public NoRecorder {
   public:
-    // `direction` is of the camera's ray at `time`.
+    // Records what `detail` asks for. `direction` is of the camera's ray at `time`.
     FirstHitRecorder(const Scene& scene, const PathOptions& options, const Vec3f& direction,
-                     float time, FirstHit* hit)
-        : scene(scene), options(options), direction(direction), time(time), hit(hit) {}
+                     float time, const SampleDetail& detail)
+        : scene(scene),
+          options(options),
+          direction(direction),
+          time(time),
+          groups(detail.groups),
+          hit(detail.firstHit),
+          done(!hit) {}
+    static bool IsNeeded(const SampleDetail& detail) { return detail.firstHit || detail.groups; }
 
     bool Wanted() const { return !done; }
+
+    void FindLight(const Path& path, int index, const Rgb& L) {
+        if (groups) groups->Add(index, path.beta * L);
+    }
 
     // The environment's radiance stands for the albedo.
     void LeaveScene(const Path& path) {
@@ -91,22 +102,11 @@ class FirstHitRecorder : public NoRecorder {
     const PathOptions& options;
     const Vec3f direction;
     const float time;
+    GroupRadiance* groups;  // null: not wanted
     FirstHit* hit;
     float distance = 0;  // of the path so far, from where its first ray begins
-    bool done = false;
+    bool done;
     bool isDirect = true;  // nothing has scattered the path
-};
-
-// Tells the light of groups apart, besides the first hit.
-class GroupRecorder : public FirstHitRecorder {
-  public:
-    GroupRecorder(const FirstHitRecorder& firstHit, GroupRadiance* groups)
-        : FirstHitRecorder(firstHit), groups(groups) {}
-
-    void FindLight(const Path& path, int index, const Rgb& L) { groups->Add(index, path.beta * L); }
-
-  private:
-    GroupRadiance* groups;
 };
 
 }  // namespace lull

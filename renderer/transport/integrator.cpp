@@ -24,7 +24,7 @@ PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler&
         *detail.firstHit = {.weight = start.filter.weight,
                             .offset2 = start.filter.offset.squaredNorm()};
     if (detail.groups) detail.groups->Clear();
-    if (detail.counts) *detail.counts = {};
+    if (detail.connected) *detail.connected = 0;
     if (start.cameraWeight == 0) return {Rgb::Zero(), false};
     const auto li = [&](const auto& integrator) {
         return Li(integrator, scene, options, sampler, start, detail);

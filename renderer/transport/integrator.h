@@ -6,13 +6,7 @@
 
 namespace lull {
 
-class EnvironmentGuide;
-class EnvironmentRecord;
-class Guide;
-class GuideRecord;
 class GroupRadiance;
-class LightChoiceGuide;
-class LightChoiceRecord;
 
 // PbrtV3 takes pbrt-v3's strategies as they are: at each vertex one light is chosen and sampled
 // both by the light and by a BSDF ray of its own. Combined has the same mean from fewer rays: the
@@ -31,27 +25,11 @@ struct BdptShares {
     float connections = 1;  // subpaths from lights to connect to, in (0, 1]
 };
 
-// What has been learned of the light that arrives directly, for Estimator::Combined. The mean is
-// the same.
-struct LearnedLight {
-    // Lets lights be chosen by what they bring to a place; null: as the scene has it.
-    const LightChoiceGuide* choices = nullptr;
-    // Likewise the tiles of the environment map (LightTable::Environment()); null: by their power.
-    const EnvironmentGuide* environment = nullptr;
-
-    bool IsEmpty() const { return !choices && !environment; }
-};
-
-// How paths are traced. Its pointees must outlive it.
+// How paths are traced.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
-    // Lets a guide choose directions too, by Estimator::Combined. The mean is the same. In media,
-    // and where light spreads below a surface, directions are not guided.
-    PathOptions(const Guide& guide) : guide(&guide) {}
 
     Estimator estimator = Estimator::Combined;
-    const Guide* guide = nullptr;
-    LearnedLight learned = {};
     // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
     // reflectance or transmittance, and its depth the length of the path, as if through windows.
     bool throughSpecular = false;
@@ -63,22 +41,6 @@ struct PathSample {
     bool rejected;  // was NaN, infinite or of negative luminance, and counts as black
 };
 
-// What learns from paths. Its pointees must outlive it; null: not wanted.
-struct PathRecords {
-    GuideRecord* directions = nullptr;     // of PathOptions::guide
-    LightChoiceRecord* choices = nullptr;  // of LearnedLight::choices
-    EnvironmentRecord* environment = nullptr;
-    const EnvironmentGuide* environmentGuide = nullptr;  // which it is of: LearnedLight's
-    // The luminances that a path usually brings, > 0, of which the first two record multiples.
-    float usualForDirections = 1, usualForLights = 1;
-};
-
-// The work and the worth of what learners choose, in one sample.
-struct PathCounts {
-    int vertices = 0;     // of a path that a guide may continue, without the camera
-    float connected = 0;  // share of the luminance from connections to subpaths from lights
-};
-
 // What receives the data of a sample besides its radiance, which they do not change; null: not
 // wanted.
 struct SampleDetail {
@@ -87,8 +49,8 @@ struct SampleDetail {
     FirstHit* firstHit = nullptr;
     // The radiance by groups of lights, with the same weights.
     GroupRadiance* groups = nullptr;
-    const PathRecords* records = nullptr;
-    PathCounts* counts = nullptr;
+    // The share of the luminance that comes from connections to subpaths from lights.
+    float* connected = nullptr;
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,

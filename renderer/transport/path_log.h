@@ -34,8 +34,8 @@ struct PathLog {
     PathSample sample;
 };
 
-// Takes the same sample of a scene that has a PathIntegrator as RenderSample(), without a guide,
-// and records its path.
+// Takes the same sample of a scene that has a PathIntegrator as RenderSample(), and records
+// its path.
 PathLog LogSample(const Scene&, Estimator, Sampler&, const Vec2i& pixel, uint32_t index);
 
 }  // namespace lull

@@ -1,10 +1,7 @@
 // A path between two vertices, and its way from one to the next.
 #pragma once
 
-#include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"
-#include "renderer/guiding/environment_guide.h"
-#include "renderer/guiding/light_choice_guide.h"
 #include "renderer/transport/integrator.h"
 #include "renderer/transport/no_recorder.h"
 #include "renderer/transport/path_vertex.h"
@@ -21,28 +18,7 @@ struct PathContext {
     Sampler& sampler;
     const CameraSample& camera;
     Media media;
-    const LearnedLight* learned = nullptr;
-    const PathRecords* records = nullptr;
 };
-
-// What has been learned of direct light at a vertex.
-struct LearnedPlace {
-    size_t lightCell = 0;               // of LightChoiceGuide, if that is used
-    const TileShares* tiles = nullptr;  // of the environment map; null: by power
-};
-
-inline LearnedPlace FindLearned(const LearnedLight& learned, const Vec3f& p, int side) {
-    LearnedPlace place;
-    if (learned.choices) {
-        place.lightCell = learned.choices->CellOf(p, side);
-        learned.choices->Prefetch(place.lightCell);
-    }
-    if (learned.environment) {
-        place.tiles = &learned.environment->Find(p, side);
-        lull::Prefetch(place.tiles);
-    }
-    return place;
-}
 
 // Carries the state of a path from one vertex to the next.
 struct Path {
@@ -55,10 +31,8 @@ struct Path {
     float pdf = 0;                 // 1/sr
     Vec3f origin = Vec3f::Zero();  // the vertex
     LightChoice choice{};          // of lights there
-    // Of the vertex that the path has come to:
-    LearnedPlace learned{};
-    size_t lightPlace = 0;     // LightTable::PlaceOf() it
-    bool wentThrough = false;  // an interface, where the ray continues unscattered
+    size_t lightPlace = 0;         // LightTable::PlaceOf() the vertex that the path has come to
+    bool wentThrough = false;      // an interface, where the ray continues unscattered
 };
 
 // Returns the weight of emission that the path's own ray has found on light `index`, where light
@@ -79,11 +53,7 @@ template <typename Recorder>
     Rgb sum = Rgb::Zero();
     if (!hit) {
         for (const int i : scene.lights.Infinite()) {
-            const Light& light = scene.lights[i];
-            const bool isLearned = path.learned.tiles && i == scene.lights.Environment();
-            const auto [L, pdf] = isLearned ? std::get_if<InfiniteLight>(&light)->LeAndPdf(
-                                                  path.ray.d, path.learned.tiles)
-                                            : LeAndPdf(light, path.ray.d);
+            const auto [L, pdf] = LeAndPdf(scene.lights[i], path.ray.d);
             const Rgb weighted = L * EmissionWeight(estimator, path, i, pdf);
             recorder.FindLight(path, i, weighted);
             sum += weighted;
@@ -99,39 +69,30 @@ template <typename Recorder>
     return sum;
 }
 
-// Continues the path with a sample of the BSDF, or phase function, that was chosen with density
-// (specular: probability) `pdf`.
-template <typename Vertex>
-void Continue(const Vertex& v, const BsdfSample& sample, float pdf, Path* path) {
-    path->beta *= sample.f * (v.Cosine(sample.wi) / pdf);
-    path->seesLights = sample.isSpecular;
-    path->pdf = pdf;
-    path->origin = v.Position();
-    if (sample.isSpecular && sample.isTransmission) path->etaScale *= v.EtaScale();
-    path->ray = v.SpawnRay(sample.wi);
-}
-
 // Continues the path with a sample of the BSDF or phase function. Returns false where it ends.
 // `isTransmission` receives whether it goes through the surface.
 template <typename Vertex>
 bool Scatter(const Vertex& v, Sampler& sampler, Path* path, bool* isTransmission) {
     const auto sample = v.Sample(sampler.Get2D(), LobeSet::All);
     if (!sample) return false;
-    Continue(v, *sample, sample->pdf, path);
+    path->beta *= sample->f * (v.Cosine(sample->wi) / sample->pdf);
+    path->seesLights = sample->isSpecular;
+    path->pdf = sample->pdf;
+    path->origin = v.Position();
+    if (sample->isSpecular && sample->isTransmission) path->etaScale *= v.EtaScale();
+    path->ray = v.SpawnRay(sample->wi);
     *isTransmission = sample->isTransmission;
     return true;
 }
 
-// Ends dim paths at random and makes up for it in the others. Returns false where it ends. The path
-// counts as `density` times as bright as it is. Estimator::PbrtV3 begins after four bounces, with
-// the throughput as the probability of survival. Otherwise its root is, as in Cycles: early
-// roulette then costs little variance.
+// Ends dim paths at random and makes up for it in the others. Returns false where it ends.
+// Estimator::PbrtV3 begins after four bounces, with the throughput as the probability of survival.
+// Otherwise its root is, as in Cycles: early roulette then costs little variance.
 template <typename Media>
-bool SurvivesRoulette(const PathContext<Media>& context, int bounces, Path* path,
-                      float density = 1) {
+bool SurvivesRoulette(const PathContext<Media>& context, int bounces, Path* path) {
     const bool isPbrtV3 = context.estimator == Estimator::PbrtV3;
     if (bounces <= (isPbrtV3 ? 3 : 2)) return true;
-    const float brightest = path->beta.maxCoeff() * density * path->etaScale;
+    const float brightest = path->beta.maxCoeff() * path->etaScale;
     if (brightest >= context.integrator.rrThreshold) return true;
     const float survival = isPbrtV3 ? std::min(0.95f, brightest) : std::sqrt(brightest);
     if (context.sampler.Get1D() >= survival) return false;

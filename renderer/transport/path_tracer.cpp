@@ -13,11 +13,10 @@ enum class MediumEvent { Passes, Scatters, Ends };
 
 // Follows the path's ray, which nothing else stops before `end`, through the medium about it. Where
 // that scatters it, adds direct light and continues from there.
-template <typename Media, typename Guiding, typename Recorder>
+template <typename Media, typename Recorder>
 [[gnu::always_inline]] inline MediumEvent FollowThroughMedium(PathContext<Media>& context,
                                                               float end, bool isLast,
-                                                              Guiding& guiding, Recorder& recorder,
-                                                              Path* path) {
+                                                              Recorder& recorder, Path* path) {
     const Scene& scene = context.scene;
     const MediumSample inMedium = context.media.Sample(path->ray, end, context.sampler);
     path->beta *= inMedium.weight;
@@ -30,13 +29,10 @@ template <typename Media, typename Guiding, typename Recorder>
     path->lightPlace = scene.lights.PlaceOf(v.p);
     recorder.MeetMedium(*path, *inMedium.t, v.p);
     if (isLast) return MediumEvent::Ends;
-    guiding.Enter(v);
-    if (context.learned) [[unlikely]]
-        path->learned = FindLearned(*context.learned, v.p, kInMedium);
     if (scene.lights.Count() > 0)
-        path->L += path->beta * SampleDirectLight(context, v, guiding, recorder, path);
+        path->L += path->beta * SampleDirectLight(context, v, recorder, path);
     bool isTransmission;
-    if (!guiding.Scatter(v, context.sampler, path, &isTransmission)) return MediumEvent::Ends;
+    if (!Scatter(v, context.sampler, path, &isTransmission)) return MediumEvent::Ends;
     recorder.Scatter(*path, true);
     return MediumEvent::Scatters;
 }
@@ -59,9 +55,9 @@ template <typename Media, typename Recorder>
 
 // Continues the path, which the surface has let in, from where it leaves the solid; adds the light
 // that arrives there directly. Returns false where it ends.
-template <typename Media, typename Guiding, typename Recorder>
+template <typename Media, typename Recorder>
 [[gnu::noinline]] bool ScatterBelow(PathContext<Media>* context, const SurfaceVertex& v,
-                                    Guiding& guiding, Recorder& recorder, Path* path) {
+                                    Recorder& recorder, Path* path) {
     const Scene& scene = context->scene;
     const auto profile = scene.materials.Profile(scene.textures, v.hit);
     if (!profile) {
@@ -75,24 +71,19 @@ template <typename Media, typename Guiding, typename Recorder>
     const Bsdf out = ExitBsdf(*exit, profile->eta);
     const SurfaceVertex last{exit->hit, out, exit->shape};
     path->lightPlace = scene.lights.PlaceOf(last.hit.p);
-    guiding.Enter(last, true);
-    if (context->learned) [[unlikely]]
-        path->learned = FindLearned(*context->learned, last.hit.p,
-                                    SideOf(FaceForward(last.hit.n, last.hit.wo)));
     if (scene.lights.Count() > 0)
-        path->L += path->beta * SampleDirectLight(*context, last, guiding, recorder, path);
+        path->L += path->beta * SampleDirectLight(*context, last, recorder, path);
     bool isTransmission;
-    if (!guiding.Scatter(last, context->sampler, path, &isTransmission)) return false;
+    if (!Scatter(last, context->sampler, path, &isTransmission)) return false;
     context->media.Leave(last, path->ray.d);
     return true;
 }
 
 // Takes the path off the surface that has scattered it; where it `goesBelow`, off that where it
 // comes out again. Returns false where it ends.
-template <typename Media, typename Guiding, typename Recorder>
+template <typename Media, typename Recorder>
 [[gnu::always_inline]] inline bool LeaveSurface(PathContext<Media>& context, const SurfaceVertex& v,
-                                                bool goesBelow, Guiding& guiding,
-                                                Recorder& recorder, Path* path) {
+                                                bool goesBelow, Recorder& recorder, Path* path) {
     if (!goesBelow) [[likely]] {
         context.media.Leave(v, path->ray.d);
         return true;
@@ -101,18 +92,17 @@ template <typename Media, typename Guiding, typename Recorder>
     // would lie in memory all along.
     PathContext<Media> contextBelow = context;
     Path below = *path;
-    const bool goesOn = ScatterBelow(&contextBelow, v, guiding, recorder, &below);
+    const bool goesOn = ScatterBelow(&contextBelow, v, recorder, &below);
     context.media = contextBelow.media;
     *path = below;
     return goesOn;
 }
 
 // Follows a path along `ray`, the camera's, and returns its radiance. Compiled for each kind of
-// Media, Guiding and Recorder, so that features which a scene does not have and nobody asks for
-// cost nothing.
-template <typename Media, typename Guiding, typename Recorder>
-[[gnu::noinline]] Rgb Trace(PathContext<Media> context, const Ray& ray, Guiding& guiding,
-                            Recorder& recorder) {
+// Media and Recorder, so that features which a scene does not have and nobody asks for cost
+// nothing.
+template <typename Media, typename Recorder>
+[[gnu::noinline]] Rgb Trace(PathContext<Media> context, const Ray& ray, Recorder& recorder) {
     const Scene& scene = context.scene;
     const PathIntegrator& integrator = context.integrator;
     const Estimator estimator = context.estimator;
@@ -134,10 +124,10 @@ template <typename Media, typename Guiding, typename Recorder>
         // Scatter in the medium before it, if that does.
         if constexpr (Media::kExist) {
             const MediumEvent event = FollowThroughMedium(context, isHit ? found.t : path.ray.tMax,
-                                                          isLast, guiding, recorder, &path);
+                                                          isLast, recorder, &path);
             if (event == MediumEvent::Ends) break;
             if (event == MediumEvent::Scatters) {
-                if (!guiding.SurvivesRoulette(context, bounces, &path)) break;
+                if (!SurvivesRoulette(context, bounces, &path)) break;
                 continue;
             }
         }
@@ -174,10 +164,7 @@ template <typename Media, typename Guiding, typename Recorder>
             continue;
         }
 
-        // Make the BSDF, while what has been learned of the environment is loaded.
-        const LearnedPlace learnedBefore = path.learned;
-        if (context.learned) [[unlikely]]
-            path.learned = FindLearned(*context.learned, hit.p, SideOf(FaceForward(hit.n, hit.wo)));
+        // Make the BSDF.
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         recorder.MeetSurface(path, found, hit, bsdf);
         const SurfaceVertex v{hit, bsdf, found.shape};
@@ -185,30 +172,27 @@ template <typename Media, typename Guiding, typename Recorder>
         // Go straight on through a pane, which is no vertex: shadow rays pass it, too.
         if constexpr (Media::kLetThrough)
             if ((needs & kLetsThrough) && PassPane(context, v, isLast, &bsdf, recorder, &path)) {
-                path.learned = learnedBefore;
                 --bounces;
                 continue;
             }
         if (isLast) break;
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
-        guiding.Enter(v, !(needs & kScattersBelow));
 
         // Sample the light that arrives directly from lights.
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0)
-            path.L += path.beta * SampleDirectLight(context, v, guiding, recorder, &path);
+            path.L += path.beta * SampleDirectLight(context, v, recorder, &path);
 
         // Sample the direction in which the path goes on, and leave the surface.
         bool isTransmission;
-        if (!guiding.Scatter(v, sampler, &path, &isTransmission)) break;
+        if (!Scatter(v, sampler, &path, &isTransmission)) break;
         const bool goesBelow = (needs & kScattersBelow) && isTransmission;
-        if (!LeaveSurface(context, v, goesBelow, guiding, recorder, &path)) break;
+        if (!LeaveSurface(context, v, goesBelow, recorder, &path)) break;
         recorder.Scatter(path, isTransmission);
 
         // End dim paths by Russian roulette.
-        if (!guiding.SurvivesRoulette(context, bounces, &path)) break;
+        if (!SurvivesRoulette(context, bounces, &path)) break;
     }
     recorder.End(path);
-    guiding.End(path);
     return path.L;
 }
 
@@ -216,27 +200,12 @@ template <typename Media, typename Guiding, typename Recorder>
 template <typename Media>
 Rgb TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
               const SampleDetail& detail) {
-    const auto trace = [&](auto& guiding) {
-        if (!detail.firstHit && !detail.groups) {
-            NoRecorder nobodyAsks;
-            return Trace(context, ray, guiding, nobodyAsks);
-        }
-        FirstHit unseen;
-        FirstHitRecorder recorder(context.scene, options, ray.d, context.camera.time,
-                                  detail.firstHit ? detail.firstHit : &unseen);
-        if (!detail.groups) return Trace(context, ray, guiding, recorder);
-        GroupRecorder groups(recorder, detail.groups);
-        return Trace(context, ray, guiding, groups);
-    };
-    if (!options.guide) {
-        Unguided unguided;
-        return trace(unguided);
+    if (!FirstHitRecorder::IsNeeded(detail)) {
+        NoRecorder nobodyAsks;
+        return Trace(context, ray, nobodyAsks);
     }
-    const PathRecords records = detail.records ? *detail.records : PathRecords();
-    Guided guided(*options.guide, records.directions, records.usualForDirections);
-    const Rgb L = trace(guided);
-    if (detail.counts) detail.counts->vertices = guided.Vertices();
-    return L;
+    FirstHitRecorder recorder(context.scene, options, ray.d, context.camera.time, detail);
+    return Trace(context, ray, recorder);
 }
 
 }  // namespace
@@ -245,9 +214,8 @@ Rgb Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& 
        Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
     const auto trace = [&]<typename Media>(const Media& media) {
         return TracePath<Media>(
-            {scene, integrator, options.estimator, sampler, start.camera, media,
-             options.learned.IsEmpty() ? nullptr : &options.learned, detail.records},
-            options, start.ray, detail);
+            {scene, integrator, options.estimator, sampler, start.camera, media}, options,
+            start.ray, detail);
     };
     if (scene.isVolumetric) return trace(Media(scene));
     return scene.hasPanes ? trace(NoMediaButPanes(scene)) : trace(NoMedia(scene));
@@ -265,14 +233,12 @@ PathLog LogSample(const Scene& scene, Estimator estimator, Sampler& sampler, con
     if (start.cameraWeight == 0) return log;
     const auto& integrator = std::get<PathIntegrator>(scene.integrator);
     const auto trace = [&]<typename Media>(const Media& media) {
-        Unguided unguided;
         PathRecorder recorder(scene, &log.steps);
         return Trace(PathContext<Media>{scene, integrator, estimator, sampler, start.camera, media},
-                     start.ray, unguided, recorder);
+                     start.ray, recorder);
     };
-    const Rgb L = scene.isVolumetric ? trace(Media(scene))
-                  : scene.hasPanes   ? trace(NoMediaButPanes(scene))
-                                     : trace(NoMedia(scene));
+    // Where there are no panes the sample is the same.
+    const Rgb L = scene.isVolumetric ? trace(Media(scene)) : trace(NoMediaButPanes(scene));
     log.sample = Weighted(scene, start, L);
     return log;
 }

@@ -13,9 +13,6 @@ struct BlockView {
     // finite (other values lead to no NaN, but to meaningless results). The half mean is the mean
     // over one fixed half of the samples.
     std::span<const float> mean = {}, halfMean = {};
-    // Variance of a sample over that of the samples that observers judged, in lightness, where it
-    // is known to be less: in (0, 1].
-    double variance = 1;
     // CPU time of the samples so far and of this view, in seconds, for measurements of rules. A
     // rule that used them would not be deterministic.
     double seconds = 0, viewSeconds = 0;

@@ -20,8 +20,8 @@ void BlockMemory::Add(BlockMeasures measures) {
 bool BlockMemory::Complete(BlockMeasures* measures) {
     if (!Needs(settings, Feature::VisibleDrop)) return true;
     AddEntropies(measures->spp, measures->Of(Feature::H), &entropies);
-    std::optional<std::vector<double>> drop = LatestVisibleDrop(
-        entropies, measures->lightness, VisibilityWith(measures->variance, settings.visibility));
+    std::optional<std::vector<double>> drop =
+        LatestVisibleDrop(entropies, measures->lightness, settings.visibility);
     if (drop) measures->Of(Feature::VisibleDrop) = std::move(*drop);
     return drop.has_value();
 }

@@ -52,7 +52,7 @@ constexpr double kLeastNoise = 0.1;  // is added to noise before its logarithm i
 
 BlockMeasures MeasureBlock(const BlockView& view, const ModelSettings& settings) {
     CheckView(view, ViewNeed::Mean);
-    BlockMeasures measures{.spp = view.spp, .variance = view.variance};
+    BlockMeasures measures{.spp = view.spp};
     MeasureDisplayed(view, settings, &measures);
     if (Needs(settings, Feature::VisibleDrop))
         measures.lightness = MeasureLightness(view, kMeasuredSubBlocks);

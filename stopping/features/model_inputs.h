@@ -18,7 +18,6 @@ inline constexpr int kMeasuredSubBlocks = 100;
 // empty if it is not asked for.
 struct BlockMeasures {
     int spp = 0;
-    double variance = 1;  // as in BlockView
     std::array<std::vector<double>, size_t(Feature::Attributes26) + 1> values = {};
     SubBlockLightness lightness = {};  // for visible_drop
 

@@ -21,8 +21,7 @@ class EntropyStatistic final : public Statistic {
     std::optional<double> Add(int spp, Signals signals) override {
         const BlockMeasures& measures = std::get<BlockMeasures>(signals);
         AddEntropies(spp, measures.Of(Feature::H), &history);
-        const auto visible = LatestVisibleDrop(history, measures.lightness,
-                                               VisibilityWith(measures.variance, visibility));
+        const auto visible = LatestVisibleDrop(history, measures.lightness, visibility);
         if (!visible) return {};
         return MeanVisible(*visible);
     }

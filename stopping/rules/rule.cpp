@@ -34,10 +34,9 @@ Rule CountingRule(std::function<int(const BlockInfo&)> stopAt) {
     return {.smallestSide = 0, .stopAt = std::move(stopAt)};
 }
 
-double PeakOverLimit(const Rule& rule, double peakNoise, int spp, double variance) {
+double PeakOverLimit(const Rule& rule, double peakNoise, int spp) {
     if (rule.peak.most <= 0) return 0;
-    return peakNoise * NearnessFactor(spp, VisibilityWith(variance, rule.peak.visibility)) /
-           rule.peak.most;
+    return peakNoise * NearnessFactor(spp, rule.peak.visibility) / rule.peak.most;
 }
 
 double WithPeak(const Rule& rule, double number, double peakOverLimit) {
@@ -83,7 +82,7 @@ Decision RuleCriterion::Observe(const BlockView& view) {
     const double noise = showsPeak ? PeakNoise(ComputeLightnessNoise(view)) : 0;
     return Decide(view.spp,
                   rule->inputs ? MeasureBlock(view, *rule->inputs) : rule->measure(view, block),
-                  PeakOverLimit(*rule, noise, view.spp, view.variance));
+                  PeakOverLimit(*rule, noise, view.spp));
 }
 
 std::optional<double> RuleCriterion::NetworkNoise() const {

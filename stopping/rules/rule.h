@@ -104,9 +104,8 @@ struct Rule {
     std::function<int(const BlockInfo&)> stopAt = {};
 };
 
-// Returns the peak noise of a block at `spp` over the rule's limit; 0 without a limit. `variance`
-// is that of BlockView.
-double PeakOverLimit(const Rule& rule, double peakNoise, int spp, double variance = 1);
+// Returns the peak noise of a block at `spp` over the rule's limit; 0 without a limit.
+double PeakOverLimit(const Rule& rule, double peakNoise, int spp);
 
 // Returns the number of a check: unchanged where the peak noise is below the limit; else at least
 // the threshold times `peakOverLimit` (odds of a probability), so that reports and forecasts

@@ -34,12 +34,6 @@ NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility) {
     return visibility;
 }
 
-NoiseVisibility VisibilityWith(double variance, NoiseVisibility visibility) {
-    if (variance < 1)
-        visibility.reference = std::max(1, int(std::lround(variance * visibility.reference)));
-    return visibility;
-}
-
 double RateOfFall(const EntropyState& oldest, const EntropyState& before, const EntropyState& now,
                   std::span<const double> weights) {
     const double early = Fall(oldest, before, weights), late = Fall(before, now, weights);

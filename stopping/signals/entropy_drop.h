@@ -36,10 +36,6 @@ struct NoiseVisibility {
 // does not change the reference.
 NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility);
 
-// Returns the visibility for samples that have `variance`, in (0, 1], times the variance of those
-// that observers judged: here, variance * N spp have as little noise as their reference.
-NoiseVisibility VisibilityWith(double variance, NoiseVisibility visibility);
-
 // The entropies of the sub-blocks of a picture, row-major, at some spp.
 using EntropyState = BlockState<float>;
 

@@ -31,7 +31,6 @@ TEST(CommandLine, RefusesWrongUsage) {
           "render scene.pbrt --crop 0,0.5,0,1px",
           "render scene.pbrt --pixel 24,0",
           "render scene.pbrt --pixel 1",
-          "render scene.pbrt --pixel 1,1 --guide on",
           "render scene.pbrt --sample 1",
           "render scene.pbrt --threads -1",
           "render scene.pbrt --threads many",
@@ -108,6 +107,9 @@ TEST(CommandLine, SuggestsOptions) {
     };
     EXPECT_EQ(errorOf("--denoize"),
               "lull: error: there is no option --denoize; did you mean --denoise?\n");
+    EXPECT_EQ(errorOf("--guide on"),
+              "lull: error: --guide was removed; use --denoise, or --integrator bdpt for light "
+              "through glass\n");
     EXPECT_EQ(errorOf("--ssp=3"), "lull: error: there is no option --ssp; did you mean --spp?\n");
     EXPECT_TRUE(Contains(errorOf("--quantum"), "; lull render --help lists"));
     EXPECT_TRUE(errorOf("--spp none").starts_with("lull: error: "));
@@ -142,12 +144,12 @@ TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
     const std::string all = ExpectSuccess(directory, "render --help-all").out;
     for (const char* option : {"--denoise ", "-o,--output", "--spp", "--resume"})
         EXPECT_TRUE(Contains(brief, option) && Contains(all, option)) << option;
-    for (const char* option : {"--png-bits", "--checkpoint-interval", "--guide-memory"})
+    for (const char* option : {"--png-bits", "--checkpoint-interval", "--orbit"})
         EXPECT_TRUE(!Contains(brief, option) && Contains(all, option)) << option;
     EXPECT_TRUE(Contains(brief, "lull render --help-all lists all options."));
-    for (const char* group : {"\nScene:\n  -", "\nImage:\n  -", "\nSampling:\n  -",
-                              "\nStopping:\n  -", "\nDenoising:\n  -", "\nGuiding:\n  -",
-                              "\nOutput:\n  -", "\nInterruption:\n  -", "\nAdvanced:\n  -"})
+    for (const char* group :
+         {"\nScene:\n  -", "\nImage:\n  -", "\nSampling:\n  -", "\nStopping:\n  -",
+          "\nDenoising:\n  -", "\nOutput:\n  -", "\nInterruption:\n  -", "\nAdvanced:\n  -"})
         EXPECT_TRUE(Contains(all, group)) << group;
     EXPECT_FALSE(Contains(all, "\nOptions:\n"));
     // The options of one command alone come first.
@@ -158,8 +160,7 @@ TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
 // Choices are named once, with the default.
 TEST(CommandLine, HelpNamesChoices) {
     const TemporaryDirectory directory;
-    for (const auto& [command, option] : {std::pair("render", "--guide off|auto|on=off "),
-                                          {"render", "--png-bits 8|16=8 "},
+    for (const auto& [command, option] : {std::pair("render", "--png-bits 8|16=8 "),
                                           {"evaluate", "--choose-by error|critical=error"},
                                           {"train", "--m 4|25|100|400=100 "}}) {
         const Outcome outcome = RunLull(directory, std::string(command) + " --help-all");

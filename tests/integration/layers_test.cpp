@@ -201,8 +201,6 @@ TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
               ReadExr(directory.File("plain.exr")).Find("G")->values);
     Render("--spp 40 --estimator pbrt-v3 -o b.exr --light-groups each");
     ExpectSum("b.exr", {"environment", "key", "bulb"});
-    Render("--spp 40 --guide on --integrator path -o c.exr " + groups);
-    ExpectSum("c.exr", {"bulb", "key", "rest"});
     // Light paths belong to the group of the light that they start from.
     Render("--spp 40 --integrator bdpt -o e.exr");
     Render("--spp 40 --integrator bdpt --aov noise -o f.exr " + groups);
@@ -317,30 +315,6 @@ TEST_F(LayersTest, LetTheBackgroundOutOfTheSamplesToo) {
     OpenExr denoised(directory.File("denoised.exr")), noisy(directory.File("noisy.exr"));
     for (const std::string c : {"R", "G", "B"})
         EXPECT_EQ(denoised.Channel("noisy." + c), noisy.Channel(c));
-}
-
-// What is seen first does not depend on where paths are sent afterwards.
-TEST_F(LayersTest, GuidesLeaveThemAsTheyAre) {
-    const std::string options = std::string(kAll) + "--spp 64 ";
-    Render(options + "-o plain.exr");
-    Render(options + "--guide on --threads 1 -o guided.exr");
-    Render(options + "--guide on --threads 2 -o again.exr");
-    EXPECT_TRUE(SameChannels("guided.exr", "again.exr"));
-    const ExrImage plain = ReadExr(directory.File("plain.exr")),
-                   guided = ReadExr(directory.File("guided.exr"));
-    ASSERT_EQ(guided.channels.size(), 17u);
-    EXPECT_NE(guided.Find("R")->values, plain.Find("R")->values);
-    for (const ExrChannel& c : plain.channels) {
-        if (c.name == "R" || c.name == "G" || c.name == "B" || c.name == "noise") continue;
-        const std::vector<float>& values = guided.Find(c.name)->values;
-        for (size_t i = 0; i < values.size(); ++i)
-            ASSERT_NEAR(values[i], c.values[i], 1e-4f * std::max(1.f, std::abs(c.values[i])))
-                << c.name;
-    }
-    // A render of few samples, for which learning does not pay, has them too.
-    Render(std::string(kAll) + "--spp 8 -o plain.exr");
-    Render(std::string(kAll) + "--spp 8 --guide auto -o auto.exr");
-    EXPECT_TRUE(SameChannels("plain.exr", "auto.exr"));
 }
 
 TEST_F(LayersTest, AreRefusedWhereTheyCannotBe) {

@@ -102,12 +102,9 @@ TEST_F(RanksTest, ShowPreviews) {
     EXPECT_FALSE(Contains(ReadBytes(directory.File("some.exr")), "interrupted"));
 }
 
-// Each learns by itself.
-TEST_F(RanksTest, LearnTheSame) { ExpectShared("--spp 32 --guide on ", {2}); }
-
 TEST_F(RanksTest, ShareLayers) {
     const std::string layers = "--aov albedo,normal,depth,position,object,material,noise ";
-    ExpectShared(layers + "--guide on --spp 32 ", {3}, "noise");
+    ExpectShared(layers + "--spp 32 ", {3}, "noise");
     EXPECT_EQ(ReadExr(directory.File("some.exr")).channels.size(), 17u);
     ExpectContinued(layers + "--stop lnoise:0.5 --cap 250 ", "noise");
 }

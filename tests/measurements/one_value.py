@@ -63,7 +63,6 @@ QUANTITIES = [
     ('pass, spp', REFERENCE, r'Decide every N spp \(1 to 1048576\) #', 'Each pass adds # spp'),
     ('side of a block, pixels', REFERENCE, r'Set the side of the blocks, in pixels \(1 to 65536\) #', 'each block of #x200 pixels is finished',
      'Observers judged blocks of #x200'),
-    ('memory of guides, MB', REFERENCE, r'guiding distribution, in MB \(2 to 65536\) #', r'--guide-memory \(# MB'),
     ('peak luminance', REFERENCE, 'in lux #cd,40ppd,250lux', '--viewing #cd,40ppd,250lux'),
     ('bytes of a pixel, denoised', RENDERING, 'checkpoints need; # with', 'of which the film has #'),
     ('bytes of a pixel', RENDERING, 'A pixel of the film takes # bytes', 'of which the film takes # or 48'),

@@ -38,7 +38,7 @@ class Options(unittest.TestCase):
             return options.arguments(command, program.options(command), given)
 
         self.assertEqual(words("render", resolution=(40, 30), crop=(0, 0.5, 0, 1), denoise=True,
-                               guide=None, exr_half=False, max_depth=3, output=pathlib.Path("a")),
+                               caution=None, exr_half=False, max_depth=3, output=pathlib.Path("a")),
                          ["--resolution", "40x30", "--crop", "0,0.5,0,1", "--denoise",
                           "--max-depth", "3", "--output", "a"])
         self.assertEqual(words("render", aov_through_specular=True, pass_=5),

@@ -68,7 +68,7 @@ class LULL_RENDER_PT_sampling(_Panel, bpy.types.Panel):
     def draw(self, context):
         settings, layout = context.scene.lull, self.layout
         layout.use_property_split = True
-        for name in "integrator", "guide", "max_depth", "seed", "texture", "panes":
+        for name in "integrator", "max_depth", "seed", "texture", "panes":
             layout.prop(settings, name)
 
 

@@ -47,11 +47,6 @@ class LullSettings(bpy.types.PropertyGroup):
                          "empty: no limit")
     denoise: BoolProperty(name="Denoise", default=True,
                           description="Denoise the image, and stop blocks once it is clean")
-    guide: EnumProperty(
-        name="Path Guiding", default='off',
-        items=(('off', "Off", "No path guiding"),
-               ('auto', "Automatic", "Guide paths in blocks where it saves time"),
-               ('on', "On", "Guide paths by learned incident light")))
     integrator: EnumProperty(
         name="Integrator", default='path',
         items=(('path', "Path Tracing", "Find light by paths from the camera"),
@@ -72,9 +67,7 @@ class LullSettings(bpy.types.PropertyGroup):
         """Returns the command-line arguments."""
         said = ["--cap", str(self.cap), "--max-depth", str(self.max_depth), "--seed", str(self.seed),
                 "--block", str(self.block)]
-        if self.integrator == 'path':
-            said += ["--guide", self.guide]
-        else:
+        if self.integrator != 'path':
             said += ["--integrator", self.integrator]
         if self.stop_by == 'SAMPLES':
             said += ["--spp", str(self.spp)]

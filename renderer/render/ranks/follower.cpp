@@ -1,7 +1,6 @@
 // All ranks but the first: render their tiles, and do as they are told.
 #include <atomic>
 
-#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/rank.h"
 
@@ -48,8 +47,6 @@ class Follower {
             needs.at(size_t(answer.block)) = answer.need;
             const int ready = schedule.Decide(answer.block, {answer.stop, answer.noise});
             if (!executor.pausing) rank.Enqueue([this, ready] { executor.tasks.Spawn(ready); });
-        } else if (word == RankWord::Guide) {
-            context.learners->Take(GetGuide(reader), *context.film);
         } else if (word == RankWord::Round) {
             TracePart(reader.Get<LightRound>());
         } else if (word == RankWord::Splats) {

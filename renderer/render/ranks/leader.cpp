@@ -4,7 +4,6 @@
 #include <map>
 #include <numeric>
 
-#include "renderer/learning/learners.h"
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
@@ -38,7 +37,6 @@ class Leader {
 
   private:
     RenderResult RunAll() {
-        TellGuide();
         SendStart({});
         executor.RestartIntervals();
         // Passes that an interruption has cut off need the light of their round, too.
@@ -47,9 +45,9 @@ class Leader {
             executor.pausing = hasGivenUp;
             rank.EnqueueReady();
             RunUntilPause();
-            const bool isLast = context.lightRounds && schedule.IsOver();
-            if (schedule.IsRoundOver() && !isLast && !executor.IsCancelled()) {
-                EndRound();
+            if (schedule.IsRoundOver() && !schedule.IsOver() && !executor.IsCancelled()) {
+                executor.Quiesce();
+                EndLightRound();
                 continue;
             }
             const double pause = Seconds();
@@ -80,17 +78,6 @@ class Leader {
             result.shares.push_back(double(std::ranges::count(dealt, other)) /
                                     double(dealt.size()));
         return result;
-    }
-
-    void EndRound() {
-        executor.Quiesce();
-        if (context.lightRounds) return EndLightRound();
-        executor.EndRound();
-        if (IsLearning(context)) return;
-        TellGuide();
-        deal = FirstDeal(context, options);
-        std::erase_if(deal, [&](int other) { return channel.HasGivenUp(other); });
-        Deal();
     }
 
     // Learns from the samples of all ranks, if a round has ended, and lets each of them trace a
@@ -127,7 +114,7 @@ class Leader {
     void LearnLight() {
         LightRounds& rounds = *context.lightRounds;
         if (rounds.End() == 0 || std::exchange(learnedEnd, rounds.End()) == rounds.End()) return;
-        context.learners->EndRound(film, {rounds.End(), false});
+        rounds.Learn(film);
     }
 
     // Traces a rank's part, and gives signs of life meanwhile.
@@ -153,12 +140,6 @@ class Leader {
             context.lightRounds->Planes().at(size_t(reader.Get<int32_t>())).Merge(&reader);
         }
         splats.erase(from);
-    }
-
-    // Sends the learner's state to the others, which have no tiles before that.
-    void TellGuide() {
-        if (context.learners && !IsLearning(context))
-            channel.PostToAll(PackGuide(context.learners->Save()));
     }
 
     double Seconds() const { return executor.ledger.Seconds(); }
@@ -411,7 +392,6 @@ class Leader {
     }
 
     void TellAnswer(int block, const BlockAnswer& answer) {
-        if (IsLearning(context)) return;  // by Start, where there are tiles for others
         parts[size_t(block)].clear();
         const int next = NextSpp(schedule.Unlocked().PassEnd(block));
         const ViewNeed need =

@@ -64,12 +64,6 @@ std::vector<std::byte> PackCollect(bool undo) {
     return std::move(writer.bytes);
 }
 
-std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned) {
-    StateWriter writer = Begin(RankWord::Guide);
-    writer.PutVector(learned);
-    return std::move(writer.bytes);
-}
-
 std::vector<std::byte> Pack(const LightRound& round) {
     StateWriter writer = Begin(RankWord::Round);
     writer.Put(round);
@@ -109,10 +103,6 @@ StartMessage GetStart(StateReader& reader) {
         message.needs.push_back(reader.Get<ViewNeed>());
     }
     return message;
-}
-
-std::vector<std::byte> GetGuide(StateReader& reader) {
-    return reader.GetVector<std::byte>("a message of a rank is damaged");
 }
 
 AnswerMessage GetAnswer(StateReader& reader) { return reader.Get<AnswerMessage>(); }

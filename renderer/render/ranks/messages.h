@@ -12,7 +12,6 @@ enum class RankWord : uint8_t {
     // From rank 0.
     Start,    // StartMessage; then come the sums of tiles that the rank did not own
     Begin,    // all of them have been sent
-    Guide,    // the learned state, before Start
     Round,    // LightRound: trace your part of its light, with no tile under way
     Lit,      // it has come, by Splats: begin the passes of the round
     Answer,   // AnswerMessage
@@ -65,7 +64,6 @@ std::vector<std::byte> Pack(const StartMessage&);
 std::vector<std::byte> Pack(const AnswerMessage&);
 std::vector<std::byte> Pack(const PartMessage&);
 std::vector<std::byte> PackCollect(bool undo);
-std::vector<std::byte> PackGuide(const std::vector<std::byte>& learned);
 std::vector<std::byte> Pack(const LightRound&);
 std::vector<std::byte> PackTraced(bool isWhole);
 std::vector<std::byte> PackSplats(int plane, const SplatPlane&);
@@ -73,7 +71,6 @@ std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles
 
 // Read the rest of a message after its word. Throw std::runtime_error for other bytes.
 StartMessage GetStart(StateReader&);
-std::vector<std::byte> GetGuide(StateReader&);
 AnswerMessage GetAnswer(StateReader&);
 PartMessage GetPart(StateReader&);
 // Reads the number of a block, below `blocks`.

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "renderer/learning/learners.h"
 #include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 
@@ -23,18 +22,10 @@ RankHooks WithFailures(RankHooks hooks, Rank* rank) {
 
 }  // namespace
 
-bool IsLearning(const RenderContext& context) {
-    return context.learners && !context.learners->IsDone();
-}
-
-std::vector<int> FirstDeal(const RenderContext& context, const RenderOptions& options) {
-    return IsLearning(context) ? std::vector{0} : EvenDeal(options.peers->Count());
-}
-
 Rank::Rank(const RenderContext& context, const RenderOptions& options, tbb::task_arena* arena,
            RankHooks hooks)
     : executor(context, options, StartsOf(context, options),
-               {options.peers->Rank(), FirstDeal(context, options)},
+               {options.peers->Rank(), EvenDeal(options.peers->Count())},
                WithFailures(std::move(hooks), this)),
       channel(options.peers, options.events.onSilence),
       tileSize(options.schedule.tileSize),

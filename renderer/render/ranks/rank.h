@@ -40,12 +40,6 @@ class Rank {
     tbb::task_arena* arena;
 };
 
-// Returns whether a guide is being learned: rank 0 then has all tiles.
-bool IsLearning(const RenderContext&);
-
-// Returns the assignment of tiles before the speeds of ranks are known.
-std::vector<int> FirstDeal(const RenderContext&, const RenderOptions&);
-
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
 // There is no display.
 RenderResult LeadRanks(const RenderContext&, const RenderOptions&, tbb::task_arena*);

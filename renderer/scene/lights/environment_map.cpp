@@ -38,14 +38,12 @@ EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated)
             weights += double(solidAngle(row)) * columns;
         }
         mean = float(sum / weights);
-        totalLuminance = float(4 * double(kPi) * sum / weights);
     }
     const auto weigh = [&](int row, std::span<float> weights) {
         Brightness(row, weights);
         for (float& w : weights) w = solidAngle(row) * std::max(w - mean, kLeast * w);
     };
     cells = BlockDistribution(columns, rows, weigh, isCompensated ? kTolerance : 0);
-    if (totalLuminance > 0) tiles.emplace(cells);
 }
 
 Rgb EnvironmentMap::Radiance(const Vec2f& st) const {

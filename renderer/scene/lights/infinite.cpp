@@ -83,18 +83,6 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
 std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) const {
     float mapPdf = 1;
     const Vec2f st = map ? map->Sample(u, &mapPdf) : u;
-    return SampleAt(st, mapPdf);
-}
-
-std::optional<LightSample> InfiniteLight::Sample(const TileShares& shares, const Vec2f& u,
-                                                 int* tile) const {
-    float mapPdf;
-    const Vec2f st = map->Sample(shares, u, &mapPdf, tile);
-    return SampleAt(st, mapPdf);
-}
-
-// Turns a point of the unit square, and its density there, into a direction.
-std::optional<LightSample> InfiniteLight::SampleAt(const Vec2f& st, float mapPdf) const {
     const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
     const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
     const Vec3f local(sinTheta * cosPhi, sinTheta * sinPhi, cosTheta);
@@ -112,11 +100,11 @@ std::optional<LightSample> InfiniteLight::SampleAt(const Vec2f& st, float mapPdf
                        .p = {st.x(), st.y(), 0}};
 }
 
-Emitted InfiniteLight::LeAndPdf(const Vec3f& w, const TileShares* shares) const {
+Emitted InfiniteLight::LeAndPdf(const Vec3f& w) const {
     const Vec3f local = (lightFromWorld * w).normalized();
     const float sinTheta = SafeSqrt(1 - Sqr(local.z()));
     const Vec2f st = map ? CoordinatesOf(local) : Vec2f::Zero();
-    const float mapPdf = !map ? 1 : shares ? map->Pdf(*shares, st) : map->Pdf(st);
+    const float mapPdf = map ? map->Pdf(st) : 1;
     return {map ? map->Radiance(st) : constant,
             sinTheta > 0 ? mapPdf / (2 * kPi * kPi * sinTheta) * Stretch(w) : 0};
 }

@@ -20,22 +20,14 @@ class InfiniteLight {
     static InfiniteLight Make(const LightReader&);
 
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    // `shares`: of the tiles of the map; null: as Sample(from, u) has them.
-    Emitted LeAndPdf(const Vec3f& w, const TileShares* shares = nullptr) const;
+    Emitted LeAndPdf(const Vec3f& w) const;
     // Returns the radiance of a sample that is on the map.
     Rgb Radiance(const LightSample& sample) const { return map->Radiance(sample.p.head<2>()); }
-    // Return the tiles of the map, null where there are none, and sample by other probabilities of
-    // them; `tile` receives the one chosen.
-    const EnvironmentTiles* Tiles() const { return map ? map->Tiles() : nullptr; }
-    std::optional<LightSample> Sample(const TileShares&, const Vec2f& u, int* tile) const;
-    // Returns the integral of luminance over all directions, of a map with tiles.
-    float TotalLuminance() const { return map->TotalLuminance(); }
 
     std::optional<LightBounds> Bounds() const { return {}; }
     Rgb Power() const;
 
   private:
-    std::optional<LightSample> SampleAt(const Vec2f& st, float mapPdf) const;
     // Returns the solid angle in light space over that in the world, about the direction `w` of the
     // world: 1 unless the transform scales unevenly.
     float Stretch(const Vec3f& w) const;

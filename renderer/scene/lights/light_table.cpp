@@ -238,8 +238,6 @@ void LightTable::AddLights(const Description& description, const ShapeTable& sha
         entities.push_back(int(&entity - description.lights.data()));
         lights.push_back(std::move(*light));
         if (TypeOf(lights.back()) == LightType::Infinite) infinite.push_back(Count() - 1);
-        const auto* sky = std::get_if<InfiniteLight>(&lights.back());
-        if (environment < 0 && sky && sky->Tiles()) environment = Count() - 1;
     }
 }
 

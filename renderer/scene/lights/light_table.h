@@ -30,16 +30,8 @@ class LightTable {
     // Lists the lights that rays reach when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
 
-    // Returns the first light with an environment map that has tiles (InfiniteLight::Tiles()); -1:
-    // there is none.
-    int Environment() const { return environment; }
-
     // Returns whether lights are chosen by a hierarchy.
     bool HasHierarchy() const { return hierarchy != nullptr; }
-
-    // Returns whether lights are chosen by tables of places: by neither a hierarchy nor fixed
-    // weights.
-    bool IsChosenByPlace() const { return distribution && distribution->Grid().Count() > 1; }
 
     // Returns whether a ray can hit any light at all.
     bool AnyVisible() const { return anyVisible; }
@@ -95,7 +87,6 @@ class LightTable {
     std::vector<std::unique_ptr<const EmissionMap>> emissionMaps;
     std::vector<std::unique_ptr<const EmissionProfile>> profiles;
     std::vector<int> infinite;
-    int environment = -1;
     bool anyVisible = false;
     std::unique_ptr<LightDistribution> distribution;
     std::unique_ptr<LightHierarchy> hierarchy;  // instead of `distribution`

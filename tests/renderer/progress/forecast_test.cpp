@@ -45,20 +45,6 @@ TEST(PredictStops, FollowsAPowerOfTheSamples) {
     }
 }
 
-// From some spp on, samples have a quarter of the variance, and as much less of it is to be seen.
-TEST(PredictStops, FollowsWhatSamplesHaveBecome) {
-    const RuleTrend rule{.reference = 10000};
-    StopTrend trend(rule);
-    const auto value = [](int spp, double variance) {
-        return kThreshold * std::sqrt(variance * (1. / spp - 1 / (variance * 10000)) * 6000);
-    };
-    for (int spp = 20; spp < 300; spp += 20)
-        trend.Add(spp, {.checked = true, .value = value(spp, 1), .threshold = kThreshold});
-    for (int spp = 300; spp <= 700; spp += 20)
-        trend.Add(spp, {.checked = true, .value = value(spp, 0.25), .threshold = kThreshold}, 0.25);
-    EXPECT_NEAR(PredictOne(trend), 1 / (1 / 2500. + 1 / 1500.), 40);
-}
-
 TEST(PredictStops, BearsSinglePassesThatAreFarOff) {
     const auto value = [](int spp) {
         const double clean = kThreshold * std::sqrt(2000.0 / spp);
@@ -138,7 +124,7 @@ TEST(PredictStops, FollowsTheNoiseThatANetworkLooksAt) {
     StopTrend trend({.kind = RuleTrend::Probability, .votes = 1, .undecided = 0.7});
     EXPECT_EQ(trend.IsOfOdds(), false);
     for (int spp = 20; spp <= 400; spp += 20)
-        trend.Add(spp, {.checked = true, .value = 1, .threshold = 0.5}, 1,
+        trend.Add(spp, {.checked = true, .value = 1, .threshold = 0.5},
                   0.7 * std::sqrt(2500.0 / spp));
     EXPECT_NEAR(PredictOne(trend), 2500, 20);
     // One from a checkpoint has no noise.

@@ -195,6 +195,25 @@ TEST(Checkpoint, IsReadWithoutTheHalfWhereThatIsNotNeeded) {
                          "without the sums of the half"));
 }
 
+TEST(Checkpoint, KeepsTheSharesOfLightPaths) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.File("a.checkpoint");
+    WriteSmallCheckpoint(path);
+    Film film(kRegion);
+    RenderState state = ReadCheckpoint(path, kIdentity, &film);
+    EXPECT_FALSE(state.shares);
+    const auto takenUp = [&](const BdptShares& shares) {
+        state.shares = shares;
+        WriteCheckpoint(path, kIdentity, state, film);
+        return ReadCheckpoint(path, kIdentity, &film).shares.value();
+    };
+    const BdptShares same = takenUp({.lightPaths = 0.25f, .connections = 0.125f});
+    EXPECT_EQ(same.lightPaths, 0.25f);
+    EXPECT_EQ(same.connections, 0.125f);
+    for (const BdptShares damaged : {BdptShares{2, 1}, {0, 0}, {std::nanf(""), 1}})
+        EXPECT_TRUE(Contains(ErrorOf([&] { takenUp(damaged); }), "its shares of light paths"));
+}
+
 TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
     const TemporaryDirectory directory;
     const auto fileOf = [&](const char* format) {
@@ -209,7 +228,7 @@ TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
     const auto errorOf = [&](const std::string& path) {
         return ErrorOf([&] { ReadCheckpoint(path, kIdentity, &film); });
     };
-    const std::string path = fileOf("lull checkpoint 1"), error = errorOf(path);
+    const std::string path = fileOf("lull checkpoint 4"), error = errorOf(path);
     EXPECT_TRUE(Contains(error, path + ": it was written by an older lull; ")) << error;
     EXPECT_TRUE(Contains(errorOf(fileOf("something else")), "it is not a checkpoint"));
 }

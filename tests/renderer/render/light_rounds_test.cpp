@@ -188,6 +188,20 @@ TEST(LightRounds, FindLightBehindGlass) {
     EXPECT_NEAR(many.half / many.other, 1, 0.03);
 }
 
+// The first round's samples decide how many light paths the next ones have.
+TEST(LightRounds, TakeMoreLightPathsWhereTheseHaveTheVariance) {
+    const auto pathsIn = [](bool inGlass) {
+        const auto scene = MakeScene(inGlass, "bdpt");
+        SessionOptions options = OptionsFor("", 2);
+        options.render.makeCriterion = {};
+        Session session(*scene, kRegion, options);
+        session.Run();
+        return session.Context().lightRounds->Shares().lightPaths;
+    };
+    EXPECT_GT(pathsIn(true), LightRounds::kFirst.lightPaths);
+    EXPECT_LT(pathsIn(false), LightRounds::kFirst.lightPaths);
+}
+
 // Each light path belongs to the group of its light, and so does what connections find.
 TEST(LightRounds, TellGroupsOfLightsApart) {
     const auto scene = MakeScene(false, "bdpt", "gaussian");

@@ -43,7 +43,6 @@ SessionOptions OptionsFor(const std::string& checkpoint) {
     };
     options.film.grid = GridOf(options.render.schedule);
     options.film.layers.aovs = {.albedo = true, .depth = true, .noise = true};
-    options.guide.mode = GuideMode::On;
     options.checkpoint = {.file = checkpoint, .interval = 1e6, .resume = true};
     options.identity = {{"scene", "box"}};
     return options;
@@ -51,12 +50,11 @@ SessionOptions OptionsFor(const std::string& checkpoint) {
 
 // What a session has said.
 struct Said {
-    std::vector<std::string> resume, learning, warnings;
+    std::vector<std::string> resume, warnings;
 
     void Hear(SessionOptions* options) {
         RenderEvents& events = options->render.events;
         events.onResume = [this](const std::string& line) { resume.push_back(line); };
-        events.onLearning = [this](const std::string& line) { learning.push_back(line); };
         events.onWarning = [this](const std::string& line) { warnings.push_back(line); };
     }
 };
@@ -65,7 +63,6 @@ TEST(Session, GoesOnFromWhereverItWasInterrupted) {
     const auto scene = MakeBox();
     Session whole(*scene, kBoxRegion, OptionsFor(""));
     ASSERT_FALSE(whole.Run().cancelled);
-    ASSERT_TRUE(whole.Guidance().isUsed);
 
     const TemporaryDirectory directory;
     const std::string file = directory.File("c.h5");
@@ -83,7 +80,6 @@ TEST(Session, GoesOnFromWhereverItWasInterrupted) {
         isDone = !session.Run().cancelled;
         interruptions += !isDone;
         EXPECT_TRUE(said.warnings.empty());
-        EXPECT_EQ(said.learning.size(), 1u);
         if (!isDone) continue;
         EXPECT_TRUE(SameSums(session.GetFilm(), whole.GetFilm()));
     }
@@ -95,7 +91,6 @@ TEST(Session, RefusesCheckpointsOfOtherLayers) {
     const auto scene = MakeBox();
     const TemporaryDirectory directory;
     SessionOptions options = OptionsFor(directory.File("c.h5"));
-    options.guide.mode = GuideMode::Off;
     options.checkpoint.isKept = true;
     Session(*scene, kBoxRegion, options).Run();
     Session same(*scene, kBoxRegion, options);
@@ -159,7 +154,6 @@ TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
     const TemporaryDirectory directory;
     Said said;
     SessionOptions options = OptionsFor(directory.File("missing/c.h5"));
-    options.guide.mode = GuideMode::Off;
     options.checkpoint.interval = 1e-6;
     said.Hear(&options);
     Session session(*scene, kBoxRegion, options);
@@ -171,7 +165,7 @@ TEST(Session, WarnsOnceOfCheckpointsThatCannotBeWritten) {
     EXPECT_TRUE(said.warnings[0].starts_with("no checkpoint: "));
 }
 
-// Learning ends early, and the files of the image take a part of the time.
+// The files of the image take a part of the time.
 TEST(Session, HeedsTheClock) {
     const auto scene = MakeBox();
     std::atomic<int> asked = 0;
@@ -180,7 +174,6 @@ TEST(Session, HeedsTheClock) {
     options.clock = [&] { return 60 - 0.01 * ++asked; };
     Session session(*scene, kBoxRegion, options);
     const RenderResult result = session.Run();
-    EXPECT_EQ(session.Guidance().samples, 60);
     ASSERT_TRUE(session.Context().secondsLeft);
     EXPECT_LT(session.Context().secondsLeft(), options.clock());
     EXPECT_FALSE(result.timeUp);

@@ -26,7 +26,6 @@ TEST(Integrator, IsPathUnlessTheSceneSays) {
     EXPECT_EQ(NameOf(integrator, true), "volpath");
     EXPECT_EQ(MaxDepth(integrator), 5);
     EXPECT_EQ(std::get<PathIntegrator>(integrator).rrThreshold, 1);
-    EXPECT_TRUE(CanBeGuided(integrator));
     EXPECT_EQ(warnings.Total(), 0);
 }
 
@@ -59,7 +58,6 @@ TEST(Integrator, StartsPathsFromLightsWhereTheSceneSays) {
     EXPECT_EQ(NameOf(bdpt, false), "bdpt");
     EXPECT_EQ(MaxDepth(bdpt), 9);
     EXPECT_TRUE(IsBidirectional(bdpt));
-    EXPECT_FALSE(CanBeGuided(bdpt));
     EXPECT_EQ(warnings.Total(), 0);
     for (const char* name : {"mlt", "sppm"})
         EXPECT_TRUE(IsBidirectional(

@@ -61,25 +61,6 @@ TEST(EntropyRule, NeedsFourTimesTheSamplesForHalfOfTheThreshold) {
     EXPECT_NEAR(half / once, 4, 0.8);
 }
 
-// Blocks with as little noise at a quarter of the spp stop at about a quarter, if the rule knows.
-TEST(EntropyRule, HeedsTheVarianceOfSamples) {
-    const auto stop = [](double variance, double told) {
-        const auto rule = MakeCriterion(EntropyRule(0.4, {}, 20));
-        for (int spp = 20; spp <= 10000; spp += 20) {
-            BlockImage block = NoisyBlock(100, 100, 0.5, int(spp / variance), unsigned(spp));
-            BlockView view = block.At(spp);
-            view.variance = told;
-            if (rule->Observe(view).stop) return spp;
-        }
-        return 10020;
-    };
-    const int plain = stop(1, 1);
-    EXPECT_GT(plain, 4000);
-    EXPECT_LT(plain, 10000);
-    EXPECT_NEAR(4. * stop(0.25, 0.25) / plain, 1, 0.06);
-    EXPECT_GT(4. * stop(0.25, 1) / plain, 1.25);
-}
-
 TEST(EntropyRule, ChecksWhereRecordingsHavePasses) {
     const Checks checks = EntropyChecks(20);
     for (const int spp : {20, 60, 100, 420, 9980}) EXPECT_TRUE(checks.AreDue(spp)) << spp;

@@ -82,7 +82,6 @@ TEST(RuleCriterion, DoesNotStopAtTheLimitOfPeakNoise) {
     EXPECT_EQ(read.need, ViewNeed::MeanAndHalf);
     EXPECT_NEAR(PeakOverLimit(rule, 4, 750), 1, 1e-12);
     EXPECT_EQ(PeakOverLimit(rule, 4, 1000), 0);
-    EXPECT_EQ(PeakOverLimit(rule, 4, 750, 0.5), 0);  // the reference is nearer by half
     EXPECT_EQ(WithPeak(rule, 0.1, 0.999), 0.1);
     EXPECT_EQ(WithPeak(rule, 0.1, 1), rule.threshold);
     EXPECT_EQ(WithPeak(rule, 0.1, 3), 3 * rule.threshold);

@@ -109,20 +109,6 @@ TEST(VisibleDrop, CountsWhatIsSeen) {
     EXPECT_EQ(at(20000)[0], 0);
 }
 
-// Samples with a quarter of the variance make the same noise with a quarter of the spp, and as much
-// of it is visible compared with the reference.
-TEST(VisibleDrop, CountsNoiseThatIsTheSameAlike) {
-    const std::vector<double> drop = {0.02};
-    const SubBlockLightness lightness{.mean = {60}, .deviation = {0}};
-    const NoiseVisibility visibility, better = VisibilityWith(0.25, visibility);
-    EXPECT_EQ(VisibilityWith(1, visibility).reference, 10000);
-    EXPECT_EQ(VisibilityWith(1e-9, visibility).reference, 1);
-    for (const int spp : {400, 4000, 9000, 10000})
-        EXPECT_NEAR(VisibleDrop(drop, lightness, spp / 4, better)[0],
-                    VisibleDrop(drop, lightness, spp, visibility)[0], 1e-9);
-    EXPECT_EQ(VisibleDrop(drop, lightness, 2500, better)[0], 0);
-}
-
 TEST(FlareFactor, HidesWhatIsDark) {
     EXPECT_DOUBLE_EQ(FlareFactor(50, 0), 1);
     double last = 0;
