@@ -38,17 +38,13 @@ TEST(JoinHuman, RefusesWhatDoesNotFit) {
     EXPECT_THROW(JoinHuman(viewpoints, human, nullptr), std::invalid_argument);
 }
 
-TEST(KeepRecorded, LeavesOutBlocksWithoutAttributes) {
+TEST(MakeSamples, NeedTheAttributesOfEachBlock) {
     std::vector<ViewpointRecording> viewpoints = {MakeViewpoint("a", 3, 400)};
     viewpoints[0].blocks[1].absent.set(ChannelIndex("attributes26"));
     const std::vector<LabelledBlock> blocks =
         JoinHuman(viewpoints, std::vector{MakeHumanRow("a")}, nullptr);
-    EXPECT_EQ(KeepRecorded(blocks, {}).size(), 3u);
     const ModelSettings settings = {.features = ParseFeatures("H,attributes26")};
-    const std::vector<LabelledBlock> kept = KeepRecorded(blocks, settings);
-    ASSERT_EQ(kept.size(), 2u);
-    EXPECT_EQ(kept[1].block, 2);
-    EXPECT_EQ(InputVector(MeasuresOf(*kept[0].recording, 0, settings), settings).size(), 126u);
+    EXPECT_EQ(InputVector(MeasuresOf(*blocks[0].recording, 0, settings), settings).size(), 126u);
     EXPECT_THROW(MakeSamples(blocks, settings), std::invalid_argument);
 }
 
