@@ -144,7 +144,8 @@ std::unique_ptr<const Scene> LoadScene(const std::filesystem::path& file, Estima
 }
 
 // Returns whether pbrt-v3's texture filtering shows at 128x128: it looks up small images of bump
-// maps and textures from the camera, which smooths them.
+// maps and textures from the camera, which smooths them. Bump maps of contemporary-bathroom also
+// send mirrored light below the surface, which pbrt-v3 loses.
 //   staircase               nine imagemaps, a bump map
 //   contemporary-bathroom   eight imagemaps, three float ones, a bump map
 //   crown                   bump maps of most of the gold
@@ -172,12 +173,12 @@ TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
                           100 * c.tilesOut, c.varianceMedian, c.varianceTotal, c.varianceTotalSigma)
                   .c_str());
     // The energy has to agree to 0.5 %, or as well as so many samples can tell.
-    EXPECT_TRUE(std::abs(c.energyRatio - 1) < 0.005 || std::abs(c.energySigma) < 3)
+    const bool isFiltered = ShowsTextureFiltering(name);
+    EXPECT_TRUE(std::abs(c.energyRatio - 1) < (isFiltered ? 0.012 : 0.005) ||
+                std::abs(c.energySigma) < 3)
         << "energy ratio " << c.energyRatio;
-    EXPECT_LE(c.pixelsOut, 0.01);
-    // Its bump maps send mirrored light below the surface, which pbrt-v3 loses.
-    const bool isTurned = std::string(name) == "contemporary-bathroom";
-    EXPECT_LE(c.tilesOut, isTurned ? 0.03 : 0.01);
+    EXPECT_LE(c.pixelsOut, isFiltered ? 0.04 : 0.01);
+    EXPECT_LE(c.tilesOut, isFiltered ? 0.07 : 0.01);
     // Few samples miss the rare bright ones that carry much of the variance, so with fewer than the
     // reference has it can seem too small, but not too large.
     EXPECT_LT(c.varianceMedian, 1.05);
