@@ -105,15 +105,9 @@ BlockImage DiagonalBlock(const std::array<int, 4>& ranks) {
     return image;
 }
 
-// The network is a logistic regression on the whole window, with another weight for each value.
 TEST(Learned, VotesOnTheWindowOfItsFeatures) {
     const ModelSettings settings = {.k = 3, .n = 40, .m = 4, .votes = 1000};
-    const auto weight = [](int step, int subBlock) { return 0.3 * (step + 1) - 0.2 * subBlock; };
-    Network network;
-    network.dense.push_back({"dense_1", Eigen::MatrixXf::Zero(1, 12), Eigen::VectorXf::Zero(1)});
-    for (int step = 0; step < 3; ++step)
-        for (int i = 0; i < 4; ++i)
-            network.dense[0].kernel(0, 4 * step + i) = float(weight(step, i));
+    const Network network = RandomNetwork(4, {5}, 1, 3);
     const auto criterion = MakeCriterion(LearnedRule(MakeModel(network, settings), 20));
 
     std::vector<std::array<int, 4>> ranks;  // of all passes
@@ -124,16 +118,16 @@ TEST(Learned, VotesOnTheWindowOfItsFeatures) {
         ASSERT_EQ(decision.checked, spp >= 100);
         if (!decision.checked) continue;
         // The states at spp - 80, spp - 40 and spp, each sub-block from 0 to 1 over them.
-        double sum = 0;
+        Eigen::MatrixXf window(4, 3);
         for (size_t i = 0; i < 4; ++i) {
             double h[3];
             for (size_t step = 0; step < 3; ++step)
                 h[step] = std::log(ranks[ranks.size() - 5 + 2 * step][i]) / std::log(20.0);
             const auto [least, most] = std::minmax({h[0], h[1], h[2]});
             for (int step = 0; step < 3; ++step)
-                sum += weight(step, int(i)) * (h[step] - least) / (most - least);
+                window(Eigen::Index(i), step) = float((h[step] - least) / (most - least));
         }
-        EXPECT_NEAR(decision.value, 1 / (1 + std::exp(-sum)), 1e-6) << spp;
+        EXPECT_NEAR(decision.value, NoisyProbability(network, window), 1e-6) << spp;
     }
 }
 
