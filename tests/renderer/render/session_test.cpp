@@ -69,7 +69,7 @@ TEST(Session, GoesOnFromWhereverItWasInterrupted) {
     int interruptions = 0, resumed = 0;
     for (bool isDone = false; !isDone;) {
         // Gets further than the last time, by as many tiles.
-        int left = 10 * (1 + interruptions);
+        int left = 4 * (1 + interruptions);
         Said said;
         SessionOptions options = OptionsFor(file);
         options.render.isCancelled = [&] { return left-- <= 0; };
