@@ -10,7 +10,7 @@ from .process import Failure
 
 _OWN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "program", "bin", "lull")
 _VERSION = "0.1.0"  # of the add-on, and so of the program
-_known = {}  # versions by path and time of change
+_known = {}  # versions, or Failures, by path and time of change
 
 
 def _found():
@@ -23,19 +23,26 @@ def _found():
 
 
 def _version_of(path):
-    """Returns the version of a program. Raises: Failure."""
+    """Returns the version of a program, which is asked once. Raises: Failure."""
     key = path, os.path.getmtime(path)
     if key not in _known:
-        try:
-            ran = subprocess.run([path, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
-                                 timeout=30, check=False)
-        except (OSError, subprocess.TimeoutExpired) as e:
-            raise Failure(f"{path} does not run: {e}") from e
-        words = ran.stdout.split()
-        if ran.returncode != 0 or words[:1] != ["lull"] or len(words) < 2:
-            raise Failure(f"{path} does not run: {(ran.stderr or ran.stdout).strip() or 'exit code %d' % ran.returncode}")
-        _known[key] = words[1]
+        _known[key] = _asked(path)
+    if isinstance(_known[key], Failure):
+        raise _known[key]
     return _known[key]
+
+
+def _asked(path):
+    """Returns the version of a program, or a Failure."""
+    try:
+        ran = subprocess.run([path, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
+                             timeout=30, check=False)
+    except (OSError, subprocess.TimeoutExpired) as e:
+        return Failure(f"{path} does not run: {e}")
+    words = ran.stdout.split()
+    if ran.returncode != 0 or words[:1] != ["lull"] or len(words) < 2:
+        return Failure(f"{path} does not run: {(ran.stderr or ran.stdout).strip() or 'exit code %d' % ran.returncode}")
+    return words[1]
 
 
 def find_lull():

@@ -44,9 +44,13 @@ def motion_settings(scene):
     return scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles  # the latter until 4.1
 
 
+_told = []  # versions
+
+
 def not_tested():
-    """Returns a sentence about a version that was not tried; None for one that was."""
-    if bpy.app.version[:2] in TESTED:
+    """Returns a sentence about a version that was not tried, once a session; None for one that was."""
+    version = bpy.app.version[:2]
+    if version in (*TESTED, *_told):
         return None
-    return "the add-on was tried with Blender {} and {}, not with {}".format(
-        *(".".join(map(str, v)) for v in (*TESTED, bpy.app.version[:2])))
+    _told.append(version)
+    return "the add-on was tried with Blender {} and {}, not with {}".format(*(".".join(map(str, v)) for v in (*TESTED, version)))
