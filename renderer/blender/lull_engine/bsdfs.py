@@ -5,7 +5,7 @@ from .versions import HAS_ADDED_INTERFACE, principled_input
 
 # Parameters that are inputs of a Principled BSDF.
 _INPUTS = ('Base Color', 'Metallic', 'Roughness', 'Specular', 'Transmission', 'IOR', 'Alpha', 'Clearcoat', 'Clearcoat Roughness')
-_ROUGH = 0.25
+_ROUGH = ('Transmission', 0.25), ('Metallic', 0.5)  # roughness, from which it shows
 # Specular is the reflectance at normal incidence, divided by 0.08, as in Blender 3.
 DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specular': 0, 'Transmission': 0, 'IOR': 1.45,
             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0),
@@ -26,8 +26,8 @@ def made(node, **parameters):
 
 def _note_roughness(surface, node, found):
     """Notes what reflects much, and is so rough that single scattering loses light."""
-    reflects = any(is_output(found[name]) or found[name] > 0 for name in ('Metallic', 'Transmission'))
-    if getattr(node, "distribution", '') == 'MULTI_GGX' and reflects and (is_output(found['Roughness']) or found['Roughness'] > _ROUGH):
+    rough = next((least for name, least in _ROUGH if is_output(found[name]) or found[name] > 0), None)
+    if getattr(node, "distribution", '') == 'MULTI_GGX' and rough is not None and (is_output(found['Roughness']) or found['Roughness'] > rough):
         surface.note("darker than Cycles' where rough, without multiple scattering")
     return found
 
