@@ -8,15 +8,19 @@ import sys
 
 import bpy
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from compatible import (add_input, add_output, displace, new_node, offset_shadow, set_input, shadow_transparently,  # noqa: E402
+                        socket)
+
 
 def material(name, node, **inputs):
     made = bpy.data.materials.new(name)
     made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
-    output, surface = tree.nodes.new('ShaderNodeOutputMaterial'), tree.nodes.new('ShaderNode' + node)
+    output, surface = tree.nodes.new('ShaderNodeOutputMaterial'), new_node(tree, 'ShaderNode' + node)
     for key, value in inputs.items():
-        surface.inputs[key].default_value = value
+        set_input(surface, key, value)
     tree.links.new(surface.outputs[0], output.inputs['Surface'])
     return made
 
@@ -160,8 +164,8 @@ def nodes(folder):
     lamp('AREA', 20, (-2, 2, 1.2), (math.pi / 2, 0, 0), size=2)
 
     group = bpy.data.node_groups.new("paint", 'ShaderNodeTree')
-    group.inputs.new('NodeSocketColor', "Color")
-    group.outputs.new('NodeSocketShader', "Shader")
+    add_input(group, 'NodeSocketColor', "Color")
+    add_output(group, 'NodeSocketShader', "Shader")
     inlet, outlet, paint = (group.nodes.new(kind) for kind in ('NodeGroupInput', 'NodeGroupOutput', 'ShaderNodeBsdfDiffuse'))
     group.links.new(inlet.outputs[0], paint.inputs['Color'])
     group.links.new(paint.outputs[0], outlet.inputs[0])
@@ -300,7 +304,7 @@ def fur(folder):
     wave.inputs['Scale'].default_value, move.inputs['Scale'].default_value = 1, 0.2
     tree.links.new(wave.outputs['Fac'], move.inputs['Height'])
     tree.links.new(move.outputs[0], tree.get_output_node('CYCLES').inputs['Displacement'])
-    waved.cycles.displacement_method = 'DISPLACEMENT'
+    displace(waved, 'DISPLACEMENT')
     sphere(waved, (-1.3, 0, 0.8))
 
     leaf = material("leaf", 'BsdfDiffuse', Color=(0.2, 0.5, 0.1, 1))
@@ -490,9 +494,9 @@ def doubtful(folder):
     scene = bpy.context.scene
 
     def shader(made, kind, **inputs):
-        node = made.node_tree.nodes.new('ShaderNode' + kind)
+        node = new_node(made.node_tree, 'ShaderNode' + kind)
         for key, value in inputs.items():
-            node.inputs[key].default_value = value
+            set_input(node, key, value)
         return node
 
     def mixed(name, first, second, kind=None, output=0):
@@ -507,20 +511,21 @@ def doubtful(folder):
         tree.links.new(mix.outputs[0], tree.get_output_node('CYCLES').inputs['Surface'])
         return made, front
 
-    def fed(name, socket, kind, output=0, **inputs):
+    def fed(name, name_of_input, kind, output=0, **inputs):
         made = material(name, 'BsdfPrincipled')
-        made.node_tree.links.new(shader(made, kind, **inputs).outputs[output], made.node_tree.nodes["Principled BSDF"].inputs[socket])
+        made.node_tree.links.new(shader(made, kind, **inputs).outputs[output],
+                                 socket(made.node_tree.nodes["Principled BSDF"], name_of_input))
         return made
 
     bumped, front = mixed("bumped", 'BsdfDiffuse', 'BsdfGlossy')
     bumped.node_tree.links.new(shader(bumped, 'Bump').outputs[0], front.inputs['Normal'])
     moved = matte("moved")
     moved.node_tree.links.new(shader(moved, 'Displacement').outputs[0], moved.node_tree.get_output_node('CYCLES').inputs['Displacement'])
-    moved.cycles.displacement_method = 'BOTH'
+    displace(moved, 'BOTH')
     veiled, _ = mixed("veiled", 'BsdfDiffuse', 'BsdfTransparent')
-    veiled.cycles.use_transparent_shadow = False
+    shadow_transparently(veiled, False)
     coated = fed("coated", 'Clearcoat Normal', 'Bump')
-    coated.node_tree.nodes["Principled BSDF"].inputs['Clearcoat'].default_value = 1
+    set_input(coated.node_tree.nodes["Principled BSDF"], 'Clearcoat', 1)
     shown = [mixed("by rays", 'BsdfDiffuse', 'BsdfTransparent', 'LightPath', 'Is Glossy Ray')[0], bumped, moved, veiled, coated,
              mixed("half known", 'BsdfDiffuse', 'BsdfHairPrincipled')[0], fed("patchy", 'Transmission', 'TexChecker'),
              fed("shaded", 'Base Color', 'AmbientOcclusion'), material("brushed", 'BsdfAnisotropic', Anisotropy=0.5), fed("haired", 'Roughness', 'HairInfo', 'Length'),
@@ -535,7 +540,7 @@ def doubtful(folder):
     leant = shader(leaning, 'TexImage')
     leant.image = stored(folder, "leant", [[(0.8, 0.5, 0.9)] * 4] * 4, 'Non-Color')
     tree.links.new(leant.outputs[0], next(n for n in tree.nodes if n.type == 'NORMAL_MAP').inputs['Color'])
-    sphere(leaning, (1, 2, 0.4), 0.4).cycles.shadow_terminator_offset = 0.5
+    offset_shadow(sphere(leaning, (1, 2, 0.4), 0.4), 0.5)
     bpy.context.object.name = "soft"
     bpy.ops.mesh.primitive_cube_add(size=0.5, location=(3, 3, 0.5))
     dress(matte("plain"), smooth=True).name = "round"
@@ -564,7 +569,7 @@ def doubtful(folder):
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
     scene.render.use_simplify = scene.cycles.use_camera_cull = edge.cycles.use_camera_cull = True
     scene.view_layers[0].pass_cryptomatte_depth, scene.view_layers[0].use_pass_cryptomatte_object = 8, True
-    scene.cycles.use_fast_gi, scene.view_settings.look = True, 'High Contrast'
+    scene.cycles.use_fast_gi, scene.view_settings.view_transform, scene.view_settings.look = True, 'Filmic', 'High Contrast'
     camera((0, -7, 3.2), (1.2, 0, 0), lens=35)
 
 

@@ -76,7 +76,7 @@ QUANTITIES = [
     ('stop of a block of staircase2, spp', README, 'The same stairs at 20, #, 2,886', 'A quarter of a block; #: stop', '>stop: #<', 'below 1/2 at # spp'),
     ('human threshold of a block of staircase2, spp', README, 'stairs at 20, 2,380, # and', '; #: human threshold', '>observers: #<',
      'this scene; # spp is the human'),
-    ('version of Blender', BLENDER, 'Tested with Blender 3.4.# ', 'with Blender 3.4.# alone', 'Blender 3.4.#, two threads'),
+    ('version of Blender', BLENDER, 'Tested with Blender 3.4.# ', 'with Blender 3.4.#, and', 'Blender 3.4.#, two threads'),
 ]
 
 

@@ -51,6 +51,18 @@ class Options(unittest.TestCase):
                 words("render", **given)
 
 
+class Exr(unittest.TestCase):
+    def test_reads_what_it_writes(self):
+        written = {name: np.random.default_rng(i).random((3, 5), np.float32) for i, name in enumerate("BRG")}
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "a.exr")
+            lull.commands.exr.write(file, written)
+            read, _ = lull.commands.exr.read(file)
+        self.assertEqual(list(read), ["B", "G", "R"])
+        for name, values in written.items():
+            np.testing.assert_array_equal(read[name], values)
+
+
 class Render(unittest.TestCase):
     def test_returns_what_the_command_writes(self):
         with tempfile.TemporaryDirectory() as folder:

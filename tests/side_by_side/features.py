@@ -7,8 +7,9 @@
 A feature is right if means of R, G, B and alpha are within 2 % of Cycles', blocks of 10x10 pixels within 5 % of the mean, on average,
 and each block of 5x5 pixels within 15 % of the mean of the block and the picture, or within four standard errors; refused if there is
 no picture; else warned. One that differs without a warning is silent, and the exit code is 1. Pictures stay
-in the folder OUT, `NAME.png` with Cycles on the left; what is there already is not rendered again, unless it is named. `--write`
-writes features.csv, all features, and replaces the table in renderer/docs/blender.md, those that are not right. Not part of CI.
+in the folder OUT, `NAME.png` with Cycles on the left; what is there already is not rendered again, but lull's picture if it is named, or
+with `--again`. `--write` writes features-VERSION.csv, all features in a version of Blender, and replaces the table in
+renderer/docs/blender.md, those that are not right in any of these files. Not part of CI.
 """
 import argparse
 import csv
@@ -43,8 +44,9 @@ def run(o, folder):
     os.makedirs(f"{folder}/scripts/addons")
     blender(o, environment, "--python-expr",
             f"import bpy; bpy.ops.preferences.addon_install(filepath={str(o.addon)!r})").communicate()
-    there = [] if o.names else [path.stem for path in o.out.glob("*.json")]
-    what = {"names": o.names, "there": there, "size": SIZE, "spp": o.spp, "folder": str(o.out)}
+    there = [] if o.names or o.again else [path.stem for path in o.out.glob("*.json")]
+    what = {"names": o.names, "there": there, "size": SIZE, "spp": o.spp, "folder": str(o.out),
+            "engines": ['CYCLES'] if o.cycles else ['CYCLES', 'LULL']}
     process = blender(o, environment, "--addons", "lull_engine", "--python", str(HERE / "features_in_blender.py"), "--",
                       json.dumps(what))
     said, name, names = [], None, None
@@ -57,6 +59,8 @@ def run(o, folder):
             elif line == "MADE\n":
                 (o.out / f"{name}.json").write_text(json.dumps({"title": title, "said": said}), encoding="utf-8")
                 print(name, flush=True)
+            elif line.startswith("VERSION "):
+                (o.out / "version.txt").write_text(line.split()[1], encoding="utf-8")
             elif line.startswith("ALL "):
                 names = line.split()[1:]
             elif re.match("(Warning|Error|Info): ", line):
@@ -135,12 +139,27 @@ def write(rows, path):
         csv.writer(file, lineterminator="\n").writerows([["feature", "lull", "means in %", "blocks in %", "worst block in %"], *rows])
 
 
-def table(rows):
-    """Returns the number of right features, and a table of the others."""
-    others = [row for row in rows if not row[1].startswith("right")]
-    lines = [f"{len(rows) - len(others)} of {len(rows)} features are right. The others:", "",
-             "| feature | mean differs by | a block by |", "|---|---|---|"]
-    lines += [f"| {title} | {means} % | {block} % |" if means else f"| {title} | refused | |" for title, _, means, _, block in others]
+def read(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.reader(file))[1:]
+
+
+def table():
+    """Returns the numbers of right features by version, and a table of the others."""
+    versions = {path.stem.removeprefix("features-"): {row[0]: row for row in read(path)} for path in sorted(HERE.glob("features-*.csv"))}
+    titles = dict.fromkeys(title for rows in versions.values() for title in rows)
+    right = {title for title in titles if all(rows.get(title, ["", "right"])[1].startswith("right") for rows in versions.values())}
+
+    def cell(row):
+        if row is None:
+            return "not there"
+        return "right" if row[1].startswith("right") else f"{row[2]} %, {row[4]} %" if row[2] else "refused"
+
+    counts = [f"{sum(row[1].startswith('right') for row in rows.values())} of {len(rows)} in Blender {version}"
+              for version, rows in versions.items()]
+    lines = [f"Right are {' and '.join(counts)}. The others, with the difference of the mean and that of a block:", "",
+             f"| feature | {' | '.join(versions)} |", "|---|" + "---|" * len(versions)]
+    lines += [f"| {title} | {' | '.join(cell(rows.get(title)) for rows in versions.values())} |" for title in titles if title not in right]
     return "\n" + "\n".join(lines) + "\n\n"
 
 
@@ -152,13 +171,15 @@ def main():
     parser.add_argument("out", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("names", nargs="*", help="features, by the names of their functions [all]")
     parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--cycles", action="store_true", help="render Cycles' pictures alone, for later runs")
+    parser.add_argument("--again", action="store_true", help="render all of lull's pictures again")
     parser.add_argument("--table", action="store_true", help="render nothing, and judge what is in OUT")
-    parser.add_argument("--write", action="store_true", help="replace features.csv and the table in renderer/docs/blender.md")
+    parser.add_argument("--write", action="store_true", help="replace features-VERSION.csv and the table in renderer/docs/blender.md")
     o = parser.parse_args()
     os.makedirs(o.out, exist_ok=True)
     if o.table:
-        names = [name for file in sorted((HERE / "features").glob("*.py"))
-                 for name in re.findall(r"^@case.*\ndef (\w+)", file.read_text(encoding="utf-8"), re.M)]
+        names = dict.fromkeys(name for file in sorted((HERE / "features").glob("*.py"))
+                              for name in re.findall(r"^@case.*\ndef (\w+)", file.read_text(encoding="utf-8"), re.M))
     else:
         with tempfile.TemporaryDirectory() as folder:
             names = run(o, folder)
@@ -174,10 +195,10 @@ def main():
         print(*rows[-1], sep=" | ")
     write(rows, o.out / "features.csv")
     if o.write:
-        write(rows, HERE / "features.csv")
+        write(rows, HERE / f"features-{(o.out / 'version.txt').read_text(encoding='utf-8')}.csv")
         page = ROOT / "renderer/docs/blender.md"
         before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-        page.write_text(before + BEGIN + table(rows) + END + rest.split(END)[1], encoding="utf-8")
+        page.write_text(before + BEGIN + table() + END + rest.split(END)[1], encoding="utf-8")
     if silent:
         sys.exit("silent: " + ", ".join(silent))
 

@@ -1,7 +1,8 @@
 """Makes scenes of one feature of Blender each, and renders them with Cycles and with lull. Runs inside Blender, for features.py:
-the last argument is a JSON object of names (none: all but those that are there), there, size, spp and folder.
+the last argument is a JSON object of names (none: all but those that are there), there, size, spp, engines and folder.
 
-Prints "CASE name | title" before each scene, "MADE" behind, and "ALL" with all names at the end. Pictures are FOLDER/NAME.cycles.exr and NAME.lull.exr.
+Prints "VERSION 3.4", "CASE name | title" before each scene, "MADE" behind, and "ALL" with all names at the end. Pictures are FOLDER/NAME.cycles.exr, kept
+where there is one, and NAME.lull.exr.
 """
 import importlib
 import json
@@ -35,6 +36,7 @@ def render(scene, engine, path, spp):
 
 def main():
     o = json.loads(sys.argv[-1])
+    print("VERSION", ".".join(map(str, bpy.app.version[:2])), flush=True)
     for name in o["names"] or [n for n in CASES if n not in o["there"]]:
         title, change = CASES[name]
         print(f"CASE {name} | {title}", flush=True)
@@ -48,12 +50,15 @@ def main():
         except (RuntimeError, AttributeError, KeyError, TypeError) as e:
             print("Info: not made:", e)
             continue
-        for engine in 'CYCLES', 'LULL':
+        for engine in o["engines"]:
             path = os.path.join(o["folder"], f"{name}.{engine.lower()}.exr")
             if os.path.exists(path):
+                if engine == 'CYCLES':
+                    continue
                 os.remove(path)
             render(scene, engine, path, o["spp"])
-        print("MADE", flush=True)
+        if 'LULL' in o["engines"]:
+            print("MADE", flush=True)
     print("ALL", *CASES, flush=True)
 
 

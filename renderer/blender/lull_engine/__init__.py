@@ -11,9 +11,9 @@ bl_info = {
 
 import bpy  # noqa: E402
 
-from . import engine, operators, panels, settings  # noqa: E402
+from . import engine, operators, panels, program, settings  # noqa: E402
 
-_CLASSES = (settings.LullPreferences, settings.LullSettings, engine.LullEngine,
+_CLASSES = (program.LullPreferences, program.LULL_OT_test, settings.LullSettings, engine.LullEngine,
             operators.LULL_OT_check, operators.LULL_OT_export, *panels.CLASSES)
 
 

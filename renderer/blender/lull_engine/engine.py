@@ -1,5 +1,4 @@
 """The render engine: exports the scene, runs lull, and fills Blender's render result."""
-import json
 import math
 import os
 import re
@@ -10,10 +9,12 @@ import bpy
 import numpy as np
 
 from . import exr, passes
-from .process import Failure, Render, run
-from .settings import find_lull
+from .camera import Failed
+from .export import export
+from .process import Failure, Render
+from .program import find_lull
+from .versions import IS_RECT_FLAT
 
-_EXPORT = os.path.join(os.path.dirname(__file__), "export.py")
 _ADVICE = "--solid-glass"  # which sheets of this add-on's making need not
 _SECONDS_BETWEEN_VIEWS = 0.5
 _SECONDS_BETWEEN_LINES = 10  # of progress, in a terminal
@@ -33,10 +34,10 @@ def _step(event):
 def _progress(event):
     text = "%d of %d blocks stopped, %d spp" % (
         event["stoppedBlocks"], event["blocks"], event["medianSpp"])
-    left = event["remainingSeconds"]
-    if left is None:
+    left, is_bound = event["remainingSeconds"], event["remainingIsUpperBound"]
+    if left is None or is_bound and event["stoppedBlocks"] == 0:  # until then the bound is that of the most samples
         return text
-    return "%s, %s%s left" % (text, "at most " if event["remainingIsUpperBound"] else "", _duration(left))
+    return "%s, %s%s left" % (text, "at most " if is_bound else "", _duration(left))
 
 
 class LullEngine(bpy.types.RenderEngine):
@@ -46,6 +47,7 @@ class LullEngine(bpy.types.RenderEngine):
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
     bl_use_postprocess = True
+    instead = None  # a function of the engine and the depsgraph, called instead of a render
 
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", 'COLOR')
@@ -53,51 +55,57 @@ class LullEngine(bpy.types.RenderEngine):
             self.register_pass(scene, renderlayer, made.name, len(made.channels), made.channels, made.kind)
 
     def render(self, depsgraph):
+        if LullEngine.instead is not None:
+            LullEngine.instead(self, depsgraph)
+            return
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as folder:
                 _Job(self, depsgraph, folder).run()
-        except (Failure, OSError) as e:
+        except (Failure, Failed, OSError) as e:
             self.error_set(str(e))  # in the window
             self.report({'ERROR'}, str(e))  # and in the terminal
 
 
-def export(scene, layer, folder, stopped, name="scene", suffix=".gltf", is_sharp=False, heard=lambda said: None):
-    """Writes a view layer as NAME.gltf or NAME.glb, in another Blender, which leaves the scene unchanged; with the world behind it
-    as a picture of its own if that `is_sharp`. `heard` is called with what that Blender has printed so far.
+def export_scene(scene, layer, folder, name="scene", suffix=".gltf"):
+    """Writes a view layer as a render would, and renders nothing. Returns Exported. Raises: Failure, Failed."""
+    found, r = [], scene.render
 
-    Returns: the result of export.py; None if `stopped` has returned true. Raises: Failure.
-    """
-    with tempfile.TemporaryDirectory(prefix="lull-") as scratch:  # the folder may have a NAME.blend of its own
-        blend, said = os.path.join(scratch, "scene.blend"), os.path.join(scratch, "said.json")
-        override = scene.view_layers[layer].material_override
-        bpy.data.libraries.write(blend, {scene, override} - {None}, path_remap='ABSOLUTE')
-        what = {"blend": blend, "scene": scene.name, "layer": layer, "material": override.name if override else None,
-                "folder": folder, "name": name, "suffix": suffix, "frame": scene.frame_current, "subframe": scene.frame_subframe,
-                "texture": scene.lull.texture, "panes": scene.lull.panes, "depth": scene.lull.max_depth, "sharp": is_sharp,
-                "said": said}
-        scripts = bpy.context.preferences.filepaths.use_scripts_auto_execute
-        code, output, ended = run(
-            [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio",
-             "--enable-autoexec" if scripts else "--disable-autoexec", "--python-exit-code", "1",
-             "--python", _EXPORT, "--", json.dumps(what)], stopped, heard)
-        if ended:
-            return None
-        if code != 0 or not os.path.exists(said):
-            lines = [line for line in output.splitlines() if line.strip() and
-                     not line.startswith(("Blender quit", "Error: script failed"))]
-            raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "exit code %d" % code))
-        with open(said, encoding="utf-8") as f:
-            return json.load(f)
+    def instead(engine, graph):
+        try:
+            with tempfile.TemporaryDirectory(prefix="lull-") as scratch:
+                found.append(export(graph, engine.frame_set, folder, scratch, name, suffix, False, lambda: False, lambda said: None))
+        except (Failure, Failed, OSError) as e:
+            found.append(e)
+
+    kept = {n: getattr(r, n) for n in ("engine", "use_compositing", "use_sequencer")}
+    slots = getattr(bpy.data.images.get("Render Result"), "render_slots", None)
+    slot = slots.active_index if slots else 0
+    try:
+        r.engine, r.use_compositing, r.use_sequencer, LullEngine.instead = 'LULL', False, False, instead
+        if slots:  # the last picture is to stay
+            slots.active_index = len(slots) - 1
+        bpy.ops.render.render(scene=scene.name, layer=layer)
+    finally:
+        LullEngine.instead = None
+        for n, value in kept.items():
+            setattr(r, n, value)
+        if slots:
+            slots.active_index = slot
+    if not found:
+        raise Failure("The scene cannot be exported")
+    if isinstance(found[0], Exception):
+        raise found[0]
+    return found[0]
 
 
 def arguments(scene, exported, size):
     """Returns the arguments of `lull render` for an exported scene of this size, as Blender's settings have it."""
-    said = [exported["gltf"], "--resolution", "%dx%d" % size, *scene.lull.arguments()]
-    if exported["shutter"]:
-        said += ["--frame", "0", "--shutter", "%.9g" % exported["shutter"]]
-    if exported["environment"]:
-        said += ["--environment", exported["environment"]]
-    if scene.render.film_transparent or exported["backdrop"]:
+    said = [exported.gltf, "--resolution", "%dx%d" % size, *scene.lull.arguments()]
+    if exported.shutter:
+        said += ["--frame", "0", "--shutter", "%.9g" % exported.shutter]
+    if exported.environment:
+        said += ["--environment", exported.environment]
+    if scene.render.film_transparent or exported.backdrop:
         said += ["--transparent"]
     if scene.cycles.film_exposure not in (0, 1):
         said += ["--exposure", "%.9g" % math.log2(scene.cycles.film_exposure)]
@@ -120,7 +128,7 @@ class _Job:
     """The render of one view layer."""
 
     def __init__(self, engine, depsgraph, folder):
-        self.engine, self.folder = engine, folder
+        self.engine, self.folder, self.graph = engine, folder, depsgraph
         self.scene = depsgraph.scene.original
         self.settings = self.scene.lull
         self.is_transparent = self.scene.render.film_transparent
@@ -150,18 +158,20 @@ class _Job:
     def run(self):
         lull, engine = find_lull(), self.engine
         engine.update_stats("", "Exporting")
-        exported = export(self.scene, self.layer, self.folder, engine.test_break, is_sharp=True, heard=self._show_export)
+        with tempfile.TemporaryDirectory(prefix="lull-") as scratch:
+            exported = export(self.graph, engine.frame_set, self.folder, scratch, "scene", ".glb", True, engine.test_break,
+                              self._show_export)
         if exported is None:
             return
-        for warning in exported["warnings"]:
+        for warning in exported.warnings:
             engine.report({'WARNING'}, warning)
-        for remark in exported["remarks"]:
+        for remark in exported.remarks:
             engine.report({'INFO'}, remark)
         if lacked := passes.lacked(self.view_layer):
             engine.report({'WARNING'}, "passes that lull lacks are missing: " + ", ".join(lacked))
         picture = os.path.join(self.folder, "picture.exr")
         command = [lull, "render", *arguments(self.scene, exported, self.whole), "-o", picture,
-                   *passes.arguments(self.passes, exported["groups"])]
+                   *passes.arguments(self.passes, exported.groups)]
         if self.crop:
             command += ["--crop", self.crop]
         if self.scene.render.threads_mode == 'FIXED':
@@ -183,8 +193,8 @@ class _Job:
         if time.monotonic() - self.shown < (_SECONDS_BETWEEN_LINES if bpy.app.background else _SECONDS_BETWEEN_VIEWS):
             return
         self.shown = time.monotonic()
-        if found := re.findall(r"^lull: (material \d+ of \d+)$", said, re.M):
-            self.engine.update_stats("", "Exporting " + found[-1])
+        if found := re.findall(r"^lull: (image \d+ of \d+)$", said, re.M):
+            self.engine.update_stats("", "Baking " + found[-1])
 
     def _watch(self, render, result):
         """Shows the progress of the render until it ends."""
@@ -218,8 +228,8 @@ class _Job:
             raise Failure(str(e)) from e
         for made in self.passes:
             self.engine.add_pass(made.name, len(made.channels), made.channels, layer=self.layer)
-        if exported["backdrop"] and not self.is_transparent:
-            behind = (1 - channels["A"][..., None]) * self._backdrop(exported["backdrop"])
+        if exported.backdrop and not self.is_transparent:
+            behind = (1 - channels["A"][..., None]) * self._backdrop(exported.backdrop)
             for name in channels.keys() & {prefix + c for prefix in ("", "noisy.", "light.environment.") for c in "RGB"}:
                 channels[name] = channels[name] + behind[..., "RGB".index(name[-1])]
         targets = result.layers[0].passes
@@ -252,4 +262,4 @@ class _Job:
 def _set(target, values):
     """Fills a pass, whose lowest row comes first."""
     values = np.ascontiguousarray(values[::-1], np.float32)
-    target.rect.foreach_set(values.reshape(-1, values.shape[2]))
+    target.rect.foreach_set(values.ravel() if IS_RECT_FLAT else values.reshape(-1, values.shape[2]))

@@ -5,6 +5,9 @@ import re
 import bpy
 import numpy as np
 
+from . import exr
+from .versions import IS_PROFILE_OPEN
+
 # By which Cycles makes the strength of a lamp of candela: 4 pi over 177.83 lm/W.
 _STRENGTH_PER_CANDELA = 4 * math.pi / 177.83
 _ROWS = 720
@@ -61,18 +64,20 @@ def strengths(text):
     interpolated by cubics, as there."""
     vertical, horizontal, candela = parse(text)
     down = (np.arange(_ROWS) + .5) * 180 / _ROWS
-    columns = 2 if len(horizontal) == 2 else 2 * _ROWS
+    columns = 2 if len(horizontal) == 2 and not IS_PROFILE_OPEN else 2 * _ROWS
     around = (np.arange(columns) + .5) * 360 / columns
     turned = (270 - around) % 360  # the profile begins at -y, and turns to -x
     row, x = _between(vertical, down)
     last = len(vertical) - 1
     rows = [candela[:, np.where(row == 0, 1, row - 1)], candela[:, row], candela[:, row + 1],
-            candela[:, np.minimum(row + 2, last)]]
+            np.where(IS_PROFILE_OPEN & (row + 2 > last), 0, candela[:, np.minimum(row + 2, last)])]
     by_row = np.where((vertical[0] <= down) & (down <= vertical[-1]), _catmull_rom(*rows, x), 0)
     column, x = _between(horizontal, turned)
     last = len(horizontal) - 1  # the same as the first
-    made = _catmull_rom(by_row[np.where(column == 0, last - 1, column - 1)], by_row[column], by_row[column + 1],
-                        by_row[np.where(column + 2 > last, 1, column + 2)], x[:, None])
+    before, behind = by_row[np.where(column == 0, last - 1, column - 1)], by_row[np.where(column + 2 > last, 1, column + 2)]
+    if IS_PROFILE_OPEN:
+        before[column == 0] = behind[column + 2 > last] = 0
+    made = _catmull_rom(before, by_row[column], by_row[column + 1], behind, x[:, None])
     return np.maximum(made.T, 0) * _STRENGTH_PER_CANDELA
 
 
@@ -89,13 +94,6 @@ def text_of(node):
         raise Unreadable from e
 
 
-def paint(values, path):
+def write(values, path):
     """Writes an EXR of grey values, the first row at the top."""
-    rows, columns = values.shape
-    image = bpy.data.images.new("profile", columns, rows, float_buffer=True, is_data=True)
-    pixels = np.ones((rows, columns, 4), np.float32)
-    pixels[:, :, :3] = values[::-1, :, None]
-    image.pixels.foreach_set(pixels.ravel())
-    image.file_format, image.filepath_raw = 'OPEN_EXR', path
-    image.save()
-    bpy.data.images.remove(image)
+    exr.write(path, dict.fromkeys("RGB", values))

@@ -1,94 +1,154 @@
 """Converts lights to those of glTF and lull."""
 import math
 import os
+from types import SimpleNamespace
 
-import bpy
+import numpy as np
 from bpy_extras.object_utils import world_to_camera_view
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
-import flatten
-import groups
-import ies
-import surfaces
-from versions import principled_input
+from . import ies, materials, meshes, shown, values
+from .nodes import Made, Tree, grey, is_output, upstream, value_of
+from .versions import HAS_DIM_LAMPS
 
-
-def find(scene, wanted):
-    """Returns the lights of the objects `wanted` and where they are, instances too."""
-    graph = bpy.context.evaluated_depsgraph_get()
-    return [(i.object.original, i.matrix_world.copy()) for i in graph.object_instances
-            if i.object.type == 'LIGHT' and not _is_portal(i.object.original.data)
-            and (i.is_instance or flatten.shows_itself(i, ()))
-            and (i.parent.original if i.is_instance else i.object.original) in wanted]
+_LUMENS = 683  # per watt, by which glTF's units are divided
+_COPIED = ("name", "type", "energy", "shadow_soft_size", "angle", "spot_size", "spot_blend", "spread", "shape", "size", "size_y")
 
 
-def add(lamps, scene, flat, base, baker, notes):
-    """Adds lights to a scene, point and spot lights with a radius, suns with an angle, and meshes for area lights, which glTF
-    lacks. `base` begins the names of files beside that of the scene."""
-    folded = {}
-    for o, matrix in lamps:
-        if not flatten.is_seen(o, flatten.SEEING_RAYS):
-            continue
-        light = folded.get(o.data)
-        if light is None:
-            light = folded[o.data] = _folded(o.data.copy(), baker, "%s-profile%d.exr" % (base, len(folded)), notes)
-        if light.energy * max(light.color) == 0:
-            continue
-        if light.energy < 0:
-            notes.add("left out, taking light away", o.name, "lights")
-            continue
-        if light.type == 'SUN' and not o.visible_camera and any(_is_in_view(scene, p) for p in _points(scene, light, matrix)):
-            notes.add("seen by the camera", o.name, "lights")
-        if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
-            notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
-        if light.cycles.max_bounces < 12:
-            notes.add("lighting after any number of bounces", o.name, "lights")
-        if not light.use_shadow or not getattr(light.cycles, "cast_shadow", True):
-            notes.add("casting shadows all the same", o.name, "lights")
-        if light.type == 'AREA' and flatten.is_sheared(matrix):
-            notes.add("shining in another direction, being sheared", o.name, "lights")
-        if light.type == 'AREA':
-            _add_area(flat, o, light, matrix)
-        else:
-            _place(flat, o, light, matrix)
+class Lights:
+    """The lights of a render (shown.Lamp)."""
+
+    def __init__(self, lamps, scene, base, baker, notes):
+        """`base` begins the names of files beside that of the scene."""
+        self._lamps, self._scene, self._base, self._baker, self._notes = lamps, scene, base, baker, notes
+        self._trees = {}  # kept, as the baker knows values by their outputs
+
+    def read(self, notes):
+        """Returns the lights that shine, of what _COPIED names, and their lamps. To be called again while the baker lacks something."""
+        folded, found = {}, []
+        for lamp in self._lamps:
+            o, data = lamp.original, lamp.data
+            if not shown.is_seen(o, shown.SEEING_RAYS):
+                continue
+            key = data.original.name_full
+            if key not in folded:
+                folded[key] = self._folded(data, "%s-profile%d.exr" % (self._base, len(folded)), notes)
+            light = folded[key]
+            if light.energy * max(light.color) == 0:
+                continue
+            if light.energy < 0:
+                notes.add("left out, taking light away", o.name, "lights")
+                continue
+            if light.type == 'SUN' and not o.visible_camera and any(
+                    _is_in_view(self._scene, p) for p in _points(self._scene, light, lamp.matrix)):
+                notes.add("seen by the camera", o.name, "lights")
+            if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
+                notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
+            if data.cycles.max_bounces < 12:
+                notes.add("lighting after any number of bounces", o.name, "lights")
+            if not data.use_shadow or not getattr(data.cycles, "cast_shadow", True):
+                notes.add("casting shadows all the same", o.name, "lights")
+            if light.type == 'SPOT' and max(lamp.matrix.to_scale()) > 1.01 * min(lamp.matrix.to_scale()):
+                notes.add("shining in a round cone of its angle, whatever its scale", o.name, "lights")
+            if light.type == 'AREA' and shown.is_sheared(lamp.matrix):
+                notes.add("shining in another direction, being sheared", o.name, "lights")
+            shown.note_linking(o, notes)
+            found.append((light, lamp))
+        return found
+
+    def _folded(self, data, profile, notes):
+        """Returns a light with the strength and colour of its nodes."""
+        light = SimpleNamespace(**{n: getattr(data, n, None) for n in _COPIED}, color=list(data.color), own={})
+        if data.use_nodes:
+            self._fold_nodes(light, data, profile, notes)
+        if light.type in ('POINT', 'SPOT') and light.shadow_soft_size > 0 and not light.own:
+            light.own = {"radius": light.shadow_soft_size}
+        if light.type == 'SUN' and light.angle > 0:
+            light.own = {"angle": light.angle}
+        if light.type == 'SPOT':
+            if HAS_DIM_LAMPS and 1 / math.cos(min(light.spot_size / 2, 1.5)) > 1.1:  # Cycles dims by the cosine of the angle from the axis
+                notes.add("brighter towards the edge of its cone", light.name, "lights")
+            light.spot_blend = _blend_of(light)
+        return light
+
+    def _fold_nodes(self, light, data, profile, notes):
+        """Applies strength and colour of nodes to the light, where they are the same for all rays."""
+        def replaced(node, output):
+            return _passing(node, output, light.name, self._notes)
+
+        output = self._trees.setdefault(data.original.name_full, Tree(data, replaced)).output
+        surface = output.inputs['Surface'].source if output is not None else None
+        if surface is None:
+            light.energy = 0
+            return
+        if surface.node.type != 'EMISSION':
+            notes.add("shining without nodes", light.name, "lights")
+            return
+        strength, colour = (surface.node.inputs[name] for name in ('Strength', 'Color'))
+        color = self._plain(data, colour)
+        if color is None:
+            notes.add("shining in the plain colour, without nodes", light.name, "lights")
+            color = surface.node.origin.inputs['Color'].default_value[:3]
+        factor = self._plain(data, strength)
+        if factor is None:
+            factor = self._profile(light, data, strength, profile)
+            if factor is None:
+                notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
+                factor = (1,)
+            elif light.shadow_soft_size > 0:
+                notes.add("casting hard shadows, having an IES profile", light.name, "lights")
+        # Colours of lights are not negative.
+        light.energy *= factor[0] if min(color) >= 0 else -abs(factor[0])
+        light.color = [a * abs(b) for a, b in zip(light.color, color)]
+
+    def _plain(self, data, socket):
+        """Returns an input's value, three numbers or one; None where it is not the same for all rays."""
+        value = value_of(socket)
+        if not is_output(value):
+            return value if isinstance(value, tuple) else (value,)
+        if not values.is_even(value):
+            return None
+        found = tuple(float(v) for v in self._baker.plain(data, value))
+        return (grey(*found),) if socket.type == 'VALUE' and value.type == 'RGBA' else found
+
+    def _profile(self, light, data, socket, path):
+        """Gives a point light the profile of an IES node on which its strength depends. Returns the factor of the profile, in a tuple;
+        None if it can have none."""
+        nodes = [n for n in upstream(socket.source) if n.type == 'TEX_IES']
+        if light.type != 'POINT' or len(nodes) != 1 or nodes[0].inputs['Vector'].source is not None:
+            return None
+        try:
+            profile = ies.strengths(ies.text_of(nodes[0]))
+        except ies.Unreadable:
+            return None
+        found = []
+        for value in 0., 1., 2.:
+            def replaced(node, output, value=value):
+                if node.type == 'TEX_IES':
+                    strength = node.inputs['Strength']
+                    return Made('Math', 'MATH', strength.source or strength.default_value, value, operation='MULTIPLY').output()
+                return _passing(node, output, None, None)
+
+            key = path, value
+            tree = self._trees.setdefault(key, Tree(data, replaced))
+            found.append(self._plain(data, tree.output.inputs['Surface'].source.node.inputs['Strength']))
+        if self._baker.is_lacking:
+            return (1,)
+        if None in found or abs(found[0][0]) > 1e-4 * abs(found[1][0]) or abs(found[2][0] - 2 * found[1][0]) > 1e-3 * abs(found[1][0]):
+            return None
+        ies.write(profile, path)
+        light.own = {"profile": os.path.basename(path)}
+        return found[1]
 
 
-def add_suns(suns, flat):
-    """Adds the suns of the world, which belong to the light group of all infinite lights."""
-    for light, matrix in suns:
-        made = bpy.data.objects.new("environment", light)
-        made.matrix_world = matrix
-        made["lull_source"] = "environment"
-        flat.collection.objects.link(made)
-
-
-def _place(flat, o, data, matrix):
-    made = bpy.data.objects.new(o.name, data)
-    made.matrix_world = matrix
-    made["lull_source"], made["lull_group"] = o.name, o.lightgroup
-    if not o.visible_camera:
-        made["lull_hidden"] = True
-    flat.collection.objects.link(made)
-
-
-def _folded(light, baker, profile, notes):
-    if light.use_nodes:
-        _fold_nodes(light, baker, profile, notes)
-    if light.type in ('POINT', 'SPOT') and light.shadow_soft_size > 0 and "lull" not in light:
-        light["lull"] = {"radius": light.shadow_soft_size}
-    if light.type == 'SUN' and light.angle > 0:
-        light["lull"] = {"angle": light.angle}
-    if light.type == 'SPOT':
-        if 1 / math.cos(min(light.spot_size / 2, 1.5)) > 1.1:  # Cycles dims by the cosine of the angle from the axis
-            notes.add("brighter towards the edge of its cone", light.name, "lights")
-        light.spot_blend = _blend_of(light)
-    light.use_nodes = False  # would be taken for all of its strength
-    return light
-
-
-def _is_portal(light):
-    """Returns whether a light only tells Cycles where the sky comes from."""
-    return light.type == 'AREA' and getattr(getattr(light, "cycles", None), "is_portal", False)
+def _passing(node, output, name, notes):
+    """Lets a light dim with the square of the distance, as glTF's do."""
+    if node.type != 'LIGHT_FALLOFF':
+        return None
+    smooth, strength = node.inputs['Smooth'], node.inputs['Strength']
+    if notes is not None and (output != 'Quadratic' or smooth.source is not None or smooth.default_value > 0):
+        notes.add("dimming with the square of the distance, whatever its falloff", name, "lights")
+    return strength.source or Made('Math', 'MATH', strength.default_value, 0., operation='ADD').output()
 
 
 def _blend_of(light):
@@ -100,100 +160,6 @@ def _blend_of(light):
     edge = math.cos(half)
     way = max(light.spot_blend, 1e-3) * (1 - edge) * (1 - 1 / 2) / (1 - 1 / 3)
     return 1 - math.acos(min(1, edge + way)) / half
-
-
-def _fold_nodes(light, baker, profile, notes):
-    """Applies strength and colour of nodes to the light, where they are the same for all rays."""
-    groups.inline(light.node_tree)
-    output = light.node_tree.get_output_node('CYCLES')
-    surface = surfaces.source_of(output.inputs['Surface']) if output else None
-    if surface is None:
-        light.energy = 0
-        return
-    if surface.node.type != 'EMISSION':
-        notes.add("shining without nodes", light.name, "lights")
-        return
-    strength, colour = (surface.node.inputs[name] for name in ('Strength', 'Color'))
-    _pass_falloff(light, notes)
-    shown = _plain(colour, baker)
-    if shown is None:
-        notes.add("shining in the plain colour, without nodes", light.name, "lights")
-        shown = colour.default_value[:3]
-    factor = _plain(strength, baker)
-    if factor is None:
-        factor = _fold_profile(light, strength, baker, profile)
-        if factor is None:
-            notes.add("shining evenly, without an IES profile or other nodes", light.name, "lights")
-            factor = (1,)
-        elif light.shadow_soft_size > 0:
-            notes.add("casting hard shadows, having an IES profile", light.name, "lights")
-    # Colours of lights are not negative.
-    light.energy *= factor[0] if min(shown) >= 0 else -abs(factor[0])
-    light.color = [a * abs(b) for a, b in zip(light.color, shown)]
-
-
-def _plain(socket, baker):
-    """Returns an input's value, three numbers or one; None where it is not the same for all rays."""
-    value = surfaces.value_of(socket)
-    if isinstance(value, (int, float)):
-        return (value,)
-    if not isinstance(value, bpy.types.NodeSocket):
-        return value
-    if not surfaces.is_even(value):
-        return None
-    found = _baked(value, baker)
-    return (surfaces.grey(*found),) if socket.type == 'VALUE' and value.type == 'RGBA' else found
-
-
-def _baked(output, baker):
-    material = bpy.data.materials.new('light')
-    material.use_nodes = True
-    copies = groups.copy_into(material.node_tree, surfaces.upstream(output))
-    found = baker.plain(material, copies[output.node].outputs[list(output.node.outputs).index(output)])
-    bpy.data.materials.remove(material)
-    return tuple(float(v) for v in found)
-
-
-def _pass_falloff(light, notes):
-    """Lets the light dim with the square of the distance, as glTF's do."""
-    tree = light.node_tree
-    for node in [n for n in tree.nodes if n.type == 'LIGHT_FALLOFF']:
-        smooth = node.inputs['Smooth']
-        for output in node.outputs:
-            if output.links and (output.name != 'Quadratic' or smooth.links or smooth.default_value > 0):
-                notes.add("dimming with the square of the distance, whatever its falloff", light.name, "lights")
-            groups.replace(tree, output, node.inputs['Strength'])
-
-
-def _fold_profile(light, socket, baker, path):
-    """Gives a point light the profile of an IES node on which its strength depends. Returns the factor of the profile, in a tuple; None
-    if it can have none."""
-    nodes = [n for n in surfaces.upstream(surfaces.source_of(socket)) if n.type == 'TEX_IES']
-    if light.type != 'POINT' or len(nodes) != 1 or nodes[0].inputs['Vector'].links:
-        return None
-    node, = nodes
-    try:
-        profile = ies.strengths(ies.text_of(node))
-    except ies.Unreadable:
-        return None
-    tree = light.node_tree
-    times = tree.nodes.new('ShaderNodeMath')
-    times.operation = 'MULTIPLY'
-    groups.replace(tree, node.outputs[0], times.outputs[0])
-    strength = surfaces.source_of(node.inputs['Strength'])
-    if strength is None:
-        times.inputs[1].default_value = node.inputs['Strength'].default_value
-    else:
-        tree.links.new(strength, times.inputs[1])
-    found = []
-    for value in 0, 1, 2:
-        times.inputs[0].default_value = value
-        found.append(_plain(socket, baker))
-    if None in found or abs(found[0][0]) > 1e-4 * abs(found[1][0]) or abs(found[2][0] - 2 * found[1][0]) > 1e-3 * abs(found[1][0]):
-        return None
-    ies.paint(profile, path)
-    light["lull"] = {"profile": os.path.basename(path)}
-    return found[1]
 
 
 def _points(scene, sun, matrix):
@@ -214,8 +180,26 @@ def _is_in_view(scene, point):
     return depth > 0 and 0 < x < 1 and 0 < y < 1
 
 
-def _add_area(flat, o, light, matrix):
-    """Adds a mesh that emits downwards, like the light."""
+def punctual(light):
+    """Returns a point light, a spot light or a sun for KHR_lights_punctual."""
+    made = {"name": light.name, "type": {'POINT': "point", 'SPOT': "spot", 'SUN': "directional"}[light.type], "color": list(light.color),
+            "intensity": light.energy * _LUMENS / (1 if light.type == 'SUN' else 4 * math.pi)}
+    if light.type == 'SPOT':
+        half = light.spot_size / 2
+        made["spot"] = {"innerConeAngle": half * (1 - light.spot_blend), "outerConeAngle": half}
+    if light.own:
+        made["extras"] = {"lull": light.own}
+    return made
+
+
+def sun(said):
+    """Returns a sun of the world, and where it is; `said` is sun.take()'s."""
+    light = SimpleNamespace(name="environment", type='SUN', energy=said["energy"], color=said["color"], own={"angle": said["angle"]})
+    return light, Matrix([said["matrix"][i:i + 4] for i in range(0, 16, 4)])
+
+
+def area(light, matrix):
+    """Returns a mesh that emits downwards, like an area light, and its material; None for one of no size."""
     width, height = _size(light)
     if light.shape in ('SQUARE', 'RECTANGLE'):
         corners, shrunk = [(-1, -1), (-1, 1), (1, 1), (1, -1)], 1
@@ -225,34 +209,14 @@ def _add_area(flat, o, light, matrix):
         corners = [(math.cos(a), math.sin(a)) for a in angles]
         # A polygon of the disk's area.
         shrunk = math.sqrt(math.pi / (count / 2 * math.sin(2 * math.pi / count)))
-    points = [(x * shrunk * width / 2, y * shrunk * height / 2, 0) for x, y in corners]
+    points = np.array([(x * shrunk * width / 2, y * shrunk * height / 2, 0) for x, y in corners], np.float32)
     # Cycles measures the area in the world, whatever scales the light.
     scale = matrix.to_scale()
-    area = width * height * abs(scale.x * scale.y)
-    if light.shape in ('DISK', 'ELLIPSE'):
-        area *= math.pi / 4
-    if area == 0 or light.energy == 0:
-        return
-    mesh = bpy.data.meshes.new(o.name)
-    mesh.from_pydata(points, [], [tuple(range(len(points)))])
-    # Blender's watts: a Lambertian surface of this radiance emits pi / 4 of them.
-    mesh.materials.append(_shining(o.name, light.color, light.energy / (4 * area)))
-    mesh.materials[0]["lull_open"] = True
-    if light.spread < math.pi - 1e-4:
-        mesh.materials[0]["lull_spread"] = light.spread
-    _place(flat, o, mesh, matrix)
-
-
-def _shining(name, color, radiance):
-    """Returns a black material that emits on its front."""
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    material.use_backface_culling = True
-    principled = surfaces.principled(material)
-    principled.inputs['Base Color'].default_value = (0, 0, 0, 1)
-    principled_input(principled, 'Specular').default_value = 0
-    # The exporter writes colours up to 1, and a strength.
-    largest = max(*color, 1e-9)
-    principled_input(principled, 'Emission').default_value = [c / largest for c in color] + [1]
-    principled.inputs['Emission Strength'].default_value = radiance * largest
-    return material
+    size = width * height * abs(scale.x * scale.y) * (math.pi / 4 if light.shape in ('DISK', 'ELLIPSE') else 1)
+    if size == 0:
+        return None
+    mesh = meshes.Mesh(light.name, points, np.arange(len(points), dtype=np.int32), np.zeros(1, np.int32))
+    mesh.cut()
+    # Of Blender 3's watts, a Lambertian surface emits pi / 4.
+    radiance = [c * light.energy / ((4 if HAS_DIM_LAMPS else math.pi) * size) for c in light.color]
+    return mesh, materials.shining(light.name, radiance, light.spread)

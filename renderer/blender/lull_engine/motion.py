@@ -1,31 +1,31 @@
 """Motion blur: where objects are when the shutter opens and closes, as the animation of a glTF file."""
-import base64
 import math
-import struct
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 
-import matrices
+from .versions import motion_settings
 
 _STARTS = {'START': 0, 'CENTER': -0.5, 'END': -1}  # of the time that the shutter is open
 _BENT = 0.2  # of the way, that the middle may be off a straight one
-_Y_UP = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
-_FLOAT = 5126
 
 
 class Motion:
-    """What moves while the shutter is open; nothing without motion blur. Leaves the scene at another frame."""
+    """What moves while the shutter is open; nothing without motion blur. `set_frame(frame, subframe)` evaluates the graph at another."""
 
-    def __init__(self, scene, frame, notes):
+    def __init__(self, scene, graph, set_frame, notes):
         self._moves, self.shutter = {}, 0
         r = scene.render
         if not r.use_motion_blur:
             return
-        length = r.motion_blur_shutter
-        first = frame + length * _STARTS[scene.cycles.motion_blur_position]
-        start, middle, end = (_Moment(scene, at) for at in (first, first + length / 2, first + length))
+        length, now = r.motion_blur_shutter, (scene.frame_current, scene.frame_subframe)
+        first = sum(now) + length * _STARTS[motion_settings(scene).motion_blur_position]
+        moments = []
+        for at in first, first + length / 2, first + length:
+            set_frame(math.floor(at), at - math.floor(at))
+            moments.append(_Moment(graph))
+        set_frame(*now)
+        start, middle, end = moments
         for key in start.places.keys() & middle.places.keys() & end.places.keys():
             self._compare(key, *(m.places[key] for m in (start, middle, end)), notes)
         for name, points in start.shapes.items():
@@ -54,24 +54,22 @@ class Motion:
         """Returns whether an object that is no copy moves."""
         return (o.original.name_full, "", ()) in self._moves
 
-    def mark(self, made, instance):
-        """Leaves the places of an instance, or an object, to the file that has the object made of it."""
+    def of(self, instance, matrix):
+        """Returns the places of what stands at `matrix`, and moves with an instance or an object; None where nothing moves."""
         start, end = self._moves.get(_key(instance), (None, None))
         if start is None or not instance.matrix_world.determinant():
-            return
-        away = instance.matrix_world.inverted() @ made.matrix_world
-        made["lull_moves"] = matrices.packed(start @ away, end @ away)
+            return None
+        away = instance.matrix_world.inverted() @ matrix
+        return start @ away, end @ away
 
 
 class _Moment:
-    """The places of objects and instances at a time in frames, and the points of meshes that modifiers or keys change."""
+    """The places of objects and instances, and the points of meshes that modifiers or keys change."""
 
-    def __init__(self, scene, at):
-        scene.frame_set(math.floor(at), subframe=at - math.floor(at))
-        graph = bpy.context.evaluated_depsgraph_get()
+    def __init__(self, graph):
         self.places = {_key(i): i.matrix_world.copy() for i in graph.object_instances}
-        if scene.camera:
-            self.places[_key(scene.camera)] = scene.camera.evaluated_get(graph).matrix_world.copy()
+        if camera := graph.scene_eval.camera:
+            self.places[_key(camera)] = camera.matrix_world.copy()
         self.shapes = {i.object.original.name_full: _points(i.object) for i in graph.object_instances
                        if i.object.type == 'MESH' and not i.is_instance and
                        (i.object.original.modifiers or i.object.original.data.shape_keys)}
@@ -94,58 +92,19 @@ def _apart(a, b):
     return max(abs(v) for row in a - b for v in row)
 
 
-def animate(root, shutter, notes, shines):
-    """Turns the marks of nodes into an animation of a glTF file, from 0 to `shutter` in seconds. `shines(node)` tells lamps."""
-    data, samplers, channels = _Data(root), [], []
-    times = None
-    for number, node in enumerate(root.get("nodes", [])):
-        values = node.get("extras", {}).pop("lull_moves", None)
-        if not values:
-            continue
-        if shines(node):
-            notes.add("sharp although it moves, as it shines", node["name"])
-            continue
-        if times is None:
-            times = data.add([(0,), (shutter,)], "SCALAR", is_bounded=True)
-        for path, keys in _poses(matrices.unpacked(values), "camera" in node).items():
+def animate(writer, moving, shutter):
+    """Adds an animation, from 0 to `shutter` in seconds, of nodes by their numbers, each with its two places."""
+    samplers, channels = [], []
+    times = writer.array(np.array([0, shutter], np.float32), is_bounded=True) if moving else None
+    for number, places in moving.items():
+        keys = {"translation": [], "rotation": [], "scale": []}
+        for place in places:
+            location, turn, scale = place.decompose()
+            keys["translation"].append(tuple(location))
+            keys["rotation"].append((turn.x, turn.y, turn.z, turn.w))
+            keys["scale"].append(tuple(scale))
+        for path, values in keys.items():
             channels.append({"sampler": len(samplers), "target": {"node": number, "path": path}})
-            samplers.append({"input": times, "output": data.add(keys, "VEC4" if path == "rotation" else "VEC3")})
+            samplers.append({"input": times, "output": writer.array(np.array(values, np.float32))})
     if channels:
-        root["animations"] = [{"name": "shutter", "samplers": samplers, "channels": channels}]
-        data.end()
-    return bool(channels)
-
-
-def _poses(places, is_camera):
-    """Returns the keys of a node by their path. glTF's cameras look along -z, as Blender's."""
-    found = {"translation": [], "rotation": [], "scale": []}
-    for place in places:
-        location, turn, scale = (_Y_UP @ place @ (Matrix.Identity(4) if is_camera else _Y_UP.inverted())).decompose()
-        found["translation"].append(tuple(location))
-        found["rotation"].append((turn.x, turn.y, turn.z, turn.w))
-        found["scale"].append(tuple(scale))
-    return found
-
-
-class _Data:
-    """Numbers in a buffer of their own, which is part of the JSON."""
-
-    def __init__(self, root):
-        self.root, self.bytes, self.buffer = root, b"", len(root.get("buffers", []))
-
-    def add(self, rows, kind, is_bounded=False):
-        """Returns the number of a new accessor."""
-        views, accessors = self.root.setdefault("bufferViews", []), self.root.setdefault("accessors", [])
-        packed = b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows)
-        views.append({"buffer": self.buffer, "byteOffset": len(self.bytes), "byteLength": len(packed)})
-        self.bytes += packed
-        accessor = {"bufferView": len(views) - 1, "componentType": _FLOAT, "count": len(rows), "type": kind}
-        if is_bounded:
-            bounds = [struct.unpack("<f", struct.pack("<f", v))[0] for row in (rows[0], rows[-1]) for v in row]
-            accessor.update({"min": bounds[:1], "max": bounds[1:]})
-        accessors.append(accessor)
-        return len(accessors) - 1
-
-    def end(self):
-        uri = "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
-        self.root.setdefault("buffers", []).append({"uri": uri, "byteLength": len(self.bytes)})
+        writer.add("animations", {"name": "shutter", "samplers": samplers, "channels": channels})

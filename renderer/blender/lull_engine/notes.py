@@ -24,3 +24,10 @@ class Notes:
             is_one = len(names) == 1
             lines.append(f"{len(names)} {kind[:-1] if is_one else kind} {'is' if is_one else 'are'} {consequence}: {shown}")
         return lines
+
+    def take(self, other):
+        """Adds what other notes have."""
+        for sentence in other._sentences:
+            self.say(sentence)
+        for key, names in other._names.items():
+            self._names.setdefault(key, []).extend(names)

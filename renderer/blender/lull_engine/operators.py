@@ -6,14 +6,11 @@ import tempfile
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .engine import arguments, export
+from .camera import Failed
+from .engine import arguments, export_scene
 from .process import Failure
 
 _REPORT = "lull: differences"
-
-
-def _never():
-    return False
 
 
 class LULL_OT_check(bpy.types.Operator):
@@ -23,9 +20,9 @@ class LULL_OT_check(bpy.types.Operator):
     def execute(self, context):
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as folder:
-                lines = export(context.scene, context.view_layer.name, folder, _never)
-                lines = lines["warnings"] + lines["remarks"]
-        except (Failure, OSError) as e:
+                done = export_scene(context.scene, context.view_layer.name, folder)
+                lines = done.warnings + done.remarks
+        except (Failure, Failed, OSError) as e:
             self.report({'ERROR'}, str(e))
             return {'CANCELLED'}
         text = bpy.data.texts.get(_REPORT) or bpy.data.texts.new(_REPORT)
@@ -51,13 +48,13 @@ class LULL_OT_export(bpy.types.Operator, ExportHelper):
         if suffix not in (".glb", ".gltf"):
             name, suffix = file, ".glb"
         try:
-            done = export(scene, context.view_layer.name, folder, _never, name, suffix)
-        except (Failure, OSError) as e:
+            done = export_scene(scene, context.view_layer.name, folder, name, suffix)
+        except (Failure, Failed, OSError) as e:
             self.report({'ERROR'}, str(e))
             return {'CANCELLED'}
-        for line in done["warnings"]:
+        for line in done.warnings:
             self.report({'WARNING'}, line)
-        if done["backdrop"]:
+        if done.backdrop:
             self.report({'WARNING'}, f"the world is left out behind the scene: put {done['backdrop']} there")
         scale = scene.render.resolution_percentage / 100
         size = int(scene.render.resolution_x * scale), int(scene.render.resolution_y * scale)

@@ -1,6 +1,8 @@
 """The panels of lull, and those of Blender that are for every engine."""
 import bpy
 
+from .versions import motion_settings
+
 # Panels of EEVEE and Cycles that every engine needs: properties of surfaces, the world and lights, and passes.
 _BORROWED = ("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface", "DATA_PT_EEVEE_light",
              "DATA_PT_spot", "VIEWLAYER_PT_layer_passes", "VIEWLAYER_PT_layer_passes_cryptomatte",
@@ -58,7 +60,10 @@ class LULL_RENDER_PT_stopping(_Panel, bpy.types.Panel):
         layout.prop(settings, "cap")
         layout.prop(settings, "time")
         layout.prop(settings, "denoise")
+        if settings.stop_by != 'SAMPLES':
+            layout.label(text=f"Rule: {settings.rule_used()}")
         layout.operator("lull.check")
+        layout.label(text="The viewport shows EEVEE's image", icon='INFO')
 
 
 class LULL_RENDER_PT_sampling(_Panel, bpy.types.Panel):
@@ -93,7 +98,7 @@ class LULL_RENDER_PT_motion_blur(_Panel, bpy.types.Panel):
     def draw(self, context):
         render, layout = context.scene.render, self.layout
         layout.use_property_split, layout.active = True, render.use_motion_blur
-        layout.prop(context.scene.cycles, "motion_blur_position", text="Position")
+        layout.prop(motion_settings(context.scene), "motion_blur_position", text="Position")
         layout.prop(render, "motion_blur_shutter")
 
 

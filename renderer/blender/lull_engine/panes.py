@@ -1,72 +1,50 @@
 """Makes sheets of panes that are modelled as slabs of glass: light sampling passes a sheet, and no solid."""
-import bpy
 import numpy as np
 
-import solids
-import surfaces
-from versions import principled_input
+from . import solids
+from .meshes import Mesh
 
 _SMOOTH = 0.03  # roughness
 
 
-def prepare(made, notes):
-    """Replaces the meshes of flattened objects whose materials are converted."""
-    sheets = {}
-    for o in made:
-        mesh = o.data
-        if o.get("lull_shadowless"):  # light passes it as it is
-            continue
-        if mesh not in sheets:
-            sheets[mesh] = _sheet(o) if len(mesh.materials) == 1 and _glass(mesh.materials[0]) else None
-        if sheets[mesh] is not None:
-            o.data = sheets[mesh]
-            notes.add("made a sheet instead of a slab of glass, so that light passes", o["lull_source"])
-
-
-def _glass(material):
-    """Returns the surface of smooth clear glass; None for other materials."""
-    surface = surfaces.principled(material)
-    if surface is None or material.get("lull_absorbs") or material.get("lull_shadowless"):
+def sheet(mesh, matrix, parts):
+    """Returns the middle of a closed slab of clear glass, and its material; None for other meshes and `parts` (see dress.Part)."""
+    if len(mesh.materials) != 1 or len(parts) != 1 or not _is_clear_glass(parts[0].material):
         return None
-    inputs = surface.inputs
-    transmission = principled_input(surface, 'Transmission')
-    values = (transmission, inputs['Roughness'], inputs['Base Color'], inputs['Alpha'], inputs['Normal'])
-    is_glass = (not any(s.links for s in values) and transmission.default_value > 0.99 and
-                inputs['Roughness'].default_value <= _SMOOTH and inputs['Alpha'].default_value == 1)
-    return surface if is_glass else None
-
-
-def _sheet(o):
-    """Returns the middle of a closed slab; None for other meshes."""
-    mesh = o.data
-    points = np.empty(3 * len(mesh.vertices))
-    mesh.vertices.foreach_get("co", points)
-    points = points.reshape(-1, 3)
+    points = mesh.points.astype(float)
     low, high = points.min(0), points.max(0)
-    sides = (high - low) * np.abs(o.matrix_world.to_scale())
+    sides = (high - low) * np.linalg.norm(matrix[:3, :3], axis=0)
     axis = int(np.argmin(sides))
-    others = np.delete(sides, axis)
     thick = high[axis] - low[axis]
-    is_slab = thick > 0 and others.min() >= solids.LEAST_WIDTHS * sides[axis]
+    is_slab = thick > 0 and np.delete(sides, axis).min() >= solids.LEAST_WIDTHS * sides[axis]
     top = points[:, axis] > high[axis] - 0.01 * thick
     bottom = points[:, axis] < low[axis] + 0.01 * thick
-    if not is_slab or not (top | bottom).all() or not solids.is_closed(mesh.polygons):
+    faces = [mesh.face_corners(i) for i in range(len(mesh.starts))] if is_slab and (top | bottom).all() else ()
+    if not len(faces) or not solids.is_closed(faces):
         return None
-    middle = points.copy()
-    middle[:, axis] = (low[axis] + high[axis]) / 2
-    faces = [tuple(p.vertices) for p in mesh.polygons if top[list(p.vertices)].all()]
-    used = sorted({v for f in faces for v in f})
-    place = {v: i for i, v in enumerate(used)}
-    sheet = bpy.data.meshes.new(mesh.name + " sheet")
-    sheet.from_pydata([tuple(middle[v]) for v in used], [], [tuple(place[v] for v in f) for f in faces])
-    sheet.materials.append(_thin(mesh.materials[0]))
-    return sheet
+    points[:, axis] = (low[axis] + high[axis]) / 2
+    kept = [f for f in faces if top[f].all()]
+    if not kept:
+        return None
+    used, corners = np.unique(np.concatenate(kept), return_inverse=True)
+    totals = np.array([len(f) for f in kept])
+    made = Mesh(mesh.name + " sheet", points[used].astype(np.float32), corners.ravel().astype(np.int32),
+                (np.cumsum(totals) - totals).astype(np.int32))
+    made.cut()
+    return made, _thin(parts[0].material)
+
+
+def _is_clear_glass(material):
+    pbr, extensions, own = (material.get(n, {}) for n in ("pbrMetallicRoughness", "extensions", "extras"))
+    volume = extensions.get("KHR_materials_volume")
+    return (volume is not None and "attenuationColor" not in volume and not own.get("lull", {}).get("castsNoShadow") and
+            extensions["KHR_materials_transmission"]["transmissionFactor"] > 0.99 and "metallicRoughnessTexture" not in pbr and
+            pbr["roughnessFactor"] <= _SMOOTH and "baseColorTexture" not in pbr and "alphaMode" not in material and
+            "normalTexture" not in material)
 
 
 def _thin(material):
     """Returns glass without thickness, which light passes once: the colour of both sides of the slab."""
-    thin = material.copy()
-    colour = _glass(thin).inputs['Base Color']
-    colour.default_value = [c * c for c in colour.default_value[:3]] + [1]
-    thin["lull_thin"] = True
-    return thin
+    *colour, alpha = material["pbrMetallicRoughness"]["baseColorFactor"]
+    return {**material, "pbrMetallicRoughness": {**material["pbrMetallicRoughness"], "baseColorFactor": [*(c * c for c in colour), alpha]},
+            "extensions": {n: e for n, e in material["extensions"].items() if n != "KHR_materials_volume"}}

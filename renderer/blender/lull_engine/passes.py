@@ -50,7 +50,7 @@ def _index(which):
     """Returns what reads the numbers of objects or materials as Blender's pass indices."""
     def fill(picture):
         names = json.loads(picture.attributes[which + "Names"].decode())
-        numbers, indices = picture.channels[which + "ID"], picture.exported[which + "s"]
+        numbers, indices = picture.channels[which + "ID"], getattr(picture.exported, which + "s")
         found = np.zeros(numbers.shape, np.float32)
         for number, name in names.items():
             if name in indices:
@@ -79,7 +79,7 @@ def _noisy(picture):
 
 def _of_group(name):
     def fill(picture):
-        layer = picture.exported["groups"].get(name)
+        layer = picture.exported.groups.get(name)
         if layer is None:  # nothing shines
             return np.zeros((*picture.channels["R"].shape, 3), np.float32)
         return _channels(*(f"light.{layer}.{c}" for c in "RGB"))(picture)

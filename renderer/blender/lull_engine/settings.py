@@ -1,31 +1,6 @@
-"""Settings of a scene, and the path of lull."""
-import shutil
-
+"""Settings of a scene."""
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
-
-
-class LullPreferences(bpy.types.AddonPreferences):
-    bl_idname = __package__
-
-    program: StringProperty(
-        name="Program", subtype='FILE_PATH',
-        description="Path of the program lull; empty: lull on the PATH")
-
-    def draw(self, context):
-        self.layout.prop(self, "program")
-
-
-def find_lull():
-    """Returns the path of the program. Raises: FileNotFoundError."""
-    addon = bpy.context.preferences.addons.get(__package__)
-    wanted = bpy.path.abspath(addon.preferences.program) if addon else ""
-    found = shutil.which(wanted or "lull")
-    if not found:
-        raise FileNotFoundError(
-            (f"Program not found: {wanted}" if wanted else "Program lull not found on the PATH") +
-            "; set its path in Preferences > Add-ons > Render: lull")
-    return found
 
 
 class LullSettings(bpy.types.PropertyGroup):
@@ -46,7 +21,7 @@ class LullSettings(bpy.types.PropertyGroup):
     time: StringProperty(name="Time Limit", description="End after this wall-clock time, e.g. 90s, 10m or 1h30m; "
                          "empty: no limit")
     denoise: BoolProperty(name="Denoise", default=True,
-                          description="Denoise the image, and stop blocks once it is clean")
+                          description="Denoise the image, and stop blocks once it is clean: by the rule 'denoised' instead of 'learned'")
     integrator: EnumProperty(
         name="Integrator", default='path',
         items=(('path', "Path Tracing", "Find light by paths from the camera"),
@@ -62,6 +37,10 @@ class LullSettings(bpy.types.PropertyGroup):
     graded_by: FloatProperty(name="Graded By", default=0, min=-10, max=10,
                              description="Judge noise in the image brightened by this many stops as well")
     seed: IntProperty(name="Seed", min=0, description="Seed of the random numbers")
+
+    def rule_used(self):
+        """Returns the name of the rule of lull render --stop that stops blocks."""
+        return self.rule if self.stop_by == 'RULE' else "denoised" if self.denoise else "learned"
 
     def arguments(self):
         """Returns the command-line arguments."""

@@ -1,24 +1,17 @@
 """Makes meshes of hair: particles that are rendered as paths, and hair curves. glTF has no curves."""
-import bpy
 import numpy as np
 
-import uvs as uv_maps
+from . import meshes
 
+STRANDS = "lull strand"  # UVs: a random number, and the way along a strand; 0, 0 on other surfaces
 _SIDES, _MOST = (3, 8), 1_000_000  # of tubes, at least and at most; vertices, beyond which tubes have fewer sides
 _RADIUS = 0.005  # of curves that have none, as in Cycles
 
 
-def prepare():
-    """Lets the hair of the viewport, which can be read, be that of a render."""
-    for settings in bpy.data.particles:
-        settings.display_step = settings.render_step
-        settings.child_nbr = settings.rendered_child_count
-
-
-def of_particles(o, graph):
-    """Returns meshes, in the world, of the hair of an object that is rendered, with its materials."""
-    seen, found = o.evaluated_get(graph), []
-    for modifier in seen.modifiers:
+def of_particles(o):
+    """Returns meshes, in the world, of the hair of an evaluated object, with its materials."""
+    found = []
+    for modifier in o.modifiers:
         if modifier.type != 'PARTICLE_SYSTEM' or not modifier.show_render:
             continue
         system = modifier.particle_system
@@ -27,12 +20,12 @@ def of_particles(o, graph):
             continue
         parents, children = len(system.particles), len(system.child_particles)
         first = parents if children and not settings.use_parent_particles else 0
-        steps = (1 << settings.display_step) + 1
-        points = np.array([system.co_hair(seen, particle_no=i, step=s) for i in range(first, parents + children)
+        steps = (1 << settings.render_step) + 1
+        points = np.array([system.co_hair(o, particle_no=i, step=s) for i in range(first, parents + children)
                            for s in range(steps)]).reshape(-1, steps, 3)
         slots = [slot.material for slot in o.material_slots]
         material = slots[min(settings.material, len(slots)) - 1] if slots else None
-        uvs = _uvs(seen, modifier, system, range(first, parents + children))
+        uvs = _uvs(o, modifier, system, range(first, parents + children))
         found.append(_tubes(o.name, points, np.broadcast_to(_radii(settings, steps), points.shape[:2]), material, uvs))
     return [mesh for mesh in found if mesh]
 
@@ -75,8 +68,7 @@ def of_curves(o):
     steps = int(counts.max())
     # The last point is repeated where a curve has fewer.
     at = starts[:, None] + np.minimum(np.arange(steps), counts[:, None] - 1)
-    material = o.material_slots[0].material if o.material_slots else None
-    return _tubes(o.name, points[at], radii[at], material and material.original, None)
+    return _tubes(o.name, points[at], radii[at], o.material_slots[0].material if o.material_slots else None, None)
 
 
 def _tubes(name, points, radii, material, uvs):
@@ -96,36 +88,27 @@ def _tubes(name, points, radii, material, uvs):
     wider = np.pi / (sides * np.sin(np.pi / sides))  # so that tubes are as wide as round ones, on average
     angles = 2 * np.pi * np.arange(sides) / sides
     ring = side[..., None, :] * np.cos(angles)[:, None] + other[..., None, :] * np.sin(angles)[:, None]
-    vertices = points[..., None, :] + wider * radii[..., None, None] * ring
-    number = np.arange(count * steps * sides).reshape(count, steps, sides)
+    vertices = (points[..., None, :] + wider * radii[..., None, None] * ring).reshape(-1, 3)
+    number = np.arange(count * steps * sides, dtype=np.int32).reshape(count, steps, sides)
     low, high = number[:, :-1], number[:, 1:]
-    quads = np.stack([low, np.roll(low, -1, 2), np.roll(high, -1, 2), high], -1).reshape(-1, 4)
-    mesh = bpy.data.meshes.new(name)
-    mesh.vertices.add(vertices.size // 3)
-    mesh.vertices.foreach_set("co", vertices.ravel())
-    mesh.loops.add(quads.size)
-    mesh.loops.foreach_set("vertex_index", quads.ravel())
-    mesh.polygons.add(len(quads))
-    mesh.polygons.foreach_set("loop_start", 4 * np.arange(len(quads)))
-    mesh.polygons.foreach_set("loop_total", np.full(len(quads), 4))
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(quads), bool))
-    mesh.update(calc_edges=True)
+    corners = np.stack([low, np.roll(low, -1, 2), np.roll(high, -1, 2), high], -1).ravel()
+    mesh = meshes.Mesh(name, vertices.astype(np.float32), corners, np.arange(0, len(corners), 4, dtype=np.int32))
+    mesh.cut()
+    mesh.normals = ring.reshape(-1, 3)[corners].astype(np.float32)
+    mesh.materials = [material]
+    mesh.uv_of_render = "UVMap"
     if uvs is not None:
-        layer = mesh.uv_layers.new(name="UVMap")
-        layer.data.foreach_set("uv", np.repeat(uvs, (steps - 1) * sides * 4, 0).ravel())
-    mesh.materials.append(material)
-    if uv_maps.asks_strands(material):
-        _tell_strands(mesh, count, steps, sides)
+        mesh.uvs["UVMap"] = np.repeat(uvs, (steps - 1) * sides * 4, 0).astype(np.float32)
+    if material is None or not material.use_nodes or not _asks(material.node_tree):
+        return mesh
+    way = np.arange(steps) / (steps - 1)
+    told = np.empty((count, steps - 1, sides, 4, 2), np.float32)
+    told[..., 0] = np.random.default_rng(0).uniform(0.001, 0.999, count)[:, None, None, None]
+    told[..., 1] = np.stack([way[:-1], way[:-1], way[1:], way[1:]], -1)[:, None]  # of the corners
+    mesh.uvs[STRANDS] = told.reshape(-1, 2)
     return mesh
 
 
-def _tell_strands(mesh, count, steps, sides):
-    """Adds the UVs by which nodes know the strand, a random number, and the place along it."""
-    if not mesh.uv_layers:  # the first is that of images
-        mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", np.zeros(2 * len(mesh.loops)))
-    along = np.arange(steps) / (steps - 1)
-    quads = np.stack([along[:-1], along[:-1], along[1:], along[1:]], -1)  # of the corners
-    found = np.empty((count, steps - 1, sides, 4, 2))
-    found[..., 0] = np.random.default_rng(0).uniform(0.001, 0.999, count)[:, None, None, None]
-    found[..., 1] = quads[:, None]
-    mesh.uv_layers.new(name=uv_maps.STRANDS).data.foreach_set("uv", found.ravel())
+def _asks(tree):
+    """Returns whether nodes ask for the strand."""
+    return any(n.type == 'HAIR_INFO' or n.type == 'GROUP' and n.node_tree and _asks(n.node_tree) for n in tree.nodes)

@@ -9,21 +9,21 @@ _ACROSS = 128  # pixels of a photograph of the disc
 _AROUND = 1.5  # of the disc's width, that is photographed
 
 
-def take(world, photograph, notes):
-    """Removes the discs of the suns from the nodes of a world, whose groups are inlined. `photograph(camera, size)` returns the
-    pixels of the world as a camera sees it.
+def take(world, photograph):
+    """Removes the discs of the suns from the nodes of a world. `photograph(world, camera, size)` returns the pixels of a world as a
+    camera sees it.
 
-    Returns: lights and their matrices.
+    Returns: what Lights need: their energy, colour, angle and direction.
     """
     found = []
     for node in discs(world):
-        if node.inputs['Vector'].links:  # which may turn or repeat it
-            notes.say(f"the sun of world '{world.name}' is as coarse as the image of its sky, which nodes turn")
+        vector = node.inputs.get('Vector')  # until 3.6
+        if vector is not None and vector.links:  # which may turn or repeat it
             continue
         camera, toward = _aim(node)
-        with_disc = photograph(camera, _ACROSS)
+        with_disc = photograph(world, camera, _ACROSS)
         node.sun_disc = False
-        disc = with_disc - photograph(camera, _ACROSS)
+        disc = with_disc - photograph(world, camera, _ACROSS)
         if disc.max() > 0:
             found.append(_light(node, disc, camera, toward))
     return found
@@ -47,7 +47,7 @@ def _aim(node):
 
 
 def _light(node, disc, camera, axes):
-    """Returns a light of the disc's irradiance and direction, also where the horizon cuts it."""
+    """Returns the disc's irradiance and direction, also where the horizon cuts it."""
     half = math.tan(camera.data.angle / 2)
     at = ((np.arange(_ACROSS) + 0.5) / _ACROSS * 2 - 1) * half
     x, y = np.meshgrid(at, at)
@@ -55,9 +55,6 @@ def _light(node, disc, camera, axes):
     irradiance = (disc * solid_angles[..., None]).sum((0, 1))
     weights = disc.sum(2) * solid_angles / (disc.sum(2) * solid_angles).sum()
     middle = axes @ Vector(((x * weights).sum(), (y * weights).sum(), -1))
-    light = bpy.data.lights.new('lull sun', 'SUN')
-    light.energy = irradiance.max()
-    light.color = irradiance / irradiance.max()
-    light.angle = min(node.sun_size, 2 * math.sqrt(solid_angles[disc.sum(2) > 0].sum() / math.pi))
-    light["lull"] = {"angle": light.angle}
-    return light, middle.to_track_quat('Z', 'Y').to_matrix().to_4x4()
+    angle = min(node.sun_size, 2 * math.sqrt(solid_angles[disc.sum(2) > 0].sum() / math.pi))
+    return {"energy": float(irradiance.max()), "color": [float(c) for c in irradiance / irradiance.max()], "angle": float(angle),
+            "matrix": [v for row in middle.to_track_quat('Z', 'Y').to_matrix().to_4x4() for v in row]}

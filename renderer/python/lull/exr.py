@@ -1,4 +1,4 @@
-"""Reads the OpenEXR files that lull writes: scan lines, without compression or with ZIP's."""
+"""Reads the OpenEXR files that lull writes: scan lines, without compression or with ZIP's. Writes floats without compression."""
 import struct
 import zlib
 
@@ -89,3 +89,24 @@ def read(path):
     except (struct.error, zlib.error, KeyError, IndexError, ValueError) as e:
         raise ValueError(f"{path}: cannot be read as OpenEXR: {e}") from e
     return picture, attributes
+
+
+def write(path, channels):
+    """Writes arrays of height x width, the upper row first, by the names of their channels."""
+    names = sorted(channels)
+    planes = np.stack([np.asarray(channels[name], "<f4") for name in names], 1)  # of a row, channel by channel
+    height, _, width = planes.shape
+    box, row = struct.pack("<4i", 0, 0, width - 1, height - 1), planes[0].nbytes
+    listed = b"".join(name.encode() + b"\0" + struct.pack("<iIii", 2, 0, 1, 1) for name in names) + b"\0"
+    head = struct.pack("<ii", _MAGIC, _VERSION)
+    for name, kind, value in (("channels", "chlist", listed), ("compression", "compression", b"\0"), ("dataWindow", "box2i", box),
+                              ("displayWindow", "box2i", box), ("lineOrder", "lineOrder", b"\0"),
+                              ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+                              ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)), ("screenWindowWidth", "float", struct.pack("<f", 1))):
+        head += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    head += b"\0"
+    first = len(head) + 8 * height
+    with open(path, "wb") as f:
+        f.write(head + struct.pack("<%dQ" % height, *(first + y * (8 + row) for y in range(height))))
+        for y in range(height):
+            f.write(struct.pack("<ii", y, row) + planes[y].tobytes())

@@ -1,6 +1,7 @@
 """Features of cameras and films."""
 import bpy
 
+from compatible import open_shutter
 from cases import ball, case, cube, dressed, surface, the, wall, without
 from rooms import interior
 from scenes import camera, matte
@@ -71,7 +72,7 @@ def keyed(owner, path, *values):
 def motion_of_camera(scene):
     world_image(scene)
     motion_blur(scene)
-    scene.cycles.motion_blur_position = 'START'
+    open_shutter(scene, 'START')
     keyed(scene.camera, "rotation_euler", (1.25, 0, 0), (1.25, 0, 0), (1.35, 0, 0.2))
 
 

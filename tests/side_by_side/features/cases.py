@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "blender"))
+from compatible import new_node, set_input  # noqa: E402
 from scenes import camera, dress, floor, lamp, material, matte  # noqa: E402
 
 CASES = {}
@@ -94,12 +95,12 @@ def wall(made, x=1.5, y=0.0, z=2.0):
 
 def node(tree, kind, **values):
     """Adds a node. `values` are inputs by their names, with _ for spaces, and properties."""
-    made = tree.nodes.new(kind)
+    made = new_node(tree, kind)
     for key, value in values.items():
         if key in made.bl_rna.properties:
             setattr(made, key, value)
         else:
-            made.inputs[key.replace("_", " ")].default_value = value
+            set_input(made, key.replace("_", " "), value)
     return made
 
 

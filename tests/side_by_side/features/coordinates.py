@@ -2,6 +2,7 @@
 import bpy
 import numpy as np
 
+from compatible import UV_WARP, add_input, add_output
 from cases import ball, case, checks, cube, dressed, image, node, principled, textured, the, wall, without
 from mixed_surfaces import link
 from scenes import dress, matte
@@ -87,7 +88,7 @@ def stored_uvs(scene):
     o = wall(made)
     o.data.uv_layers.remove(o.data.uv_layers[0])
     group = bpy.data.node_groups.new("store", 'GeometryNodeTree')
-    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
     inlet, outlet, store, where, parts, back = (group.nodes.new(k) for k in (
         'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeInputPosition', 'ShaderNodeSeparateXYZ',
         'ShaderNodeCombineXYZ'))
@@ -124,7 +125,7 @@ def instancer_uvs(scene):
 def warped_uvs(scene):
     o = wall(textured(uneven())[0], 0.7)
     o.location.x = -1
-    warp = o.modifiers.new("warp", 'UVWARP')
+    warp = o.modifiers.new("warp", UV_WARP)
     warp.scale, warp.offset = (2, 1), (0.3, 0.1)
     o = cube(matte("red", (0.6, 0.1, 0.1, 1)), 0.8, (1, 0, 0.5))
     o.data.materials.append(matte("green", (0.1, 0.6, 0.1, 1)))

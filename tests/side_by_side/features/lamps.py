@@ -4,6 +4,7 @@ import math
 import bpy
 from mathutils import Euler, Matrix
 
+from compatible import add_input, add_output
 from cases import case, dressed, node, surface, the, wall, without
 from scenes import camera, lamp, matte
 
@@ -201,7 +202,7 @@ def lamp_constants(scene):
 def lamp_groups(scene):
     without("key")
     inner = bpy.data.node_groups.new("dimmer", 'ShaderNodeTree')
-    inner.inputs.new('NodeSocketFloat', "level"), inner.outputs.new('NodeSocketFloat', "strength"), inner.outputs.new('NodeSocketColor', "colour")
+    add_input(inner, 'NodeSocketFloat', "level"), add_output(inner, 'NodeSocketFloat', "strength"), add_output(inner, 'NodeSocketColor', "colour")
     inlet, outlet = inner.nodes.new('NodeGroupInput'), inner.nodes.new('NodeGroupOutput')
     power = node(inner, 'ShaderNodeMath', operation='POWER')
     power.inputs[1].default_value = 2

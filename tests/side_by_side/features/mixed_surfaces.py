@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
+from compatible import add_input, add_output, displace, new_node, use_own_normals
 from cases import ball, case, checks, cover, cube, dressed, folder, image, node, principled, surface, textured, the, wall, without
 from lamps import only
 from objects import lawn, particles
@@ -97,7 +98,7 @@ def mixed_images(scene):
 @case("image texture mirrored by nodes")
 def mirrored(scene):
     made, shown, _, tree = textured(checks() * np.linspace(0.2, 1, 64)[None, :, None])
-    where, parts, back = (tree.nodes.new('ShaderNode' + k) for k in ('TexCoord', 'SeparateXYZ', 'CombineXYZ'))
+    where, parts, back = (new_node(tree, 'ShaderNode' + k) for k in ('TexCoord', 'SeparateXYZ', 'CombineXYZ'))
     link(tree, (where.outputs['UV'], parts.inputs[0]), (back.outputs[0], shown.inputs[0]))
     for i in range(2):
         times, fold = node(tree, 'ShaderNodeMath', operation='MULTIPLY'), node(tree, 'ShaderNodeMath', operation='PINGPONG')
@@ -136,7 +137,7 @@ def generated(scene):
 @case("gradient through a ramp")
 def gradient(scene):
     made, bsdf, tree = principled()
-    where, shown, ramped = (tree.nodes.new('ShaderNode' + k) for k in ('TexCoord', 'TexGradient', 'ValToRGB'))
+    where, shown, ramped = (new_node(tree, 'ShaderNode' + k) for k in ('TexCoord', 'TexGradient', 'ValToRGB'))
     shown.gradient_type = 'SPHERICAL'
     ramped.color_ramp.interpolation = 'CONSTANT'
     ramped.color_ramp.elements[0].color, ramped.color_ramp.elements[1].position = (0.7, 0.1, 0.1, 1), 0.4
@@ -208,7 +209,7 @@ def custom_normals(scene):
     o = cube(surface('BsdfGlossy', Roughness=0.3)[0], 1.2, (0, 0, 0.6))
     for polygon in o.data.polygons:
         polygon.use_smooth = True
-    o.data.use_auto_smooth = True
+    use_own_normals(o)
     o.data.normals_split_custom_set_from_vertices([v.co.normalized() for v in o.data.vertices])
 
 
@@ -224,7 +225,7 @@ def more_modifiers(scene):
             setattr(made, key, value)
     for polygon in o.data.polygons:
         polygon.use_smooth = True
-    o.data.use_auto_smooth = True
+    use_own_normals(o)
 
 
 @case("hair whose density is a group of vertices")
@@ -303,7 +304,7 @@ def added_shine(scene):
 @case("glass that is clear to shadows and diffuse light, by a Math node")
 def glass_by_math(scene):
     made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
-    rays, clear, mix, most = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader', 'Math'))
+    rays, clear, mix, most = (new_node(tree, 'ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader', 'Math'))
     most.operation = 'MAXIMUM'
     link(tree, (rays.outputs['Is Shadow Ray'], most.inputs[0]), (rays.outputs['Is Diffuse Ray'], most.inputs[1]), (most.outputs[0], mix.inputs[0]),
          (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
@@ -369,7 +370,7 @@ def packed(scene):
 def points(scene):
     without("ball")
     group = bpy.data.node_groups.new("points", 'GeometryNodeTree')
-    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
     inlet, outlet, made = (group.nodes.new(k) for k in ('NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeMeshToPoints'))
     made.inputs['Radius'].default_value = 0.3
     link(group, (inlet.outputs[0], made.inputs[0]), (made.outputs[0], outlet.inputs[0]))
@@ -382,7 +383,7 @@ def node_attribute(scene):
     made, bsdf, tree = principled()
     link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="height").outputs['Fac'], bsdf.inputs['Base Color']))
     group = bpy.data.node_groups.new("paint", 'GeometryNodeTree')
-    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
     inlet, outlet, store, dressing, place, parts = (group.nodes.new(k) for k in (
         'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeSetMaterial', 'GeometryNodeInputPosition',
         'ShaderNodeSeparateXYZ'))
@@ -428,7 +429,7 @@ def displacements(scene):
         moved = node(tree, 'ShaderNode' + kind, **values)
         link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[output], moved.inputs[0]),
              (moved.outputs[0], tree.get_output_node('ALL').inputs['Displacement']))
-        made.cycles.displacement_method = 'DISPLACEMENT'
+        displace(made, 'DISPLACEMENT')
         if kind == 'Displacement':
             fine = cube(made, 1, (1.2, 0, 0.6)).modifiers.new("fine", 'SUBSURF')
             fine.subdivision_type, fine.render_levels = 'SIMPLE', 5

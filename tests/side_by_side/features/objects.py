@@ -4,6 +4,7 @@ import os
 import bpy
 
 from camera import keyed
+from compatible import add_grease_pencil, add_input, add_output, shade_smooth_to
 from cases import ball, case, cube, dressed, folder, node, principled, set_apart, surface, textured, the, wall, without
 from scenes import dress, lamp, matte
 
@@ -75,7 +76,7 @@ def background_set(scene):
         other.collection.objects.link(the(name))
         scene.collection.objects.unlink(the(name))
     scene.background_set = other
-    bpy.ops.object.gpencil_add(location=(0, -1, 1), type='STROKE')
+    add_grease_pencil((0, -1, 1))
 
 
 @case("material override of a view layer")
@@ -148,7 +149,7 @@ def viewport_values(scene):
     screw = rod.modifiers.new("screw", 'SCREW')
     screw.angle, screw.screw_offset, screw.steps, screw.render_steps = 0.1, 1, 2, 16
     group = bpy.data.node_groups.new("late", 'GeometryNodeTree')
-    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
     inlet, outlet, switch, asks = (group.nodes.new(k) for k in (
         'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeSwitch', 'GeometryNodeIsViewport'))
     switch.input_type = 'GEOMETRY'
@@ -219,7 +220,7 @@ def geometry_nodes(scene):
     without("ball")
     one = cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4, (0, 50, 0))
     group = bpy.data.node_groups.new("scatter", 'GeometryNodeTree')
-    group.inputs.new('NodeSocketGeometry', "in"), group.outputs.new('NodeSocketGeometry', "out")
+    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
     inlet, outlet, put, info = (group.nodes.new(k) for k in (
         'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeInstanceOnPoints', 'GeometryNodeObjectInfo'))
     info.inputs[0].default_value = one
@@ -292,7 +293,7 @@ def auto_smooth(scene):
     without("ball")
     bpy.ops.mesh.primitive_cylinder_add(radius=0.7, depth=1.2, location=(0, 0, 0.6))
     o = dress(surface('BsdfGlossy', Roughness=0.2)[0], smooth=True)
-    o.data.use_auto_smooth, o.data.auto_smooth_angle = True, 0.6
+    shade_smooth_to(o, 0.6)
 
 
 @case("volume of an object without a surface")

@@ -4,6 +4,7 @@ import os
 import bpy
 import numpy as np
 
+from compatible import LINEAR, RAW, displace, new_node, offset_shadow, socket
 from cases import (
     case, checks, cover, cube, dressed, folder, image, node, principled, set_apart, surface, textured, the, wall, without)
 from camera import border, keyed, orthographic, shift
@@ -141,7 +142,7 @@ def terminator(scene):
     without("ball")
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.7, location=(0, 0, 0.7))
     o = dress(matte("red", (0.6, 0.2, 0.1, 1)), smooth=True)
-    o.cycles.shadow_terminator_offset = 0.5
+    offset_shadow(o, 0.5)
     only('SUN', 3, (0, 0, 9), (0.9, 0.9, 0), angle=0)
 
 
@@ -168,7 +169,7 @@ def text_uvs(scene):
 @case("smooth shading of few faces, under a low sun")
 def coarse(scene):
     terminator(scene)
-    next(o for o in scene.objects if o.type == 'MESH' and o.name != "floor").cycles.shadow_terminator_offset = 0
+    offset_shadow(next(o for o in scene.objects if o.type == 'MESH' and o.name != "floor"), 0)
 
 
 @case("two outputs, for Cycles and for Eevee")
@@ -212,7 +213,7 @@ def alpha_apart(scene):
 
 @case("images whose colour spaces are Linear, Raw and Filmic sRGB")
 def more_spaces(scene):
-    for x, space in (-1.2, 'Linear'), (0, 'Raw'), (1.2, 'Filmic sRGB'):
+    for x, space in (-1.2, LINEAR), (0, RAW), (1.2, 'Filmic sRGB'):
         made, shown, _, _ = textured(checks() * (1, 0.7, 0.4))
         shown.image.colorspace_settings.name = space
         wall(made, 0.5).location.x = x
@@ -243,7 +244,7 @@ def alpha_modes(scene):
 def one_sided_light(scene):
     without("key")
     made, bsdf, tree = surface('Emission', Strength=6)
-    clear, mix, where = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfTransparent', 'MixShader', 'NewGeometry'))
+    clear, mix, where = (new_node(tree, 'ShaderNode' + k) for k in ('BsdfTransparent', 'MixShader', 'NewGeometry'))
     link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
     cover(mix, tree)
     bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0.5, 2.6))
@@ -270,7 +271,7 @@ def normal_mirrored(scene):
 @case("displacement that only bumps, by an image")
 def bump_by_displacement(scene):
     displacement(scene)
-    the("ball").data.materials[0].cycles.displacement_method = 'BUMP'
+    displace(the("ball").data.materials[0], 'BUMP')
 
 
 @case("objects and collections that are hidden in the viewport alone")
@@ -392,7 +393,7 @@ def three_mixed(scene):
 @case("Principled: emission of an image times a number")
 def screens(scene):
     made, bsdf, tree = principled(Emission_Strength=2, Base_Color=(0.1, 0.1, 0.1, 1))
-    link(tree, (node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.5, 0.2), "screen")).outputs[0], bsdf.inputs['Emission']))
+    link(tree, (node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.5, 0.2), "screen")).outputs[0], socket(bsdf, 'Emission')))
     wall(made)
 
 

@@ -4,6 +4,7 @@ import os
 import bpy
 import numpy as np
 
+from compatible import add_output, new_node, socket
 from cases import ball, case, cover, cube, dressed, folder, node, principled, surface, textured, the, wall, without
 from lamps import only
 from scenes import dress, matte
@@ -178,7 +179,7 @@ def rough_walls(scene):
 
 def clear_for(kind, made, bsdf, tree):
     """Dresses the ball in a surface that is transparent for rays of a kind."""
-    rays, clear, mix = (tree.nodes.new('ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader'))
+    rays, clear, mix = (new_node(tree, 'ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader'))
     for a, b in ((rays.outputs[kind], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2])):
         tree.links.new(a, b)
     cover(mix, tree)
@@ -206,7 +207,7 @@ def sheet(made):
 @case("pane: Transparent and Glossy by Fresnel")
 def pane_by_fresnel(scene):
     made, clear, tree = surface('BsdfTransparent', Color=(0.9, 0.95, 0.9, 1))
-    shine, fresnel, mix = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfGlossy', 'Fresnel', 'MixShader'))
+    shine, fresnel, mix = (new_node(tree, 'ShaderNode' + k) for k in ('BsdfGlossy', 'Fresnel', 'MixShader'))
     shine.inputs['Roughness'].default_value, shine.inputs['Color'].default_value = 0, (1, 1, 1, 1)
     for a, b in ((fresnel.outputs[0], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2])):
         tree.links.new(a, b)
@@ -224,7 +225,7 @@ def pane_by_rays(scene):
 @case("Mix by Fresnel: Diffuse and Glossy")
 def coated(scene):
     made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
-    shine, fresnel, mix = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfGlossy', 'Fresnel', 'MixShader'))
+    shine, fresnel, mix = (new_node(tree, 'ShaderNode' + k) for k in ('BsdfGlossy', 'Fresnel', 'MixShader'))
     shine.inputs['Roughness'].default_value = 0.2
     for a, b in ((fresnel.outputs[0], mix.inputs[0]), (base.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2])):
         tree.links.new(a, b)
@@ -253,7 +254,7 @@ def half_mixed(scene):
 @case("wall that is there from inside alone")
 def one_sided(scene):
     made, _, tree = surface('BsdfTransparent')
-    inside, mix, where = (tree.nodes.new('ShaderNode' + k) for k in ('BsdfDiffuse', 'MixShader', 'NewGeometry'))
+    inside, mix, where = (new_node(tree, 'ShaderNode' + k) for k in ('BsdfDiffuse', 'MixShader', 'NewGeometry'))
     for a, b in ((where.outputs['Backfacing'], mix.inputs[0]), (tree.nodes[1].outputs[0], mix.inputs[1]), (inside.outputs[0], mix.inputs[2])):
         tree.links.new(a, b)
     cover(mix, tree)
@@ -284,7 +285,7 @@ def no_nodes(scene):
 @case("glass by a mask")
 def masked_glass(scene):
     made, bsdf, tree = principled(Roughness=0.1)
-    tree.links.new(node(tree, 'ShaderNodeTexChecker', Scale=2).outputs['Fac'], bsdf.inputs['Transmission'])
+    tree.links.new(node(tree, 'ShaderNodeTexChecker', Scale=2).outputs['Fac'], socket(bsdf, 'Transmission'))
     dressed(made)
 
 
@@ -311,7 +312,7 @@ def places(scene):
 @case("group of nodes")
 def group(scene):
     inner = bpy.data.node_groups.new("paint", 'ShaderNodeTree')
-    inner.outputs.new('NodeSocketShader', "Shader")
+    add_output(inner, 'NodeSocketShader', "Shader")
     outlet, paint = inner.nodes.new('NodeGroupOutput'), node(inner, 'ShaderNodeBsdfPrincipled', Base_Color=(0.1, 0.5, 0.1, 1))
     inner.links.new(paint.outputs[0], outlet.inputs[0])
     made, bsdf, tree = principled()

@@ -2,6 +2,7 @@
 import bpy
 import numpy as np
 
+from compatible import displace, set_input
 from cases import case, checks, cube, dressed, image, node, principled, textured, the, wall, without
 
 
@@ -19,7 +20,7 @@ def colour_spaces(scene):
     shown.image.colorspace_settings.name = 'Non-Color'
     rough = node(tree, 'ShaderNodeTexImage', image=image(np.ones((64, 64, 3)) * 0.5, "rough", 'sRGB'))
     tree.links.new(rough.outputs[0], bsdf.inputs['Roughness'])
-    bsdf.inputs['Specular'].default_value = 1
+    set_input(bsdf, 'Specular', 1)
     wall(made)
 
 
@@ -179,7 +180,7 @@ def displacement(scene):
     shown, moved = node(tree, 'ShaderNodeTexImage', image=image(waves(), "waves", 'Non-Color')), node(tree, 'ShaderNodeDisplacement', Scale=0.1)
     tree.links.new(shown.outputs[0], moved.inputs['Height'])
     tree.links.new(moved.outputs[0], tree.get_output_node('ALL').inputs['Displacement'])
-    made.cycles.displacement_method = 'BOTH'
+    displace(made, 'BOTH')
     dressed(made)
     the("ball").modifiers.new("fine", 'SUBSURF').render_levels = 3
 

@@ -1,0 +1,79 @@
+"""The camera of a render, with what glTF lacks as `extras`."""
+import math
+
+from mathutils import Matrix
+
+from .shown import is_sheared
+
+
+class Failed(Exception):
+    """A scene that cannot be rendered, with the reason."""
+
+
+class View:
+    """What the camera of an evaluated scene sees. Raises: Failed."""
+
+    def __init__(self, scene, graph, notes):
+        camera = self._camera = scene.camera
+        if camera is None:
+            raise Failed("the scene has no camera")
+        self.data = data = camera.data
+        if data.type == 'PANO':
+            raise Failed(f"camera '{camera.name}' is panoramic, which glTF does not support")
+        self.name, self.matrix, self._graph, self._notes = camera.name, camera.matrix_world.copy(), graph, notes
+        r = scene.render
+        self.width, self.height = r.resolution_x, r.resolution_y
+        self.pixels = self.width * r.resolution_percentage / 100
+        fits_width = data.sensor_fit == 'HORIZONTAL' or data.sensor_fit == 'AUTO' and self.width >= self.height
+        self.side = self.width if fits_width else self.height
+        sensor = data.sensor_height if data.sensor_fit == 'VERTICAL' else data.sensor_width
+        # Half the extent of a pixel's worth of the longer side: at a distance of 1, or anywhere.
+        self._half = (data.ortho_scale if data.type == 'ORTHO' else sensor / data.lens) / 2 / self.side
+        if is_sheared(self.matrix):
+            self.matrix = _upright(self.matrix)
+            notes.say(f"the picture of camera '{camera.name}' is not sheared as the scale of its parent has it")
+
+    def pixel_width(self, distance):
+        """Returns the width of a pixel at a distance."""
+        return 2 * self._half * self.width / self.pixels * (1 if self.data.type == 'ORTHO' else distance)
+
+    def focus(self):
+        """Returns the distance at which the picture is sharp; None without depth of field."""
+        dof = self.data.dof
+        if not dof.use_dof:
+            return None
+        if not dof.focus_object:
+            return dof.focus_distance
+        seen = dof.focus_object.evaluated_get(self._graph)
+        at = seen.matrix_world
+        if dof.focus_subtarget:
+            at = at @ seen.pose.bones[dof.focus_subtarget].matrix
+        return -(self._camera.matrix_world.normalized().inverted() @ at.translation).z
+
+    def described(self):
+        """Returns the camera for glTF."""
+        data, x, y = self.data, self._half * self.width, self._half * self.height
+        lens = {"clipStart": data.clip_start, "clipEnd": data.clip_end}
+        if data.shift_x or data.shift_y:
+            lens["shift"] = [data.shift_x * self.side / self.width, data.shift_y * self.side / self.height]
+        if data.dof.use_dof and data.type == 'ORTHO':  # one lens for all pixels would make it a perspective one
+            self._notes.say(f"the orthographic camera '{self.name}' is sharp at all distances")
+        elif data.dof.use_dof:
+            lens["lensRadius"] = data.lens * 1e-3 / (2 * data.dof.aperture_fstop)
+            lens["focusDistance"] = max(self.focus(), 1e-5)
+            if data.dof.aperture_blades or data.dof.aperture_ratio != 1:
+                self._notes.say(f"the aperture of camera '{self.name}' is round")
+        near = {"znear": data.clip_start, "zfar": data.clip_end}
+        shape = {"orthographic": {"xmag": x, "ymag": y, **near}} if data.type == 'ORTHO' else {
+            "perspective": {"yfov": 2 * math.atan(y), "aspectRatio": x / y, **near}}
+        return {"name": self.name, "type": next(iter(shape)), **shape, "extras": {"lull": lens}}
+
+
+def _upright(matrix):
+    """Returns the place of a camera without shear, of the same direction."""
+    z = matrix.col[2].xyz.normalized()
+    y = matrix.col[1].xyz
+    y = (y - y.project(z)).normalized()
+    made = Matrix((y.cross(z), y, z)).transposed().to_4x4()
+    made.translation = matrix.translation
+    return made

@@ -1,0 +1,55 @@
+"""What Cycles and Blender have and lull has not, of the whole scene."""
+
+
+def note_film(scene, layer, notes):
+    if scene.render.use_multiview:
+        notes.say("all views have the same picture")
+    if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
+        notes.say("pixels are square, whatever their aspect")
+    if scene.render.film_transparent and scene.cycles.film_transparent_glass:
+        notes.say("glass is opaque before a transparent background")
+    if scene.render.use_simplify and (scene.cycles.use_camera_cull or scene.cycles.use_distance_cull):
+        for o in scene.objects:
+            if o.cycles.use_camera_cull or o.cycles.use_distance_cull:
+                notes.add("shown although Cycles culls by the camera or the distance", o.name)
+    if any(c.holdout for c in _collections(layer.layer_collection)):
+        notes.say("collections that are holdouts are shown as any others")
+
+
+def limits(scene, depth):
+    """Returns sentences about what Cycles has and lull has not: none about the usual settings that change nothing."""
+    c, r, found = scene.cycles, scene.render, []
+    if c.max_bounces < depth:
+        found.append(f"{c.max_bounces} bounces")
+    for name in "diffuse", "glossy", "transmission":
+        if getattr(c, name + "_bounces") < min(depth, c.max_bounces):
+            found.append(f"{getattr(c, name + '_bounces')} {name} bounces")
+    if c.sample_clamp_indirect > 0 or c.sample_clamp_direct > 0:
+        found.append("clamping")
+    if not (c.caustics_reflective and c.caustics_refractive):
+        found.append("no caustics")
+    said = ["differs: limits of Cycles do not hold, and rooms are brighter: " + ", ".join(found)] if found else []
+    if c.use_fast_gi:
+        said.append("differs: all bounces are traced, without Cycles' fast approximation")
+    if c.blur_glossy > 0:
+        said.append("differs: caustics of rough surfaces are sharper, without Cycles' Filter Glossy")
+    if c.transparent_max_bounces < 8:
+        said.append(f"differs: rays pass any number of transparent surfaces, not {c.transparent_max_bounces}")
+    if r.use_simplify and c.texture_limit_render != 'OFF':
+        said.append("differs: textures have their full size")
+    if c.pixel_filter_type != 'BOX' or c.filter_width != 1:
+        said.append("differs: edges are as sharp as means over pixels, whatever Cycles' filter")
+    return said + _unjudged(scene)
+
+
+def _unjudged(scene):
+    """Returns a sentence about what changes the colours of a picture and is unknown to lull, which only judges noise by them."""
+    view = scene.view_settings
+    found = [f"the look '{view.look}'"] * (view.look != 'None') + ["gamma"] * (view.gamma != 1) + \
+        ["curves"] * view.use_curve_mapping + [f"a display of {scene.display_settings.display_device}"] * \
+        (scene.display_settings.display_device != 'sRGB')
+    return ["noise is judged without " + ", ".join(found)] if found else []
+
+
+def _collections(collection):
+    return [collection] + [c for child in collection.children for c in _collections(child)]

@@ -1,0 +1,62 @@
+"""Bakes nodes and renders the world, in a Blender of its own; see baking.py, which writes the request.
+
+The last argument is the path of a JSON file: `blend` (materials, worlds, lights and cameras), frame, subframe, `bakes`, `bodies` and
+`world`. Answers are .npy files beside it, and said.json: the suns of the world.
+"""
+import importlib
+import json
+import os
+import sys
+import types
+
+import bpy
+import numpy as np
+
+# The add-on's modules without the add-on, which is not registered here.
+_PACKAGE = types.ModuleType("lull_parts")
+_PACKAGE.__path__ = [os.path.dirname(os.path.abspath(__file__))]
+sys.modules["lull_parts"] = _PACKAGE
+bake, displacement, world = (importlib.import_module(f"lull_parts.{name}") for name in ("bake", "displacement", "world"))
+
+
+def load(path):
+    """Appends everything of a file to nothing, so that it keeps its name."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(path) as (there, wanted):
+        for kind in "scenes", "materials", "worlds", "lights", "cameras", "objects":
+            setattr(wanted, kind, getattr(there, kind))
+
+
+def main():
+    request = sys.argv[-1]
+    with open(request, encoding="utf-8") as f:
+        what = json.load(f)
+    folder = os.path.dirname(request)
+    load(what["blend"])
+    baker = bake.Baker(what["frame"], what["subframe"])
+    bodies = {}
+    for number, body in what["bodies"].items():
+        arrays = dict(np.load(os.path.join(folder, body["arrays"])))
+        made = bodies[number] = baker.body(arrays, body)
+        np.save(os.path.join(folder, f"uv{number}.npy"), made.uvs())
+        if body["moves"]:
+            vectors = {slot: made.displace(baker, described, body["size"], [slot]) for slot, described in body["moves"]}
+            points = displacement.moved(*(arrays[n] for n in ("points", "corners", "starts", "slots")),
+                                        np.array(body["matrix"]).reshape(4, 4), vectors)
+            np.save(os.path.join(folder, f"normals{number}.npy"), made.move(points))
+            np.save(os.path.join(folder, f"points{number}.npy"), points.astype(np.float32))
+    for i, each in enumerate(what["bakes"]):
+        print(f"lull: image {i + 1} of {len(what['bakes'])}", flush=True)
+        if each["over"] == 'all':
+            found = baker.plain(each["nodes"], each.get("object"))
+        elif each["over"] == 'uv':
+            found = baker.over_uvs(each["nodes"], each["names"], each["size"])
+        else:
+            found = baker.over_mesh(each["nodes"], bodies[str(each["body"])], each["size"], each["slots"], each["kind"])
+        np.save(os.path.join(folder, f"bake{each['number']}.npy"), found)
+    suns = world.write(what["world"], what["frame"], what["subframe"]) if what["world"] else []
+    with open(os.path.join(folder, "said.json"), "w", encoding="utf-8") as f:
+        json.dump({"suns": suns}, f)
+
+
+main()
