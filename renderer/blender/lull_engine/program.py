@@ -16,6 +16,8 @@ _known = {}  # versions, or Failures, by path and time of change
 def _found():
     """Returns the path of the program, or None, and where it was looked for."""
     if os.path.exists(_OWN):
+        if not os.access(_OWN, os.X_OK):  # zip files are unpacked without it
+            os.chmod(_OWN, 0o755)
         return _OWN, "in the add-on"
     addon = bpy.context.preferences.addons.get(__package__)
     wanted = bpy.path.abspath(addon.preferences.program) if addon else ""
