@@ -16,7 +16,7 @@ out=$(readlink -f "$1")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . cmake/packages.sh
 exec </dev/null
-install_packages $build_packages dpkg-dev file patchelf pybind11-dev python3-dev python3-numpy xz-utils zip
+install_packages $build_packages dpkg-dev file patchelf pybind11-dev python3-dev python3-numpy unzip xz-utils zip
 
 cmake --preset package -DLULL_ARCH=x86-64-v3 -DLULL_MPI=OFF -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=32
 cmake --build --preset package

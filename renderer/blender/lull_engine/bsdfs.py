@@ -27,7 +27,8 @@ def made(node, **parameters):
 def _note_roughness(surface, node, found):
     """Notes what reflects much, and is so rough that single scattering loses light."""
     rough = next((least for name, least in _ROUGH if is_output(found[name]) or found[name] > 0), None)
-    if getattr(node, "distribution", '') == 'MULTI_GGX' and rough is not None and (is_output(found['Roughness']) or found['Roughness'] > rough):
+    is_rough = rough is not None and (is_output(found['Roughness']) or found['Roughness'] > rough)
+    if is_rough and getattr(node, "distribution", '') == 'MULTI_GGX':
         surface.note("darker than Cycles' where rough, without multiple scattering")
     return found
 
