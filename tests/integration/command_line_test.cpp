@@ -108,8 +108,9 @@ TEST(CommandLine, SuggestsOptions) {
     EXPECT_EQ(errorOf("--denoize"),
               "lull: error: there is no option --denoize; did you mean --denoise?\n");
     EXPECT_EQ(errorOf("--guide on"),
-              "lull: error: --guide was removed; use --denoise, or --integrator bdpt for light "
-              "through glass\n");
+              "lull: error: there is no option --guide any more; use --denoise, or --integrator bdpt for "
+              "light through glass
+");
     EXPECT_EQ(errorOf("--ssp=3"), "lull: error: there is no option --ssp; did you mean --spp?\n");
     EXPECT_TRUE(Contains(errorOf("--quantum"), "; lull render --help lists"));
     EXPECT_TRUE(errorOf("--spp none").starts_with("lull: error: "));
