@@ -107,10 +107,10 @@ TEST(CommandLine, SuggestsOptions) {
     };
     EXPECT_EQ(errorOf("--denoize"),
               "lull: error: there is no option --denoize; did you mean --denoise?\n");
-    EXPECT_EQ(errorOf("--guide on"),
-              "lull: error: there is no option --guide any more; use --denoise, or --integrator bdpt for "
-              "light through glass
-");
+    EXPECT_EQ(
+        errorOf("--guide on"),
+        "lull: error: there is no option --guide any more; use --denoise, or --integrator bdpt for "
+        "light through glass\n");
     EXPECT_EQ(errorOf("--ssp=3"), "lull: error: there is no option --ssp; did you mean --spp?\n");
     EXPECT_TRUE(Contains(errorOf("--quantum"), "; lull render --help lists"));
     EXPECT_TRUE(errorOf("--spp none").starts_with("lull: error: "));
