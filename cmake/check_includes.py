@@ -97,8 +97,8 @@ ALSO = {
                                                     "utility", "optional", "variant", "memory", "deque"},
     "exception": {"stdexcept", "system_error"}, "iterator": {"vector", "string", "array", "map", "span"},
     "utility": {"map", "unordered_map", "tuple", "vector", "algorithm", "memory", "optional", "variant", "functional"},
-    "cstddef": {"span"}, "mutex": {"condition_variable"}, "tuple": {"map"}, "stdexcept": set(), "iostream": set(),
-    "cmath": {"complex"}, "system_error": {"filesystem", "charconv", "cerrno"}, "typeinfo": set(),
+    "cstddef": {"span"}, "mutex": {"condition_variable"}, "tuple": {"map"},
+    "cmath": {"complex"}, "system_error": {"filesystem", "charconv", "cerrno"},
     "string": {"sstream", "filesystem", "fstream", "regex", "stdexcept", "system_error"},
     "type_traits": {"variant", "utility", "memory", "functional"},
 }

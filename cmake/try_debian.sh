@@ -2,7 +2,7 @@
 # Builds and tests this clone in a Debian system of its own: cmake/try_debian.sh SUITE [COMMAND]
 #
 # SUITE is bookworm, trixie, testing or any that debootstrap knows. Makes a bare system in $LULL_ROOTS/SUITE (default:
-# /var/tmp/lull/SUITE; kept for the next call, remove it as you like), copies this clone into it, with changes that are
+# build/roots/SUITE; kept for the next call, remove it as you like), copies this clone into it, with changes that are
 # not committed, and runs there, without COMMAND, cmake/demo.sh and cmake/test.sh as root, then cmake/test.sh as a user
 # who can install nothing. COMMAND runs alone, as root, in the clone. ../shared (or $LULL_SHARED) can be read there.
 # The outputs are in SUITE/var/log/lull. Fails if anything fails, and prints what did.
@@ -10,14 +10,14 @@ set -euo pipefail
 clone=$(readlink -f "$(dirname "${BASH_SOURCE[0]}")/..")
 (($# == 1 || $# == 2)) || { sed -n '2,/^set/{/^set/d;s/^# \?//;p}' "$0" >&2; exit 2; }
 suite=$1 command=${2-}
-root=${LULL_ROOTS:-/var/tmp/lull}/$suite
+root=${LULL_ROOTS:-$clone/build/roots}/$suite
 shared=$(readlink -f "${LULL_SHARED:-$clone/../shared}" || true)
 if ((EUID != 0)); then
     exec sudo LULL_ROOTS="${LULL_ROOTS-}" LULL_SHARED="${LULL_SHARED-}" bash "$0" "$@"
 fi
 
 . "$clone/cmake/packages.sh"
-install_packages debootstrap git util-linux
+install_packages debootstrap git rsync util-linux
 if [[ ! -e $root/etc/lull-root ]]; then
     echo "== a root of $suite in $root"
     rm -rf "$root"
@@ -31,7 +31,6 @@ if [[ ! -e $root/etc/lull-root ]]; then
 fi
 
 # Only what differs is copied, so that a second call builds only that.
-install_packages rsync
 mkdir -p "$root/srv/lull/clone" "$root/srv/lull/shared" "$root/var/log/lull"
 (cd "$clone" && git ls-files -z --cached --others --exclude-standard | while IFS= read -rd '' f; do
     [[ ! -e $f ]] || printf '%s\0' "$f"
