@@ -86,7 +86,7 @@ void AddPathOptions(CLI::App& app, PathOfSample* options) {
         ->capture_default_str();
 }
 
-void PrintPath(const PathOfSample& wanted, const RenderSettings& settings, SamplerKind kind,
+void PrintPath(const PathOfSample& wanted, const RenderSettings& settings,
                const Description& description, const Scene& scene) {
     const Vec2i pixel = *wanted.pixel, size = scene.film.resolution;
     if (pixel.x() >= size.x() || pixel.y() >= size.y())
@@ -96,6 +96,7 @@ void PrintPath(const PathOfSample& wanted, const RenderSettings& settings, Sampl
         throw UsageError(
             fmt::format("--pixel: a sample of \"{}\" is more than one path; add --integrator path",
                         NameOf(scene.integrator, scene.isVolumetric)));
+    const SamplerKind kind = settings.sampler.value();
     Sampler sampler(kind, settings.seed);
     const PathLog log =
         LogSample(scene, settings.estimator, sampler, pixel, uint32_t(wanted.sample));

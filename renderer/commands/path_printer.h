@@ -19,7 +19,6 @@ void AddPathOptions(CLI::App& app, PathOfSample* options);
 
 // Prints the path of a sample, bounce by bounce, on stdout. Throws UsageError for a pixel that the
 // image does not have.
-void PrintPath(const PathOfSample&, const RenderSettings&, SamplerKind, const Description&,
-               const Scene&);
+void PrintPath(const PathOfSample&, const RenderSettings&, const Description&, const Scene&);
 
 }  // namespace lull

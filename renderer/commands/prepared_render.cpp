@@ -88,7 +88,7 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
             .Note(
                 "the samples are those of \"sobol-halves\", which has less noise than the scene's "
                 "Sampler \"random\"; --sampler random keeps that");
-    p.render.CheckSampler(provenance->sampler);
+    p.render.CheckSampler();
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.clock.Text();

@@ -171,8 +171,7 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
 ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();
-    PrintPath(request.path, render.settings, render.provenance.sampler, render.input.description,
-              *render.scene);
+    PrintPath(request.path, render.settings, render.input.description, *render.scene);
     return kDone;
 }
 

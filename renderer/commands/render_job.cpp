@@ -72,8 +72,8 @@ void RenderJob::DenoiseBlocks() {
     denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
 }
 
-void RenderJob::CheckSampler(SamplerKind sampler) const {
-    if (!denoiser || sampler != SamplerKind::Sobol || !Leads()) return;
+void RenderJob::CheckSampler() const {
+    if (!denoiser || settings.sampler != SamplerKind::Sobol || !Leads()) return;
     TalkOf(settings).Warn(
         "the halves of one Sobol sequence complement each other, so that the error of the denoised "
         "image is underestimated; --sampler sobol-halves has a sequence for each half");
@@ -88,10 +88,12 @@ Rule RenderJob::ReadRule(const std::string& option, const std::string& rule) con
 void RenderJob::Compile() {
     scene = CompileScene(settings, &input);
     const bool isChosen = !settings.scene.integrator.empty();
-    if (isChosen && IsBidirectional(scene->integrator) && settings.estimator == Estimator::PbrtV3)
+    if (isChosen && TracesFromLights(scene->integrator) && settings.estimator == Estimator::PbrtV3)
         throw UsageError(
             "--integrator bdpt has no estimator of pbrt-v3's, by which lull record renders unless "
             "told otherwise; give --estimator combined, or leave --integrator bdpt out");
+    if (!settings.sampler)
+        settings.sampler = DefaultSampler(settings.purpose, settings.estimator, *scene);
     provenance = MakeProvenance(settings, *scene, input.film);
 }
 
@@ -100,8 +102,7 @@ RenderIdentity RenderJob::Identity() const {
 }
 
 SessionOptions RenderJob::MakeSessionOptions(bool adaptive) const {
-    SessionOptions options =
-        lull::MakeSessionOptions(settings, provenance.sampler, adaptive, ranks);
+    SessionOptions options = lull::MakeSessionOptions(settings, adaptive, ranks);
     options.checkpoint = settings.checkpoint;
     return options;
 }
@@ -133,13 +134,11 @@ void SetWording(const RenderSettings& settings, MpiJob* ranks) {
     });
 }
 
-SessionOptions MakeSessionOptions(const RenderSettings& settings, SamplerKind sampler,
-                                  bool adaptive, MpiJob* ranks) {
+SessionOptions MakeSessionOptions(const RenderSettings& settings, bool adaptive, MpiJob* ranks) {
     SessionOptions options;
     RenderOptions& render = options.render;
     render.schedule = settings.schedule;
-    render.sampler = sampler;
-    render.seed = settings.seed;
+    render.sampler = Sampler(settings.sampler.value(), settings.seed);
     render.threads = settings.scene.compile.threads;
     render.isCancelled = Interrupted;
     RenderEvents& events = render.events;

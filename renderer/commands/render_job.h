@@ -45,10 +45,11 @@ class RenderJob {
     // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();
     // Warns where blocks are denoised from samples whose halves depend on each other.
-    void CheckSampler(SamplerKind) const;
+    void CheckSampler() const;
     // Reads a stopping rule that was given with `option`. Throws Error.
     Rule ReadRule(const std::string& option, const std::string& rule) const;
-    // Compiles the scene, and sets the provenance; the rule is left to be filled in.
+    // Compiles the scene, and sets the sampler, where the user names none, and the provenance; the
+    // rule is left to be filled in.
     void Compile();
     // Returns the identity that checkpoints and ranks must share, from the provenance.
     RenderIdentity Identity() const;
@@ -79,6 +80,6 @@ class RenderJob {
 void SetWording(const RenderSettings&, MpiJob* ranks);
 
 // RenderJob::MakeSessionOptions() without a checkpoint; the ranks may be null.
-SessionOptions MakeSessionOptions(const RenderSettings&, SamplerKind, bool adaptive, MpiJob* ranks);
+SessionOptions MakeSessionOptions(const RenderSettings&, bool adaptive, MpiJob* ranks);
 
 }  // namespace lull

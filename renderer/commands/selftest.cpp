@@ -64,7 +64,7 @@ Outcome RenderBlock(const std::string& text, const std::string& rule, bool denoi
     const auto parsed =
         std::make_shared<const Rule>(ParseRule(rule, {.blockCount = 1, .models = ModelFolder()}));
     RenderOptions options;
-    options.sampler = SamplerKind::SobolHalves;
+    options.sampler = Sampler(SamplerKind::SobolHalves, 0);
     options.makeCriterion = [&](const BlockInfo& block) { return MakeCriterion(parsed, block); };
     Film film(region, {.grid = GridOf(options.schedule), .layers = {.features = denoise}});
     const RenderResult result =

@@ -23,7 +23,7 @@ class EmissionLayer {
     EmissionLayer(const PixelRect& region, const LayerOptions&) : plane(region) {}
 
     static bool NeedsFirstHits(const LayerOptions&) { return true; }
-    void Add(const Vec2i& p, const LayerSample& sample) {
+    void Add(const Vec2i& p, const PathSample& sample) {
         const Rgb& emission = sample.hit.emission;
         if (IsBlack(emission)) return;
         std::array<float, 3>& sum = plane.At(p).halves[InHalf(sample.index) ? 0 : 1];

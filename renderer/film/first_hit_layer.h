@@ -82,7 +82,7 @@ class FirstHitLayer {
     }
 
     static bool NeedsFirstHits(const LayerOptions&) { return true; }
-    void Add(const Vec2i& p, const LayerSample& sample) {
+    void Add(const Vec2i& p, const PathSample& sample) {
         if (features) features->At(p).Add(sample.hit, InHalf(sample.index));
         if (surface) surface->At(p).Add(sample.hit);
         if (place) place->At(p).Add(sample.hit);

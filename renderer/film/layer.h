@@ -5,8 +5,8 @@
 
 #include "renderer/film/aov_set.h"
 #include "renderer/film/pixel_plane.h"
-#include "renderer/transport/first_hit.h"
 #include "renderer/transport/group_radiance.h"
+#include "renderer/transport/integrator.h"
 
 namespace lull {
 
@@ -25,14 +25,6 @@ struct LayerOptions {
     const char* HitsText() const {
         return ThroughSpecular() ? "through mirrors and glass" : "of the first surface";
     }
-};
-
-// Sample `index` of a pixel.
-struct LayerSample {
-    uint32_t index = 0;
-    Rgb radiance = Rgb::Zero();
-    FirstHit hit = {};                      // where a layer needs it
-    const GroupRadiance* groups = nullptr;  // of LayerOptions::groups, where there are any
 };
 
 // Light that light paths bring to some samples of a pixel (render/light_rounds.h).

@@ -7,8 +7,8 @@
 //       the floats a pixel that its channels take until they are written, where it is wanted
 //   Kind(const PixelRect& region, const LayerOptions&)
 //   static bool NeedsFirstHits(const LayerOptions&)
-//       whether Add() reads LayerSample::hit
-//   void Add(const Vec2i&, const LayerSample&)
+//       whether Add() reads PathSample::hit
+//   void Add(const Vec2i&, const PathSample&)
 //       called in the order of the samples, by several threads for different pixels
 //   static void ForEachPlane(self, visit)
 //       calls visit(name, plane) for each PixelPlane that it consists of, whose name no other kind
@@ -77,7 +77,7 @@ class Layers {
         ForEach([&]<typename Kind>(const Kind&) { needed |= Kind::NeedsFirstHits(options); });
         return needed;
     }
-    void Add(const Vec2i& p, const LayerSample& sample) {
+    void Add(const Vec2i& p, const PathSample& sample) {
         ForEach([&](auto& kind) { kind.Add(p, sample); });
     }
     // Free what the denoiser alone reads: of the rows [y0, y1), most of it; and all.

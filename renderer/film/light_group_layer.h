@@ -25,7 +25,7 @@ class LightGroupLayer {
     }
 
     static bool NeedsFirstHits(const LayerOptions& o) { return o.groupBackground; }
-    void Add(const Vec2i& p, const LayerSample& sample) {
+    void Add(const Vec2i& p, const PathSample& sample) {
         const std::span<const Rgb> light = sample.groups->All();
         for (size_t i = 0; i < planes.size(); ++i)
             planes[i].Add(p, InHalf(sample.index), light[i], sample.hit.found);

@@ -71,7 +71,7 @@ class MatteLayer {
     }
 
     static bool NeedsFirstHits(const LayerOptions&) { return true; }
-    void Add(const Vec2i& p, const LayerSample& sample) {
+    void Add(const Vec2i& p, const PathSample& sample) {
         alpha.At(p).Add(sample.hit, sample.radiance);
         if (crypto) crypto->At(p).Add(sample.hit);
     }

@@ -21,7 +21,7 @@ class SquareLayer {
     }
 
     static bool NeedsFirstHits(const LayerOptions&) { return false; }
-    void Add(const Vec2i& p, const LayerSample& sample) {
+    void Add(const Vec2i& p, const PathSample& sample) {
         if (auto* floats = std::get_if<PixelPlane<float>>(&plane))
             floats->At(p) += Sqr(Luminance(sample.radiance));
         else

@@ -17,8 +17,8 @@ namespace {
 // render has taken further already keep what they have. Adds them to `spread`, if there is one, and
 // the light of light paths, if there is any. Returns how many were taken.
 template <typename Take>
-int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* film,
-                   SampleSpread* spread, RoundLight* light) {
+int64_t RenderTile(const Take& take, const Tile& tile, Film* film, SampleSpread* spread,
+                   RoundLight* light) {
     int64_t samples = 0;
     FilmTile pixels = film->Tile(tile.pixels);
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
@@ -28,16 +28,15 @@ int64_t RenderTile(const Take& take, const Tile& tile, Sampler sampler, Film* fi
             const uint32_t first = sums.count, end = uint32_t(tile.first + tile.count);
             if (light && end > first) light->Begin(pixel);
             double sum = 0, squares = 0;  // of luminance
-            float connected = 0;
             for (uint32_t k = first; k < end; ++k) {
-                const PathSample sample = take(sampler, pixel, k, spread ? &connected : nullptr);
+                const PathSample& sample = take(pixel, k);
                 sums.Add(sample.radiance, sample.rejected);
                 ++samples;
                 if (!spread) continue;
                 const double y = double(Luminance(sample.radiance));
                 sum += y;
                 squares += Sqr(y);
-                spread->connected += Sqr(y * double(connected));
+                spread->connected += Sqr(y * double(sample.connected));
                 ++spread->samples;
             }
             if (light && end > first) {
@@ -146,35 +145,28 @@ void Executor::RunTile() {
 }
 
 int64_t Executor::TakeSamples(const Tile& tile) {
-    const Sampler sampler(options.sampler, options.seed);
+    Sampler sampler = options.sampler;
+    PathSample sample;
     Film* film = context.film;
     SampleSpread* spread = film->SpreadOf(tile.pixels);
     const auto render = [&](const auto& take) {
-        if (!context.lightRounds) return RenderTile(take, tile, sampler, film, spread, nullptr);
+        if (!context.lightRounds) return RenderTile(take, tile, film, spread, nullptr);
         RoundLight light(*context.lightRounds, film);
-        return RenderTile(take, tile, sampler, film, spread, &light);
+        return RenderTile(take, tile, film, spread, &light);
     };
-    if (film->layers.IsEmpty()) {
-        const auto alone = [&](Sampler& s, const Vec2i& pixel, uint32_t index, float* connected) {
-            return context.source(s, pixel, index, {.connected = connected});
-        };
-        return render(alone);
-    }
-    const LightGroups& wanted = film->layers.Options().groups;
-    std::optional<GroupRadiance> groups;
-    if (wanted.Count() > 0) groups.emplace(wanted);
-    const auto withLayers = [&, asks = film->layers.NeedFirstHits()](
-                                Sampler& s, const Vec2i& pixel, uint32_t index, float* connected) {
-        LayerSample summed{.index = index, .groups = groups ? &*groups : nullptr};
-        const SampleDetail detail{.firstHit = asks ? &summed.hit : nullptr,
-                                  .groups = groups ? &*groups : nullptr,
-                                  .connected = connected};
-        const PathSample sample = context.source(s, pixel, index, detail);
-        summed.radiance = sample.radiance;
-        film->layers.Add(pixel, summed);
+    const auto alone = [&](const Vec2i& pixel, uint32_t index) -> const PathSample& {
+        context.source(sampler, pixel, index, &sample);
         return sample;
     };
-    return render(withLayers);
+    if (film->layers.IsEmpty()) return render(alone);
+    sample.asksForHit = film->layers.NeedFirstHits();
+    const LightGroups& wanted = film->layers.Options().groups;
+    std::optional<GroupRadiance> groups;
+    if (wanted.Count() > 0) sample.groups = &groups.emplace(wanted);
+    return render([&](const Vec2i& pixel, uint32_t index) -> const PathSample& {
+        film->layers.Add(pixel, alone(pixel, index));
+        return sample;
+    });
 }
 
 int Executor::DecideBlock(int i) {

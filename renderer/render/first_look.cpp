@@ -26,12 +26,13 @@ void TakeFirstLook(const SampleSource& source, const RenderOptions& options, Fil
     FirstLook look{kSpacing, std::vector<Rgb>(size_t(columns) * size_t(rows), Rgb(0, 0, 0))};
     const auto isCancelled = [&] { return options.isCancelled && options.isCancelled(); };
     const auto takeRow = [&](int row) {
-        Sampler sampler(options.sampler, options.seed);
+        Sampler sampler = options.sampler;
+        PathSample sample;
         for (int column = 0; column < columns && !isCancelled(); ++column) {
             const Vec2i middle = kSpacing * Vec2i(column, row) + Vec2i(kSpacing, kSpacing) / 2;
             const Vec2i pixel = (region.min + middle).cwiseMin(region.max - Vec2i(1, 1));
-            look.colours[size_t(row) * size_t(columns) + size_t(column)] =
-                source(sampler, pixel, 0, {}).radiance;
+            source(sampler, pixel, 0, &sample);
+            look.colours[size_t(row) * size_t(columns) + size_t(column)] = sample.radiance;
         }
     };
     RunWithThreads(options.threads, [&] { ForEachIndex(rows, takeRow); });

@@ -70,11 +70,10 @@ double ActivePart(const Schedule& schedule) {
 
 }  // namespace
 
-LightRounds::LightRounds(const Scene& scene, const Film& film, SamplerKind kind, uint64_t seed)
+LightRounds::LightRounds(const Scene& scene, const Film& film, const Sampler& sampler)
     : scene(scene),
       region(film.Region()),
-      kind(kind),
-      seed(seed),
+      start(sampler),
       unit(FindUnit()),
       groups(film.layers.Options().groups) {}
 
@@ -83,7 +82,7 @@ double LightRounds::FindUnit() const {
     constexpr uint32_t kMost = 1 << 16;
     constexpr int kEnough = 256;
     if (LightPathCount(scene, kFirst) == 0) return 1;
-    Sampler sampler(kind, seed);
+    Sampler sampler = start;
     std::vector<Splat> splats;
     double sum = 0;
     int count = 0;
@@ -145,7 +144,7 @@ void LightRounds::Learn(Film* film) {
 }
 
 void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
-    Sampler sampler(kind, seed);
+    Sampler sampler = start;
     const bool inHalf = InHalf(sample);
     std::vector<Splat> splats;
     for (uint32_t i = begin; i < stop; ++i) {

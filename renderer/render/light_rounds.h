@@ -38,7 +38,7 @@ class LightRounds {
 
     // The scene, whose integrator is BdptIntegrator, must outlive it; of the film it is the region
     // and the light groups.
-    LightRounds(const Scene&, const Film&, SamplerKind, uint64_t seed);
+    LightRounds(const Scene&, const Film&, const Sampler&);
     LightRounds(const LightRounds&) = delete;
     LightRounds& operator=(const LightRounds&) = delete;
 
@@ -77,8 +77,7 @@ class LightRounds {
 
     const Scene& scene;
     const PixelRect region;
-    SamplerKind kind;
-    uint64_t seed;
+    const Sampler start;  // of all light paths
     BdptShares shares = kFirst;
     LightRound round;
     bool isCutShort = false;

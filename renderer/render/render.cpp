@@ -45,10 +45,10 @@ RenderResult Render(const RenderContext& context, const RenderOptions& options) 
 
 SampleSource SamplesOf(const Scene& scene, const PathOptions& options, const LightRounds* rounds) {
     return [&scene, options, rounds](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                     const SampleDetail& detail) {
+                                     PathSample* sample) {
         PathOptions paths = options;
         if (rounds) paths.shares = rounds->Round().shares;
-        return RenderSample(scene, paths, sampler, pixel, index, detail);
+        RenderSample(scene, paths, sampler, pixel, index, sample);
     };
 }
 

@@ -69,8 +69,7 @@ class Peers;
 
 struct RenderOptions {
     ScheduleOptions schedule;
-    SamplerKind sampler = SamplerKind::Sobol;
-    uint64_t seed = 0;
+    Sampler sampler{SamplerKind::Sobol, 0};
     int threads = 0;  // 0: all
 
     // Makes each block's own stopping criterion; empty: all continue to the cap.
@@ -105,9 +104,9 @@ struct RenderResult {
     RuleTrend trend = {};             // of the rule, where the options have it
 };
 
-// Takes sample `index` of a pixel; must depend on nothing but the sampler's seed, pixel and index.
-using SampleSource =
-    std::function<PathSample(Sampler&, const Vec2i& pixel, uint32_t index, const SampleDetail&)>;
+// Takes sample `index` of a pixel, as RenderSample() does; must depend on nothing but the sampler's
+// seed, pixel and index.
+using SampleSource = std::function<void(Sampler&, const Vec2i& pixel, uint32_t index, PathSample*)>;
 
 // Saves the state of a render, to resume it after an interruption.
 struct Checkpointing {

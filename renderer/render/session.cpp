@@ -41,7 +41,7 @@ int64_t BytesOfDenoising(const LayerOptions& layers) {
 }  // namespace
 
 FilmOptions FilmFor(const Scene& scene, FilmOptions options) {
-    options.withSpreads = IsBidirectional(scene.integrator);
+    options.withSpreads = TracesFromLights(scene.integrator);
     return options;
 }
 
@@ -70,9 +70,8 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
       options(std::move(given)),
       film(region, FilmFor(scene, options.film)) {
     context.film = &film;
-    if (IsBidirectional(scene.integrator)) {
-        lightRounds =
-            std::make_unique<LightRounds>(scene, film, options.render.sampler, options.render.seed);
+    if (TracesFromLights(scene.integrator)) {
+        lightRounds = std::make_unique<LightRounds>(scene, film, options.render.sampler);
         context.lightRounds = lightRounds.get();
     }
 }

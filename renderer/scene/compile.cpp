@@ -112,7 +112,7 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
             if (seesAll) CheckCamera(*scene, description.camera.loc);
             scene->lights = LightTable(description, scene->shapes, scene->textures,
                                        options.lightsAsPbrtV3, warnings);
-            if (IsBidirectional(scene->integrator))
+            if (TracesFromLights(scene->integrator))
                 scene->emission =
                     std::make_unique<const LightEmission>(scene->lights, scene->shapes.bounds);
         });

@@ -12,6 +12,8 @@ namespace lull {
 
 // Paths from the camera, with light sampled at each vertex: pbrt-v3's "path" and "volpath".
 struct PathIntegrator {
+    static constexpr bool kTracesFromLights = false;
+
     int maxDepth = 5;       // bounces, >= 0
     float rrThreshold = 1;  // Russian roulette ends paths of a throughput below
 
@@ -21,6 +23,7 @@ struct PathIntegrator {
 
 // Paths from the camera and from lights, connected in all ways: pbrt-v3's "bdpt".
 struct BdptIntegrator {
+    static constexpr bool kTracesFromLights = true;
     // Of maxDepth: longer subpaths from lights would have to be kept.
     static constexpr int kMostBounces = 100;
 
@@ -34,9 +37,9 @@ struct BdptIntegrator {
 // All kinds.
 using Integrator = std::variant<PathIntegrator, BdptIntegrator>;
 
-// Returns whether it starts paths from lights.
-inline bool IsBidirectional(const Integrator& integrator) {
-    return std::holds_alternative<BdptIntegrator>(integrator);
+// Returns whether it starts paths from lights, in rounds (render/light_rounds.h).
+inline bool TracesFromLights(const Integrator& integrator) {
+    return std::visit([](const auto& kind) { return kind.kTracesFromLights; }, integrator);
 }
 
 // Returns the names of all kinds, where nothing is volumetric.

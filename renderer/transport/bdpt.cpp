@@ -154,17 +154,17 @@ template <typename Recorder>
 }  // namespace
 
 Rgb Li(const BdptIntegrator&, const Scene& scene, const PathOptions& options, Sampler& sampler,
-       const SampleStart& start, const SampleDetail& detail) {
+       const SampleStart& start, PathSample* sample) {
     const BdptContext context = ContextOf(scene, options.shares, sampler, start.camera.time);
     Rgb connected = Rgb::Zero();
     const auto follow = [&](auto recorder) {
         const Rgb L = Follow(context, start, recorder, &connected);
         const float luminance = Luminance(L);
-        if (detail.connected && luminance > 0) *detail.connected = Luminance(connected) / luminance;
+        if (luminance > 0) sample->connected = Luminance(connected) / luminance;
         return L;
     };
-    if (!FirstHitRecorder::IsNeeded(detail)) return follow(NoRecorder());
-    return follow(FirstHitRecorder(scene, options, start.ray.d, start.camera.time, detail));
+    if (!FirstHitRecorder::IsNeeded(*sample)) return follow(NoRecorder());
+    return follow(FirstHitRecorder(scene, options, start.ray.d, start.camera.time, sample));
 }
 
 }  // namespace lull

@@ -15,17 +15,17 @@ inline uint32_t NumberOfObject(const Scene& scene, const Hit& found) {
 
 class FirstHitRecorder : public NoRecorder {
   public:
-    // Records what `detail` asks for. `direction` is of the camera's ray at `time`.
+    // Records what the sample asks for. `direction` is of the camera's ray at `time`.
     FirstHitRecorder(const Scene& scene, const PathOptions& options, const Vec3f& direction,
-                     float time, const SampleDetail& detail)
+                     float time, PathSample* sample)
         : scene(scene),
           options(options),
           direction(direction),
           time(time),
-          groups(detail.groups),
-          hit(detail.firstHit),
-          done(!hit) {}
-    static bool IsNeeded(const SampleDetail& detail) { return detail.firstHit || detail.groups; }
+          groups(sample->groups),
+          hit(&sample->hit),
+          done(!sample->asksForHit) {}
+    static bool IsNeeded(const PathSample& sample) { return sample.asksForHit || sample.groups; }
 
     bool Wanted() const { return !done; }
 

@@ -17,27 +17,30 @@ namespace {
 
 }  // namespace
 
-PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampler,
-                        const Vec2i& pixel, uint32_t index, const SampleDetail& detail) {
+void RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampler,
+                  const Vec2i& pixel, uint32_t index, PathSample* sample) {
     const SampleStart start = StartSample(scene, sampler, pixel, index);
-    if (detail.firstHit)
-        *detail.firstHit = {.weight = start.filter.weight,
-                            .offset2 = start.filter.offset.squaredNorm()};
-    if (detail.groups) detail.groups->Clear();
-    if (detail.connected) *detail.connected = 0;
-    if (start.cameraWeight == 0) return {Rgb::Zero(), false};
+    sample->index = index;
+    sample->connected = 0;
+    if (sample->asksForHit)
+        sample->hit = {.weight = start.filter.weight, .offset2 = start.filter.offset.squaredNorm()};
+    if (sample->groups) sample->groups->Clear();
+    if (start.cameraWeight == 0) {
+        sample->radiance = Rgb::Zero();
+        sample->rejected = false;
+        return;
+    }
     const auto li = [&](const auto& integrator) {
-        return Li(integrator, scene, options, sampler, start, detail);
+        return Li(integrator, scene, options, sampler, start, sample);
     };
     const Rgb found = Visit(scene.integrator, li);
-    const PathSample sample = Weighted(scene, start, found);
-    if (detail.firstHit) {
-        Rgb& emission = detail.firstHit->emission;
+    SetRadiance(scene, start, found, sample);
+    if (sample->asksForHit) {
+        Rgb& emission = sample->hit.emission;
         emission *= LimitOf(scene, Luminance(found)) * WeightOf(scene, start);
-        if (sample.rejected || !IsFinite(emission)) emission = Rgb::Zero();
+        if (sample->rejected || !IsFinite(emission)) emission = Rgb::Zero();
     }
-    if (detail.groups) Weigh(scene, start, found, sample.rejected, detail.groups);
-    return sample;
+    if (sample->groups) Weigh(scene, start, found, sample->rejected, sample->groups);
 }
 
 }  // namespace lull

@@ -36,26 +36,32 @@ struct PathOptions {
     BdptShares shares = {};  // of scenes with a BdptIntegrator
 };
 
+// A sample of a pixel, to be taken again and again. The first two members say what is asked for in
+// addition to the radiance, which that does not change.
 struct PathSample {
-    Rgb radiance;   // filter weight and film scale applied: the pixel is the mean of these
-    bool rejected;  // was NaN, infinite or of negative luminance, and counts as black
-};
+    bool asksForHit = false;
+    GroupRadiance* groups = nullptr;  // the radiance by groups of lights; null: not asked for
 
-// What receives the data of a sample besides its radiance, which they do not change; null: not
-// wanted.
-struct SampleDetail {
-    // The first hit of the path; a path that is at its greatest depth, or ends before it finds
-    // something, has none.
-    FirstHit* firstHit = nullptr;
-    // The radiance by groups of lights, with the same weights.
-    GroupRadiance* groups = nullptr;
+    uint32_t index = 0;
+    Rgb radiance =
+        Rgb::Zero();        // with filter weight and film scale: the pixel is the mean of these
+    bool rejected = false;  // was NaN, infinite or of negative luminance, and counts as black
     // The share of the luminance that comes from connections to subpaths from lights.
-    float* connected = nullptr;
+    float connected = 0;
+    // The first hit of the path, if it is asked for; a path that is at its greatest depth, or ends
+    // before it finds something, has none.
+    FirstHit hit = {};
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,
 // index) alone, whatever the thread or the order.
-PathSample RenderSample(const Scene&, const PathOptions&, Sampler&, const Vec2i& pixel,
-                        uint32_t index, const SampleDetail& detail = {});
+void RenderSample(const Scene&, const PathOptions&, Sampler&, const Vec2i& pixel, uint32_t index,
+                  PathSample*);
+inline PathSample RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampler,
+                               const Vec2i& pixel, uint32_t index) {
+    PathSample sample;
+    RenderSample(scene, options, sampler, pixel, index, &sample);
+    return sample;
+}
 
 }  // namespace lull

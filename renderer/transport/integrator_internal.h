@@ -37,23 +37,23 @@ inline float WeightOf(const Scene& scene, const SampleStart& start) {
     return start.cameraWeight * start.filter.weight * scene.film.scale;
 }
 
-// Rejects invalid radiance, limits it, and applies the weights.
-[[gnu::always_inline]] inline PathSample Weighted(const Scene& scene, const SampleStart& start,
-                                                  Rgb L) {
+// Sets the radiance: limits it, applies the weights, and rejects it where it is invalid.
+[[gnu::always_inline]] inline void SetRadiance(const Scene& scene, const SampleStart& start, Rgb L,
+                                               PathSample* sample) {
     const float luminance = Luminance(L);
     const bool isRadiance = IsFinite(L) && !(luminance < -1e-5f);
     L *= LimitOf(scene, luminance);
     L *= WeightOf(scene, start);
     // The scale of the film may be 2^100.
-    if (!isRadiance || !IsFinite(L)) return {Rgb::Zero(), true};
-    return {L, false};
+    sample->rejected = !isRadiance || !IsFinite(L);
+    sample->radiance = sample->rejected ? Rgb(Rgb::Zero()) : L;
 }
 
 // Return an estimate of the radiance along the camera's ray, without these weights, as those of
-// the groups are, which are added to. A FirstHit gets all except the data of the sample itself.
+// the groups are, which are added to. The first hit gets all except the data of the sample itself.
 Rgb Li(const PathIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
-       const SampleDetail&);
+       PathSample*);
 Rgb Li(const BdptIntegrator&, const Scene&, const PathOptions&, Sampler&, const SampleStart&,
-       const SampleDetail&);
+       PathSample*);
 
 }  // namespace lull

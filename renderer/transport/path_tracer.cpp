@@ -199,23 +199,23 @@ template <typename Media, typename Recorder>
 // Chooses the loop that the options and the recorder need.
 template <typename Media>
 Rgb TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
-              const SampleDetail& detail) {
-    if (!FirstHitRecorder::IsNeeded(detail)) {
+              PathSample* sample) {
+    if (!FirstHitRecorder::IsNeeded(*sample)) {
         NoRecorder nobodyAsks;
         return Trace(context, ray, nobodyAsks);
     }
-    FirstHitRecorder recorder(context.scene, options, ray.d, context.camera.time, detail);
+    FirstHitRecorder recorder(context.scene, options, ray.d, context.camera.time, sample);
     return Trace(context, ray, recorder);
 }
 
 }  // namespace
 
 Rgb Li(const PathIntegrator& integrator, const Scene& scene, const PathOptions& options,
-       Sampler& sampler, const SampleStart& start, const SampleDetail& detail) {
+       Sampler& sampler, const SampleStart& start, PathSample* sample) {
     const auto trace = [&]<typename Media>(const Media& media) {
         return TracePath<Media>(
             {scene, integrator, options.estimator, sampler, start.camera, media}, options,
-            start.ray, detail);
+            start.ray, sample);
     };
     if (scene.isVolumetric) return trace(Media(scene));
     return scene.hasPanes ? trace(NoMediaButPanes(scene)) : trace(NoMedia(scene));
@@ -229,7 +229,7 @@ PathLog LogSample(const Scene& scene, Estimator estimator, Sampler& sampler, con
                 .cameraWeight = start.cameraWeight,
                 .filmScale = scene.film.scale,
                 .steps = {},
-                .sample = {Rgb::Zero(), false}};
+                .sample = {.index = index}};
     if (start.cameraWeight == 0) return log;
     const auto& integrator = std::get<PathIntegrator>(scene.integrator);
     const auto trace = [&]<typename Media>(const Media& media) {
@@ -239,7 +239,7 @@ PathLog LogSample(const Scene& scene, Estimator estimator, Sampler& sampler, con
     };
     // Where there are no panes the sample is the same.
     const Rgb L = scene.isVolumetric ? trace(Media(scene)) : trace(NoMediaButPanes(scene));
-    log.sample = Weighted(scene, start, L);
+    SetRadiance(scene, start, L, &log.sample);
     return log;
 }
 

@@ -12,10 +12,10 @@ namespace lull {
 namespace {
 
 // Returns noise around a smooth image.
-PathSample Noise(Sampler& sampler, const Vec2i& pixel, uint32_t index, const SampleDetail&) {
+void Noise(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
     sampler.StartSample(pixel, index);
     const float smooth = 0.5f + 0.4f * std::sin(0.02f * float(pixel.x() + 2 * pixel.y()));
-    return {Rgb::Constant(smooth * 2 * sampler.Get1D()), false};
+    sample->radiance = Rgb::Constant(smooth * 2 * sampler.Get1D());
 }
 
 // Renders and notes each pixel whose samples are not those of the block it is in, or that is in
@@ -25,7 +25,7 @@ void Check(const Vec2i& size, int blockSize, const std::string& rule, int cap, F
     RenderOptions options;
     options.schedule = {
         .blockSize = blockSize, .passLength = 20, .cap = cap, .smallestSide = factory.smallestSide};
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.makeCriterion = CriteriaOf(factory);
     Film film({{0, 0}, size}, {.grid = GridOf(options.schedule)});
     const RenderResult result = Render({.source = Noise, .film = &film}, options);

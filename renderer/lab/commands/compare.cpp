@@ -148,7 +148,7 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) 
     render.CheckFiles(OutputsOf(options, rendered), InputsOf(options));
     render.LockResults(options.output + ".compare.json");
     render.Compile();
-    render.CheckSampler(render.provenance.sampler);
+    render.CheckSampler();
     render.provenance.criterion = automatic.text;
     render.provenance.checksum = automatic.checksum;
     Comparison& comparison = compared->report.comparison;
@@ -180,8 +180,7 @@ SessionOptions MakeOptions(Compared* compared) {
 // Renders the automatic image by itself.
 Verification Verify(const Compared& compared, int threads, const ComparedImage& expected) {
     const RenderJob& render = compared.render;
-    SessionOptions how =
-        MakeSessionOptions(render.settings, render.provenance.sampler, true, nullptr);
+    SessionOptions how = MakeSessionOptions(render.settings, true, nullptr);
     how.render.schedule.smallestSide = compared.rules.front().smallestSide;
     how.render.threads = threads;
     how.render.makeCriterion = compared.rules.front().make;

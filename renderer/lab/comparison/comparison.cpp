@@ -50,7 +50,6 @@ void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Fi
     options.schedule = render.options.schedule;
     options.schedule.smallestSide = 0;
     options.sampler = render.options.sampler;
-    options.seed = render.options.seed;
     options.threads = render.options.threads;
     options.makeCriterion = [&](const BlockInfo& info) {
         return MakeCriterion(FixedRule(spp[size_t(info.index)]));

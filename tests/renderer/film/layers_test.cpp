@@ -41,7 +41,9 @@ struct Planes {
                 groups.Add(0, radiance / 4);
                 groups.Add(1, radiance / 2);
                 groups.Add(1, radiance / 4);
-                film.layers.Add({x, y}, {pixel.count, radiance, hit, &groups});
+                film.layers.Add(
+                    {x, y},
+                    {.groups = &groups, .index = pixel.count, .radiance = radiance, .hit = hit});
                 pixel.Add(radiance, x % 3 == 0);
                 tile.Set({x, y}, pixel);
             }

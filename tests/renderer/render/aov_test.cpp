@@ -23,7 +23,7 @@ struct Rendered {
     explicit Rendered(const AovSet& aovs = ParseAovs(kLayers))
         : film(kRegion, {.layers = {.aovs = aovs}}) {
         options.schedule = {.blockSize = 30, .passLength = 6, .cap = 60};
-        options.sampler = SamplerKind::Random;
+        options.sampler = Sampler(SamplerKind::Random, 0);
         options.threads = 1;
         options.makeCriterion = [](const BlockInfo& block) {
             return std::make_unique<ScriptedCriterion>(12 * (block.index + 1));
@@ -44,9 +44,9 @@ Film Expected(const Film& film) {
     for (int y = kRegion.min.y(); y < kRegion.max.y(); ++y)
         for (int x = kRegion.min.x(); x < kRegion.max.x(); ++x)
             for (uint32_t k = 0; k < film.At({x, y}).count; ++k) {
-                FirstHit hit;
-                const PathSample sample = SyntheticSample(sampler, {x, y}, k, {&hit});
-                expected.layers.Add({x, y}, {k, sample.radiance, hit});
+                PathSample sample{.asksForHit = true};
+                SyntheticSample(sampler, {x, y}, k, &sample);
+                expected.layers.Add({x, y}, sample);
                 AddTo(&expected, {x, y}, sample.radiance, sample.rejected);
             }
     return expected;
@@ -71,9 +71,9 @@ TEST(Aovs, OfNoiseAloneAskForNoFirstHits) {
         render.options.schedule.cap = 6;
         int64_t asked = 0;
         render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
-                                    const SampleDetail& detail) {
-            asked += detail.firstHit != nullptr;
-            return SyntheticSample(sampler, pixel, k, detail);
+                                    PathSample* sample) {
+            asked += sample->asksForHit;
+            SyntheticSample(sampler, pixel, k, sample);
         };
         render.Run();
         EXPECT_EQ(asked, withDepth ? render.film.SampleCount() : 0);
@@ -89,9 +89,9 @@ TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
     render.options.makeCriterion = nullptr;
     render.options.secondsLeft = [&] { return taken < 100000 ? 1. : 0.; };
     render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
-                                const SampleDetail& detail) {
+                                PathSample* sample) {
         ++taken;
-        return SyntheticSample(sampler, pixel, k, detail);
+        SyntheticSample(sampler, pixel, k, sample);
     };
     render.Run();
     EXPECT_TRUE(render.result.timeUp);
@@ -109,10 +109,9 @@ TEST(Aovs, GoOnFromCheckpoints) {
     {
         Rendered first;
         std::atomic<int> taken = 0;
-        first.options.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k,
-                                   const SampleDetail& detail) {
+        first.options.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k, PathSample* sample) {
             ++taken;
-            return SyntheticSample(s, pixel, k, detail);
+            SyntheticSample(s, pixel, k, sample);
         };
         first.options.isCancelled = [&] { return taken > 50001; };
         first.options.checkpoints.write = [&](const RenderState& s) {

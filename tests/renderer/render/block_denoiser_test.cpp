@@ -14,17 +14,16 @@ namespace {
 const PixelRect kRegion = {{0, 0}, {40, 40}};
 
 // Each sample finds one of two lamps: the light of each is noise, and their sum is grey.
-PathSample OneOfTwoLamps(Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                         const SampleDetail& detail) {
+void OneOfTwoLamps(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
     sampler.StartSample(pixel, index);
     const int lamp = sampler.Get2D().x() < 0.5f ? 0 : 1;
-    const Rgb radiance = Rgb::Constant(0.5f);
-    if (detail.groups) {
-        detail.groups->Clear();
-        detail.groups->Add(lamp, radiance);
+    sample->index = index;
+    sample->radiance = Rgb::Constant(0.5f);
+    if (sample->groups) {
+        sample->groups->Clear();
+        sample->groups->Add(lamp, sample->radiance);
     }
-    if (detail.firstHit) *detail.firstHit = {.albedo = radiance, .depth = 1, .found = true};
-    return {radiance, false};
+    if (sample->asksForHit) sample->hit = {.albedo = sample->radiance, .depth = 1, .found = true};
 }
 
 // Renders by the rule `denoised`; returns the samples that the block took.
@@ -33,7 +32,7 @@ int SppOf(bool withGroups) {
     if (withGroups) layers.groups = {{"a", "b"}, {0, 1}};
     Film film(kRegion, {.grid = {.blockSize = 40, .tileSize = 8}, .layers = layers});
     RenderOptions options;
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.schedule = {.blockSize = 40, .passLength = 20, .cap = 640};
     options.threads = 2;
     const auto denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(kRegion, options.schedule));

@@ -49,7 +49,7 @@ class SummingCriterion final : public Criterion {
 RenderOptions SmallRender(int threads) {
     RenderOptions options;
     options.schedule = {.blockSize = 50, .passLength = 6, .cap = 60};
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.threads = threads;
     options.makeCriterion = [](const BlockInfo& block) {
         return std::make_unique<SummingCriterion>(block.index);
@@ -89,9 +89,9 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
             RenderOptions options = SmallRender(1 + run % 3);
             std::atomic<int> samples = 0;
             const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                    const SampleDetail& detail) {
+                                    PathSample* sample) {
                 ++samples;
-                return SyntheticSample(sampler, pixel, index, detail);
+                SyntheticSample(sampler, pixel, index, sample);
             };
             options.isCancelled = [&] { return samples >= samplesARun; };
             const auto write = [&](const RenderState& s) {

@@ -15,11 +15,11 @@ namespace lull {
 namespace {
 
 // Blocks of 20x20 pixels in a row, of which block i has noise of 1, 2, 4, ...
-PathSample UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, const SampleDetail&) {
+void UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
     sampler.StartSample(pixel, index);
     const float u = sampler.Get1D() - 0.5f;
     const float deviation = 0.02f * float(1 << (pixel.x() / 20));
-    return {Rgb(1, 1, 1) * (0.4f + deviation * u), false};
+    sample->radiance = Rgb(1, 1, 1) * (0.4f + deviation * u);
 }
 
 struct Clocked {
@@ -32,7 +32,7 @@ struct Clocked {
     explicit Clocked(int64_t samples, int threads = 1, const RenderState* state = nullptr,
                      const std::function<void(RenderSetup*)>& change = {}) {
         setup.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
-        setup.sampler = SamplerKind::Random;
+        setup.sampler = Sampler(SamplerKind::Random, 0);
         setup.threads = threads;
         setup.film = &film;
         setup.interrupted = state;
@@ -43,9 +43,9 @@ struct Clocked {
         };
         if (change) change(&setup);
         setup.source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                              const SampleDetail& detail) {
+                              PathSample* sample) {
             ++taken;
-            return UnevenSample(sampler, pixel, index, detail);
+            UnevenSample(sampler, pixel, index, sample);
         };
         result = Render(setup, setup);
     }
@@ -175,17 +175,16 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
     }
     RenderSetup options;
     options.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.threads = 2;
     options.makeCriterion = [](const BlockInfo&) {
         return MakeCriterion(LightnessNoiseRule(0.07));
     };
     std::atomic<int64_t> left = Pixels(9);
     options.secondsLeft = [&] { return double(left); };
-    options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                         const SampleDetail& detail) {
+    options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
         --left;
-        return UnevenSample(sampler, pixel, index, detail);
+        UnevenSample(sampler, pixel, index, sample);
     };
     RenderState ended;
     options.checkpoints.write = [&](const RenderState& s) { ended = s; };

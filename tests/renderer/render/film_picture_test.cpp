@@ -87,7 +87,7 @@ TEST(TakePicture, IsThePictureOfTheFilm) {
             FilmTile tile = film.Tile({{x, y}, {x + 1, y + 1}});
             FilmPixel sums = tile.At({x, y});
             for (uint32_t k = 0; k < 8; ++k) {
-                LayerSample sample{.index = k, .radiance = Rgb(1, float(x + k), float(y % 7))};
+                PathSample sample{.index = k, .radiance = Rgb(1, float(x + k), float(y % 7))};
                 sample.hit.found = true;
                 sample.hit.weight = 1;
                 sample.hit.depth = float(1 + (x * y + int(k)) % 13);

@@ -11,9 +11,9 @@ namespace {
 
 const PixelRect kLookRegion = {{3, 5}, {24, 15}};  // of no whole number of squares
 
-PathSample PositionSample(Sampler&, const Vec2i& pixel, uint32_t index, const SampleDetail&) {
+void PositionSample(Sampler&, const Vec2i& pixel, uint32_t index, PathSample* sample) {
     EXPECT_EQ(index, 0u);
-    return {.radiance = Rgb(float(pixel.x()), float(pixel.y()), 1), .rejected = false};
+    sample->radiance = Rgb(float(pixel.x()), float(pixel.y()), 1);
 }
 
 TEST(FirstLook, ShowsAPixelOfEachSquare) {
@@ -47,12 +47,8 @@ TEST(FirstLook, IsLeftOutWhereItWouldNotBeSeen) {
     for (int y = kLookRegion.min.y(); y < kLookRegion.max.y(); ++y)
         for (int x = kLookRegion.min.x(); x < kLookRegion.max.x(); ++x)
             AddTo(&film, {x, y}, Rgb(1, 1, 1));
-    TakeFirstLook(
-        [](Sampler&, const Vec2i&, uint32_t, const SampleDetail&) -> PathSample {
-            ADD_FAILURE();
-            return {};
-        },
-        RenderOptions(), &film);
+    TakeFirstLook([](Sampler&, const Vec2i&, uint32_t, PathSample*) { ADD_FAILURE(); },
+                  RenderOptions(), &film);
 }
 
 }  // namespace

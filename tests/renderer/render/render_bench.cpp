@@ -72,7 +72,7 @@ void RenderRegion(benchmark::State& state, const Scene& scene, Estimator estimat
     const Rule rule = ParseRule("dammertz:1e-9");
     RenderOptions options;
     options.schedule = schedule;
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.makeCriterion = CriteriaOf(rule);
     int64_t samples = 0;
     double wall = 0, busy = 0;

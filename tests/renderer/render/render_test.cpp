@@ -19,7 +19,7 @@ const PixelRect kRegion = {{0, 0}, {131, 97}};
 RenderOptions SmallRender() {
     RenderOptions options;
     options.schedule = {.blockSize = 50, .passLength = 20, .cap = 50};
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.threads = 1;
     return options;
 }
@@ -129,14 +129,13 @@ TEST(Render, SpreadsASingleBlockOverAllThreads) {
     std::mutex mutex;
     std::condition_variable changed;
     std::set<std::thread::id> inside;
-    auto meet = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                    const SampleDetail& detail) {
+    auto meet = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
         std::unique_lock lock(mutex);
         inside.insert(std::this_thread::get_id());
         changed.notify_all();
         changed.wait_for(lock, std::chrono::seconds(20), [&] { return inside.size() >= 4; });
         lock.unlock();
-        return SyntheticSample(sampler, pixel, index, detail);
+        SyntheticSample(sampler, pixel, index, sample);
     };
     RenderOptions options = SmallRender();
     options.threads = 4;
@@ -154,9 +153,9 @@ TEST(Render, EndsAfterTheTilesUnderWayWhenCancelled) {
     options.isCancelled = [&] { return taken > 400000; };
     Film film(kRegion);
     const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                            const SampleDetail& detail) {
+                            PathSample* sample) {
         ++taken;
-        return SyntheticSample(sampler, pixel, index, detail);
+        SyntheticSample(sampler, pixel, index, sample);
     };
     const RenderResult result = Render({.source = source, .film = &film}, options);
     EXPECT_TRUE(result.cancelled);
@@ -177,7 +176,7 @@ TEST(Render, PassesOnWhatCriteriaAndSamplesThrow) {
     options.makeCriterion = [](const BlockInfo&) { return std::make_unique<Broken>(); };
     Film film(kRegion);
     EXPECT_THROW(Render({.source = SyntheticSample, .film = &film}, options), std::runtime_error);
-    const auto broken = [](Sampler&, const Vec2i&, uint32_t, const SampleDetail&) -> PathSample {
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t, PathSample*) -> void {
         throw std::bad_alloc();
     };
     EXPECT_THROW(Render({.source = broken, .film = &film}, SmallRender()), std::bad_alloc);

@@ -67,8 +67,7 @@ struct Settings {
 Film Rendered(const Scene& scene, const Settings& s) {
     RenderOptions options;
     options.schedule = {.blockSize = s.blockSize, .passLength = s.passLength, .cap = s.cap};
-    options.sampler = s.sampler;
-    options.seed = s.seed;
+    options.sampler = Sampler(s.sampler, s.seed);
     options.threads = s.threads;
     Film film(RegionOf(scene));
     Render({.source = SamplesOf(scene, s.estimator), .film = &film}, options);
@@ -127,7 +126,7 @@ TEST(SceneRender, ShowsNoBordersOfBlocks) {
     const auto scene = SceneOf(kWall);
     RenderOptions options;
     options.schedule = {.blockSize = 20, .passLength = 20, .cap = 200};
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.threads = 2;
     // Stop the blocks at different spp, as criteria do.
     options.makeCriterion = [](const BlockInfo& block) {

@@ -23,15 +23,18 @@ inline FirstHit SyntheticHit(const Vec2f& u, const Vec2i& pixel, uint32_t index)
 
 // Returns noise around a smooth image. Like any source it depends only on pixel, index and seed.
 // The sums are inexact in double, so that the order of additions shows in the last bits.
-inline PathSample SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                  const SampleDetail& detail = {}) {
+inline void SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                            PathSample* sample) {
     sampler.StartSample(pixel, index);
     const Vec2f u = sampler.Get2D();
-    if (detail.firstHit) *detail.firstHit = SyntheticHit(sampler.Get2D(), pixel, index);
+    sample->index = index;
+    if (sample->asksForHit) sample->hit = SyntheticHit(sampler.Get2D(), pixel, index);
     const float smooth = 0.5f + 0.4f * std::sin(0.02f * float(pixel.x() + 2 * pixel.y()));
     const float spike = u.y() < 1e-3f ? 1e9f : 1.f;
-    return {Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y()), u.x() < 1e-3f};
+    sample->radiance = Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y());
+    sample->rejected = u.x() < 1e-3f;
 }
+
 // Context and options of a render, where a test changes either.
 struct RenderSetup : RenderContext, RenderOptions {};
 

@@ -32,11 +32,9 @@ TEST(DenoisedImage, NamesTheWorstPixels) {
         TextOf({one, some}).ends_with(", except for 3 pixels that may be wrong by up to 21 in L*"));
 }
 
-PathSample WithoutSpikes(Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                         const SampleDetail& detail) {
-    PathSample sample = SyntheticSample(sampler, pixel, index, detail);
-    sample.radiance = sample.radiance.min(1.f);
-    return sample;
+void WithoutSpikes(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
+    SyntheticSample(sampler, pixel, index, sample);
+    sample->radiance = sample->radiance.min(1.f);
 }
 
 // A large one is denoised at a lower resolution.

@@ -156,7 +156,10 @@ struct Lights {
             if (k > 0) groups.Add(0, Rgb(4, 8, 12));
             groups.Add(1, Rgb(2, 2, 2));
             const Rgb radiance = groups.All()[0] + groups.All()[1];
-            film.layers.Add({2, 3}, {k, radiance, {.found = k > 0, .weight = 1}, &groups});
+            film.layers.Add({2, 3}, {.groups = &groups,
+                                     .index = k,
+                                     .radiance = radiance,
+                                     .hit = {.found = k > 0, .weight = 1}});
             pixel.Add(radiance, false);
         }
         tile.Set({2, 3}, pixel);

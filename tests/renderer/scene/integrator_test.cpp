@@ -57,10 +57,10 @@ TEST(Integrator, StartsPathsFromLightsWhereTheSceneSays) {
     const Integrator bdpt = Read("Integrator \"bdpt\" \"integer maxdepth\" [9]", &warnings);
     EXPECT_EQ(NameOf(bdpt, false), "bdpt");
     EXPECT_EQ(MaxDepth(bdpt), 9);
-    EXPECT_TRUE(IsBidirectional(bdpt));
+    EXPECT_TRUE(TracesFromLights(bdpt));
     EXPECT_EQ(warnings.Total(), 0);
     for (const char* name : {"mlt", "sppm"})
-        EXPECT_TRUE(IsBidirectional(
+        EXPECT_TRUE(TracesFromLights(
             Read(std::string("Integrator \"") + name + "\" \"integer chains\" [3]", &warnings)));
     const std::map<std::string, int> expected = {
         {"Integrator \"mlt\" is rendered as \"bdpt\"", 1},
@@ -70,7 +70,8 @@ TEST(Integrator, StartsPathsFromLightsWhereTheSceneSays) {
 
 TEST(Integrator, IsPathWhereLightPathsCannotGo) {
     Warnings warnings;
-    EXPECT_FALSE(IsBidirectional(Read("Integrator \"bdpt\"", &warnings, -1, true, "there is fog")));
+    EXPECT_FALSE(
+        TracesFromLights(Read("Integrator \"bdpt\"", &warnings, -1, true, "there is fog")));
     const std::map<std::string, int> expected = {
         {"Integrator \"bdpt\" is rendered as \"volpath\", as there is fog", 1}};
     EXPECT_EQ(warnings.Counts(), expected);

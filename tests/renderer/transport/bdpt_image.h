@@ -41,7 +41,7 @@ inline std::vector<Eigen::Array3d> Picture(const Scene& scene, const BdptShares&
         }
     };
     const auto paths =
-        IsBidirectional(scene.integrator) ? uint32_t(LightPathCount(scene, shares)) : 0;
+        TracesFromLights(scene.integrator) ? uint32_t(LightPathCount(scene, shares)) : 0;
     std::vector<Splat> splats;
     for (int k = 0; k < spp; ++k)
         for (uint32_t i = 0; i < paths; ++i) {

@@ -31,11 +31,11 @@ std::string Wall(double z, double size = 10) {
 FirstHit Find(const Scene& scene, Estimator estimator, bool throughSpecular = false,
               uint32_t index = 0) {
     Sampler sampler(SamplerKind::Random, 7);
-    FirstHit hit;
+    PathSample sample{.asksForHit = true};
     PathOptions options = estimator;
     options.throughSpecular = throughSpecular;
-    RenderSample(scene, options, sampler, {0, 0}, index, {&hit});
-    return hit;
+    RenderSample(scene, options, sampler, {0, 0}, index, &sample);
+    return sample.hit;
 }
 
 void ExpectColor(const Rgb& color, const Rgb& expected, float slack = 1e-5f) {
@@ -83,11 +83,10 @@ TEST(FirstHit, KnowsTheLampSeenDirectly) {
     for (const Estimator estimator : kBoth) {
         const auto scene = MakeScene(lamp);
         Sampler sampler(SamplerKind::Random, 7);
-        FirstHit hit;
-        const PathOptions options = estimator;
-        const PathSample sample = RenderSample(*scene, options, sampler, {0, 0}, 0, {&hit});
-        EXPECT_FALSE(IsBlack(hit.emission));
-        ExpectColor(hit.emission, sample.radiance);
+        PathSample sample{.asksForHit = true};
+        RenderSample(*scene, estimator, sampler, {0, 0}, 0, &sample);
+        EXPECT_FALSE(IsBlack(sample.hit.emission));
+        ExpectColor(sample.hit.emission, sample.radiance);
     }
     // Seen in a mirror it is like any light that is reflected; the sky is no lamp.
     const auto mirror =
@@ -210,9 +209,9 @@ TEST(FirstHit, EnvironmentCamerasMeasureDistance) {
                           "Camera \"environment\""));
     for (int i = 0; i < 16; ++i) {
         Sampler sampler(SamplerKind::Random, 7);
-        FirstHit hit;
-        RenderSample(*scene, Estimator::Combined, sampler, {i % 4, i / 4}, 0, {&hit});
-        EXPECT_NEAR(hit.depth, 7, 1e-3f);
+        PathSample sample{.asksForHit = true};
+        RenderSample(*scene, Estimator::Combined, sampler, {i % 4, i / 4}, 0, &sample);
+        EXPECT_NEAR(sample.hit.depth, 7, 1e-3f);
     }
 }
 
@@ -229,10 +228,10 @@ TEST(FirstHit, LeavesTheImageAsItIs) {
             const auto scene = MakeScene(world, integrator);
             for (uint32_t k = 0; k < 500; ++k) {
                 Sampler a(SamplerKind::Sobol, 3), b(SamplerKind::Sobol, 3);
-                FirstHit hit;
                 PathOptions options = estimator;
                 options.throughSpecular = true;
-                const PathSample with = RenderSample(*scene, options, a, {0, 0}, k, {&hit});
+                PathSample with{.asksForHit = true};
+                RenderSample(*scene, options, a, {0, 0}, k, &with);
                 const PathSample without = RenderSample(*scene, estimator, b, {0, 0}, k);
                 for (int c = 0; c < 3; ++c) ASSERT_EQ(with.radiance[c], without.radiance[c]);
             }

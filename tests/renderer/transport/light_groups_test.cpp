@@ -106,16 +106,15 @@ TEST(GroupRadiance, AddsUpToThatOfTheSample) {
                 const Vec2i pixel(i % 8, i / 8 % 8);
                 const Rgb whole =
                     RenderSample(*grouped.scene, estimator, a, pixel, uint32_t(i / 64)).radiance;
-                const Rgb with = RenderSample(*grouped.scene, estimator, b, pixel, uint32_t(i / 64),
-                                              {.groups = &groups})
-                                     .radiance;
+                PathSample with{.groups = &groups};
+                RenderSample(*grouped.scene, estimator, b, pixel, uint32_t(i / 64), &with);
                 Rgb sum = Rgb::Zero();
                 for (size_t g = 0; g < 3; ++g) {
                     sum += groups.All()[g];
                     found[g] += double(groups.All()[g].sum());
                 }
                 for (int c = 0; c < 3; ++c) {
-                    ASSERT_EQ(with[c], whole[c]);
+                    ASSERT_EQ(with.radiance[c], whole[c]);
                     ASSERT_NEAR(sum[c], whole[c], 1e-5f * std::abs(whole[c])) << room.things;
                 }
             }
@@ -149,7 +148,8 @@ TEST(GroupRadiance, IsThatOfTheSceneWithItsLightsAlone) {
             const Lit alone[] = {{true, false, false}, {false, false, true}, {false, true, false}};
             GroupRadiance groups(all.groups);
             const Means ofGroups = MeansOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
-                RenderSample(*all.scene, estimator, sampler, p, k, {.groups = &groups});
+                PathSample sample{.groups = &groups};
+                RenderSample(*all.scene, estimator, sampler, p, k, &sample);
                 const auto of = [&](size_t g) { return double(Luminance(groups.All()[g])); };
                 return Eigen::Array3d(of(0), of(1), of(2));
             });
@@ -175,10 +175,12 @@ void VisitSamples(const std::string& parameter, const Visit& visit) {
     const GroupedScene grouped(text);
     GroupRadiance groups(grouped.groups);
     Sampler sampler(SamplerKind::Sobol, 3);
-    for (int i = 0; i < 640; ++i)
-        visit(RenderSample(*grouped.scene, Estimator::Combined, sampler, Vec2i(i % 8, i / 8 % 8),
-                           uint32_t(i / 64), {.groups = &groups}),
-              groups.All());
+    PathSample sample{.groups = &groups};
+    for (int i = 0; i < 640; ++i) {
+        RenderSample(*grouped.scene, Estimator::Combined, sampler, Vec2i(i % 8, i / 8 % 8),
+                     uint32_t(i / 64), &sample);
+        visit(sample, groups.All());
+    }
 }
 
 TEST(GroupRadiance, IsLimitedAsTheSample) {

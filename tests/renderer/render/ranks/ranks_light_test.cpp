@@ -20,7 +20,7 @@ Shared RenderPart(const Scene& scene, int ranks, const Part& part = {}) {
     const Film whole(kImage);
     std::vector<std::unique_ptr<LightRounds>> lights(size_t(std::max(1, ranks)));
     for (std::unique_ptr<LightRounds>& light : lights)
-        light = std::make_unique<LightRounds>(scene, whole, SamplerKind::Random, 0);
+        light = std::make_unique<LightRounds>(scene, whole, Sampler(SamplerKind::Random, 0));
     std::atomic<int64_t> left = part.tiles;
     const auto change = [&](RenderSetup* o, int rank) {
         o->lightRounds = lights[size_t(rank)].get();

@@ -100,10 +100,10 @@ TEST(Ranks, PauseForCheckpoints) {
     };
     // Takes many times the interval, however fast the machine is.
     const SampleSource slow = [](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                 const SampleDetail& detail) {
+                                 PathSample* sample) {
         if (pixel.x() == kImage.min.x() && index % 5 == 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        return SyntheticSample(sampler, pixel, index, detail);
+        SyntheticSample(sampler, pixel, index, sample);
     };
     const Shared shared = RenderShared(3, change, nullptr, [&](int) { return slow; });
     EXPECT_GT(checkpoints, 2);
@@ -124,9 +124,9 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
     for (const int64_t time : {int64_t(1), kImage.Area() * 35}) {
         std::atomic<int64_t> taken = 0;
         const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                const SampleDetail& detail) {
+                                PathSample* sample) {
             ++taken;
-            return SyntheticSample(sampler, pixel, index, detail);
+            SyntheticSample(sampler, pixel, index, sample);
         };
         const Shared shared = RenderShared(
             3,
@@ -153,7 +153,7 @@ TEST(Ranks, PassOnWhatTasksThrow) {
     RenderOptions options = SharedOptions();
     options.peers = &peers;
     Film film(kImage);
-    const auto broken = [](Sampler&, const Vec2i&, uint32_t, const SampleDetail&) -> PathSample {
+    const auto broken = [](Sampler&, const Vec2i&, uint32_t, PathSample*) -> void {
         throw std::bad_alloc();
     };
     EXPECT_THROW(Render({.source = broken, .film = &film}, options), std::bad_alloc);
@@ -184,12 +184,11 @@ TEST(Ranks, DealOutEveryTileOnce) {
 // `isSlow(rank, index)` is true for.
 SourceOfRank SlowWhere(const std::function<bool(int rank, uint32_t index)>& isSlow) {
     return [isSlow](int rank) -> SampleSource {
-        return
-            [=](Sampler& sampler, const Vec2i& pixel, uint32_t index, const SampleDetail& detail) {
-                if (index % 20 == 0 && isSlow(rank, index))
-                    std::this_thread::sleep_for(std::chrono::microseconds(100));
-                return SyntheticSample(sampler, pixel, index, detail);
-            };
+        return [=](Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
+            if (index % 20 == 0 && isSlow(rank, index))
+                std::this_thread::sleep_for(std::chrono::microseconds(100));
+            SyntheticSample(sampler, pixel, index, sample);
+        };
     };
 }
 
@@ -301,9 +300,9 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
     for (const int messages : {0, 8, 20}) {
         std::atomic<int64_t> taken = 0;
         const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                const SampleDetail& detail) {
+                                PathSample* sample) {
             ++taken;
-            return SyntheticSample(sampler, pixel, index, detail);
+            SyntheticSample(sampler, pixel, index, sample);
         };
         GivenUp givenUp;
         const Shared shared = RenderShared(3, givenUp.Soon([&](RenderSetup* o, int rank) {
@@ -331,11 +330,10 @@ TEST(Ranks, UndoLayers) {
     for (int attempt = 0; attempt < 20 && !undone; ++attempt) {
         std::atomic<int64_t> taken = 0;
         const auto source = [&](int) -> SampleSource {
-            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                       const SampleDetail& detail) {
+            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
                 if (++taken > time && index % 20 == 0)
                     std::this_thread::sleep_for(std::chrono::microseconds(100));
-                return SyntheticSample(sampler, pixel, index, detail);
+                SyntheticSample(sampler, pixel, index, sample);
             };
         };
         const Shared timed = RenderLayers(

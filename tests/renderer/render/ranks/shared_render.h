@@ -22,7 +22,7 @@ inline const PixelRect kImage = {{3, 2}, {74, 59}};
 inline RenderOptions SharedOptions() {
     RenderOptions options;
     options.schedule = {.blockSize = 25, .passLength = 20, .cap = 90, .smallestSide = 20};
-    options.sampler = SamplerKind::Random;
+    options.sampler = Sampler(SamplerKind::Random, 0);
     options.threads = 1;
     options.makeCriterion = [](const BlockInfo& block) {
         return std::make_unique<ScriptedCriterion>(40 + 20 * block.index);
