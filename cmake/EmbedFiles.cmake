@@ -1,7 +1,7 @@
 # lull_embed(OUTPUT FILE...): writes a source file that holds the files, by name, as texts; see
-# renderer/pages/embedded.h. Done when CMake configures, which a change of any of the files repeats.
+# renderer/pages/html_page.h. Done when CMake configures, which a change of any of the files repeats.
 function(lull_embed output)
-  set(source "// Made by CMake from the files it names.\n#include \"renderer/pages/embedded.h\"\n\n")
+  set(source "// Made by CMake from the files it names.\n#include \"renderer/pages/html_page.h\"\n\n")
   string(APPEND source "std::string_view lull::EmbeddedFile(std::string_view name) {\n")
   foreach(file ${ARGN})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})

@@ -14,10 +14,7 @@
 #include <vector>
 
 #include "renderer/base/error.h"
-#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/removed.h"
-#include "renderer/commands/talk.h"
 #include "renderer/mpi/job.h"
 
 namespace lull {

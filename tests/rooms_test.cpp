@@ -136,7 +136,7 @@ TEST(Rooms, KnowWhatIsPrivate) {
     EXPECT_FALSE(IsPrivate("renderer/scene/scene.h"));
     EXPECT_FALSE(IsPrivate("renderer/scene/lights/light_table.h"));
     EXPECT_TRUE(IsPrivate("renderer/scene/lights/infinite.h"));
-    EXPECT_FALSE(IsPrivate("stopping/rules/criterion.h"));
+    EXPECT_FALSE(IsPrivate("stopping/rules/rule.h"));
     EXPECT_EQ(RoomOf("renderer/main.cpp"), "renderer/main.cpp");
     EXPECT_EQ(RoomOf("stopping/lab/training/training.h"), "stopping/lab/training");
 }

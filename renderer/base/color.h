@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/base/math.h"
-#include "stopping/base/luminance.h"
+#include "stopping/base/block_view.h"
 
 namespace lull {
 

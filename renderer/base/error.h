@@ -1,13 +1,19 @@
 // Errors of a scene with their locations, and counted warnings.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace lull {
@@ -123,5 +129,39 @@ class Warnings {
     std::vector<Error> errors;         // the first
     size_t moreErrors = 0;
 };
+
+// Prints messages to stderr: progress, warnings, summaries.
+
+// Prints to the stream. Where that cannot be written any more, as its terminal is closed or its
+// disk is full, nothing is printed, and the work continues.
+template <typename... Args>
+void SayTo(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
+    try {
+        fmt::print(stream, format, std::forward<Args>(args)...);
+    } catch (const std::system_error&) {
+    }
+}
+
+// Prints to stderr.
+template <typename... Args>
+void Say(fmt::format_string<Args...> format, Args&&... args) {
+    SayTo(stderr, format, std::forward<Args>(args)...);
+}
+
+// Reads text in UTF-8 (RFC 3629), of which not all bytes need be that.
+
+// Returns whether a byte of UTF-8 is not the first of its character.
+constexpr bool IsWithinCharacter(char byte) {
+    return (static_cast<unsigned char>(byte) & 0xc0) == 0x80;
+}
+
+// Returns the bytes, 1 to 4, of the character that a text begins with; 0 if it begins with none.
+size_t CharacterBytes(std::string_view text);
+
+// Returns the text with U+FFFD in place of NUL, and of each byte that belongs to no character.
+std::string ToUtf8(std::string_view text);
+
+// Returns the beginning of a text in UTF-8, of up to `most` bytes, without part of a character.
+std::string BeginningOf(const std::string& text, size_t most);
 
 }  // namespace lull

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <limits>
 #include <new>
@@ -122,5 +123,13 @@ LazyZeros::LazyZeros(size_t bytes) {
 }
 
 void LazyZeros::Unmap::operator()(void* p) const { munmap(p, bytes); }
+
+void ForgetValues(std::span<const std::byte> values) {
+    const uintptr_t page = uintptr_t(sysconf(_SC_PAGESIZE));
+    const uintptr_t first = reinterpret_cast<uintptr_t>(values.data());
+    const uintptr_t begin = (first + page - 1) / page * page,
+                    end = (first + values.size()) / page * page;
+    if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+}
 
 }  // namespace lull

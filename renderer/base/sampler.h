@@ -7,8 +7,8 @@
 #include <bit>
 #include <cstdint>
 
-#include "renderer/base/enum_names.h"
 #include "renderer/base/math.h"
+#include "renderer/base/variant.h"
 
 namespace lull {
 

@@ -1,5 +1,7 @@
 #include "renderer/bsdf/bsdf.h"
 
+#include "renderer/bsdf/lobe_albedo_internal.h"
+
 namespace lull {
 namespace {
 
@@ -235,6 +237,16 @@ std::optional<BsdfSample> Bsdf::SampleHere(const Vec3f& wo, const Vec3f& woWorld
                 return BsdfSample{value.f, value.pdf, wiWorld, false, L::kTransmits};
             }
         });
+}
+
+Rgb AlbedoOf(const Bsdf& bsdf, const Vec3f& woWorld) {
+    const Vec3f wo = bsdf.FrameTowards(woWorld).ToLocal(woWorld);
+    Rgb sum = Rgb::Zero();
+    if (wo.z() == 0) return sum;
+    for (int i = 0; i < bsdf.LobeCount(LobeSet::All); ++i)
+        sum += VisitLobe(bsdf.At(i), [&](const auto& lobe) { return Albedo(lobe, wo, ToColor{}); });
+    for (float& c : sum) c = c > 0 ? std::min(c, 1.f) : 0;
+    return sum;
 }
 
 }  // namespace lull

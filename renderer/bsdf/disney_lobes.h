@@ -2,7 +2,7 @@
 // lobes.h for the interface.
 #pragma once
 
-#include "renderer/bsdf/microfacet_lobes.h"
+#include "renderer/bsdf/microfacet.h"
 
 namespace lull {
 

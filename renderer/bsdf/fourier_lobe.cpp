@@ -1,6 +1,6 @@
 #include "renderer/bsdf/fourier_lobe.h"
 
-#include "renderer/base/spline.h"
+#include "renderer/base/sampling.h"
 
 namespace lull {
 namespace {

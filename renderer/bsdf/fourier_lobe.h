@@ -5,7 +5,7 @@
 #include <bit>
 #include <vector>
 
-#include "renderer/bsdf/lobe_basics.h"
+#include "renderer/bsdf/microfacet.h"
 
 namespace lull {
 

@@ -2,7 +2,7 @@
 // pbrt-v3 has it). See lobes.h for the interface.
 #pragma once
 
-#include "renderer/bsdf/lobe_basics.h"
+#include "renderer/bsdf/microfacet.h"
 
 namespace lull {
 

@@ -3,8 +3,8 @@
 // _clearcoat.) See lobes.h for the interface.
 #pragma once
 
-#include "renderer/bsdf/ggx_albedo.h"
-#include "renderer/bsdf/lobe_basics.h"
+#include "renderer/bsdf/directional_albedo.h"
+#include "renderer/bsdf/microfacet.h"
 
 namespace lull {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "renderer/base/color.h"
+#include "renderer/bsdf/directional_albedo.h"
 #include "renderer/bsdf/lobes.h"
-#include "renderer/bsdf/sheen_albedo.h"
 
 namespace lull {
 

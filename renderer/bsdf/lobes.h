@@ -15,15 +15,14 @@
 
 #include <variant>
 
-#include "renderer/base/visit.h"
+#include "renderer/base/variant.h"
 #include "renderer/bsdf/disney_lobes.h"
 #include "renderer/bsdf/fourier_lobe.h"
 #include "renderer/bsdf/hair_lobe.h"
 #include "renderer/bsdf/layered_lobes.h"
-#include "renderer/bsdf/lobe_basics.h"
-#include "renderer/bsdf/microfacet_lobes.h"
+#include "renderer/bsdf/microfacet.h"
 #include "renderer/bsdf/sheen_lobe.h"
-#include "renderer/bsdf/subsurface_lobe.h"
+#include "renderer/bsdf/subsurface.h"
 
 namespace lull {
 

@@ -2,7 +2,7 @@
 // interface.
 #pragma once
 
-#include "renderer/bsdf/lobe_basics.h"
+#include "renderer/bsdf/microfacet.h"
 
 namespace lull {
 

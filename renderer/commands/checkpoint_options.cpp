@@ -1,7 +1,11 @@
 #include "renderer/commands/checkpoint_options.h"
 
+#include <signal.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cstring>
 #include <fstream>
@@ -9,7 +13,6 @@
 
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/option_values.h"
 #include "renderer/files/file_io.h"
 #include "stopping/base/input_file.h"
 
@@ -83,5 +86,32 @@ std::string HowToGoOn(const CheckpointOptions& checkpoint) {
     }
     return "to resume: " + command + (resumes ? "" : " --resume");
 }
+
+namespace {
+
+// The one global variable: a signal handler can reach nothing else. Lock-free, hence safe in a
+// handler, and visible to all threads, as a plain sig_atomic_t would not be.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void OnSignal(int signal) {
+    if (interrupted.exchange(true) && signal != SIGHUP) _exit(130);
+}
+
+}  // namespace
+
+void CatchInterrupts() {
+    struct sigaction action = {};
+    action.sa_handler = OnSignal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    struct sigaction before = {};
+    sigaction(SIGHUP, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+}
+
+bool Interrupted() { return interrupted.load(std::memory_order_relaxed); }
 
 }  // namespace lull

@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "renderer/files/file_lock.h"
+#include "renderer/files/outputs.h"
 #include "renderer/render/session.h"
 
 namespace lull {
@@ -27,5 +27,13 @@ void CheckCheckpoint(const CheckpointOptions&);
 
 // Returns how to continue a render that has ended early: by which command, if it has a checkpoint.
 std::string HowToGoOn(const CheckpointOptions&);
+
+// Lets a render end early but in order.
+
+// From now on the first SIGINT, SIGTERM or SIGHUP makes Interrupted() true, and a second one ends
+// the program at once with exit code 130; not so a second SIGHUP, as a terminal that is closed
+// sends several. Where SIGHUP is ignored, as by nohup, it stays so.
+void CatchInterrupts();
+bool Interrupted();
 
 }  // namespace lull

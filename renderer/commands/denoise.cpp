@@ -10,13 +10,11 @@
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/denoising.h"
-#include "renderer/commands/option_values.h"
 #include "renderer/denoise/dependence.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/channel_names.h"
-#include "renderer/results/denoiser_channels.h"
-#include "renderer/results/exr_windows.h"
+#include "renderer/results/denoised_image.h"
 #include "renderer/results/image_files.h"
 
 namespace lull::denoise {

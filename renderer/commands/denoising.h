@@ -1,10 +1,16 @@
 // The remaining error of denoised images, and messages of the commands that denoise.
 #pragma once
 
-#include "renderer/commands/talk.h"
-#include "renderer/progress/step_printer.h"
+#include <string>
+#include <vector>
+
+#include "renderer/commands/command.h"
+#include "renderer/denoise/lightness_error.h"
+#include "renderer/image/grade.h"
+#include "renderer/progress/progress.h"
 #include "renderer/render/render.h"
 #include "renderer/results/denoised_image.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -30,5 +36,17 @@ int RemoveUnknownErrors(const RenderResult&, const PixelRect& region, DenoisedIm
 
 // Prints how long denoising took and how clean the picture is, unless `quiet`.
 void PrintDenoised(const DenoisedImage&, double seconds, bool quiet, const Talk& = {});
+
+// Shows the denoiser and the rules a render as graded pictures do.
+
+// Returns the grades for the denoiser.
+std::vector<Grading> GradingsOf(const std::vector<Grade>&);
+
+// Returns them in words, with semicolons between them.
+std::string NamesOf(const std::vector<Grade>&);
+
+// Returns the maker of criteria that see blocks as the grades show them, unless the rule sees to
+// that itself, or only counts.
+CriterionMaker MakeGradedCriteria(const Rule&, const std::vector<Grade>&);
 
 }  // namespace lull

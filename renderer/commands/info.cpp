@@ -9,11 +9,11 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/scene_options.h"
-#include "renderer/files/file_contents.h"
+#include "renderer/files/file_io.h"
 #include "renderer/progress/progress.h"
 #include "renderer/results/report.h"
-#include "renderer/scene/scene_names.h"
-#include "renderer/scene/slabs.h"
+#include "renderer/scene/compile.h"
+#include "renderer/scene/light_groups.h"
 
 namespace lull::info {
 

@@ -7,8 +7,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/option_values.h"
-#include "renderer/scene/scene_names.h"
+#include "renderer/scene/light_groups.h"
 
 namespace lull {
 namespace {

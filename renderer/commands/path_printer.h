@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "renderer/commands/render_settings.h"
-#include "renderer/transport/path_log.h"
+#include "renderer/transport/integrator.h"
 
 namespace lull {
 

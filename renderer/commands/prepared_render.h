@@ -1,7 +1,7 @@
 // A render of `lull render` that is ready to begin.
 #pragma once
 
-#include "renderer/commands/grading.h"
+#include "renderer/commands/denoising.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/commands/render_options.h"
@@ -30,5 +30,14 @@ struct PreparedRender {
 // Reads the scene and the rule, and names the files. Throws Error, or UsageError, for all that can
 // be wrong before the work begins.
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks);
+
+// Frames of `lull render --frames --resume` whose files are there.
+
+// Returns all that decides the files of a frame, by which --resume knows it; a line each.
+std::string SettingsOf(const PreparedRender&);
+
+// Returns whether all files of a frame are there, whole. Throws Error where they are of another
+// render.
+bool IsFinished(const PreparedRender&);
 
 }  // namespace lull::render

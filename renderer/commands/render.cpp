@@ -5,13 +5,13 @@
 
 #include "renderer/base/clocks.h"
 #include "renderer/commands/denoising.h"
-#include "renderer/commands/finished_frame.h"
+#include "renderer/commands/prepared_render.h"
 #include "renderer/commands/render_talk.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
-#include "renderer/results/denoiser_channels.h"
+#include "renderer/results/denoised_image.h"
 #include "stopping/base/input_file.h"
-#include "stopping/rules/denoised.h"
+#include "stopping/rules/lnoise.h"
 
 namespace lull::render {
 

@@ -4,14 +4,12 @@
 #include <filesystem>
 #include <initializer_list>
 
-#include "renderer/files/file_contents.h"
 #include "renderer/files/file_io.h"
 #include "renderer/image/image_io.h"
 #include "renderer/pages/html_page.h"
 #include "renderer/render/provenance.h"
-#include "renderer/results/block_files.h"
 #include "renderer/results/report.h"
-#include "renderer/scene/scene_names.h"
+#include "renderer/scene/light_groups.h"
 
 namespace lull {
 
@@ -102,6 +100,26 @@ ResultFiles WriteFiles(const RenderFiles& files, const FinishedRender& render) {
         results.WriteText(files.report, MakeReport(provenance, result, film.RejectedCount(),
                                                    render.warnings.Counts(), render.denoised));
     return results;
+}
+
+std::vector<NamedFile> InputsOf(const SceneOptions& options, const Description& description) {
+    std::vector<NamedFile> inputs = {{"the scene", options.file},
+                                     {"--environment", options.environment}};
+    for (const std::string& file : FilesOf(description))
+        inputs.push_back({"a file of the scene", file});
+    return inputs;
+}
+
+void AddFileOfRule(const std::string& rule, std::vector<NamedFile>* inputs) {
+    const size_t colon = rule.find(':');
+    if (colon == std::string::npos) return;
+    const std::string rest = rule.substr(colon + 1);
+    // A name may follow the file's, whose own may have colons.
+    for (const std::string& file : {rest, rest.substr(0, rest.rfind(':'))}) {
+        std::error_code error;
+        if (std::filesystem::is_regular_file(file, error))
+            return inputs->push_back({"the file of the rule,", file});
+    }
 }
 
 }  // namespace lull

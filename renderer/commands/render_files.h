@@ -1,6 +1,9 @@
 // Writes the files of a render.
 #pragma once
 
+#include <vector>
+
+#include "renderer/commands/scene_options.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/block_monitor.h"
 #include "renderer/results/image_files.h"
@@ -48,5 +51,14 @@ struct FinishedRender {
 // Writes all files, each whole or not at all; a report whose name ends in .html as a page. Those of
 // an earlier render that this one has none of are removed.
 ResultFiles WriteFiles(const RenderFiles&, const FinishedRender&);
+
+// Names the files that a command reads, so that its results do not replace them.
+
+// Returns the files of a scene that has been read, with the one that --environment names; for
+// CheckOutputs().
+std::vector<NamedFile> InputsOf(const SceneOptions&, const Description&);
+
+// Adds the file that a stopping rule names, "learned:M.h5" or "thresholds:F.csv:NAME", if it does.
+void AddFileOfRule(const std::string& rule, std::vector<NamedFile>* inputs);
 
 }  // namespace lull

@@ -6,11 +6,10 @@
 #include <filesystem>
 
 #include "renderer/commands/checkpoint_options.h"
-#include "renderer/commands/input_files.h"
-#include "renderer/commands/interrupt.h"
+#include "renderer/commands/render_files.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/mpi/job.h"
-#include "stopping/rules/denoised.h"
+#include "stopping/rules/lnoise.h"
 
 namespace lull {
 

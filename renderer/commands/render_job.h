@@ -15,7 +15,6 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/files/file_lock.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/block_denoiser.h"
 

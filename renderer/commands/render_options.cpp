@@ -6,11 +6,10 @@
 #include <algorithm>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/layer_options.h"
-#include "renderer/commands/option_values.h"
+#include "renderer/commands/output_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/render/film_picture.h"
-#include "stopping/rules/denoised.h"
+#include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull::render {

@@ -1,11 +1,10 @@
 // Options of `lull render`.
 #pragma once
 
-#include "renderer/commands/clock_options.h"
+#include "renderer/commands/output_options.h"
 #include "renderer/commands/path_printer.h"
-#include "renderer/commands/picture_options.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/commands/sequence_options.h"
+#include "renderer/commands/time_options.h"
 
 namespace lull::render {
 

@@ -6,8 +6,7 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/option_values.h"
-#include "stopping/rules/denoised.h"
+#include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

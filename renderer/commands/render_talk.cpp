@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/base/say.h"
+#include "renderer/base/error.h"
 #include "renderer/progress/progress.h"
 #include "renderer/render/shortfall.h"
 #include "renderer/results/report.h"

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "renderer/commands/clock_options.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/files/result_files.h"
+#include "renderer/commands/time_options.h"
+#include "renderer/files/outputs.h"
 #include "renderer/render/provenance.h"
 
 namespace lull {

@@ -6,9 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
-#include "renderer/base/say.h"
+#include "renderer/base/error.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/option_values.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
 #include "renderer/render/provenance.h"

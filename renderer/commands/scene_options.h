@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 
-#include "renderer/commands/talk.h"
+#include "renderer/commands/command.h"
 #include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
 #include "renderer/scene/compile.h"

@@ -7,8 +7,8 @@
 #pragma once
 
 #include "renderer/denoise/feature_filter.h"
-#include "renderer/denoise/filter_colours.h"
 #include "renderer/denoise/fireflies.h"
+#include "renderer/denoise/planes.h"
 
 namespace lull {
 
@@ -46,5 +46,16 @@ void ForgetFireflies(const std::vector<Firefly>&, const Halves& without, Planes*
 // negative count as 0. The same bits for any number of threads. Takes some 7.5 us of
 // CPU time a pixel, or 5.5 if it is quick.
 DenoisedPicture Denoise(NoisyPicture, Effort = Effort::Full, const ShareListener& = {});
+
+// Shows pictures at half of their size, where noise is less and neighbourhoods are wider.
+
+// Returns the means of 2 x 2 pixels each; at an odd border, of those that are there.
+Planes Halved(const Planes&);
+
+// Returns an image of this size, half of which, rounded up, the given one has.
+Planes Doubled(const Planes&, int width, int height);
+
+// Returns `fine` with its coarse part, Halved(fine), replaced by `coarse`.
+Planes WithCoarsePart(Planes fine, const Planes& coarse);
 
 }  // namespace lull

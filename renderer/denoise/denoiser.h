@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "renderer/denoise/grading.h"
+#include "renderer/denoise/lightness_error.h"
 #include "renderer/denoise/visible_error.h"
 
 namespace lull {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "renderer/denoise/patch_weights.h"
 #include "renderer/denoise/planes.h"
 
 namespace lull {
@@ -27,5 +28,22 @@ std::vector<Firefly> TakeFireflies(float limit, Halves*);
 // as many more. Returns the standard deviation of what they brought, in luminance and at most that
 // of the pixel, with that of what was not added: one event says as little of how many there are.
 Planes GiveBack(const std::vector<Firefly>&, Planes* picture);
+
+// Keeps fits from overshooting.
+
+// The least and the largest values that samples allow.
+struct SampleRange {
+    Planes least, most;
+
+    void Clamp(Planes* picture) const;
+};
+
+// Returns, for the pixels of a tile within the image and channel by channel, the least sample of
+// the 5 x 5 pixels around and the largest of the 15 x 15 pixels around. The latter are as many as a
+// fit has: where few pixels have most of the light, those between them must be able to get it.
+SampleRange RangeOfSamples(const Planes& noisy, const ImageTile&);
+
+// Clamps each pixel of a picture as large as `noisy` to that range, tile by tile on all threads.
+void ClampToSamples(const Planes& noisy, Planes* picture);
 
 }  // namespace lull

@@ -1,9 +1,13 @@
 // Estimates the error in lightness of a denoised picture from the halves of its samples.
 #pragma once
 
-#include "renderer/base/pixel_rect.h"
+#include <functional>
+#include <span>
+
+#include "renderer/base/math.h"
 #include "renderer/denoise/denoise.h"
-#include "renderer/denoise/tile.h"
+#include "renderer/denoise/patch_weights.h"
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 
@@ -11,7 +15,7 @@ namespace lull {
 // as a display shows it.
 struct EstimatedError {
     Planes lightness;  // of the picture
-    Planes squared;    // an estimate of it without bias (see candidates.h), and very noisy
+    Planes squared;    // an estimate of it without bias (see regression.h), and very noisy
     Planes deviation;  // the standard deviation of that noise
     Planes least;      // half the difference of the denoised halves: the part that still changes
     Planes structure;  // structure of the samples that the picture lacks (structure.h); not squared
@@ -45,5 +49,24 @@ DenoisedPicture Crop(const DenoisedPicture&, const ImageTile&);
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,
 // with that of missing structure (EstimatedError::structure) and of fireflies.
 Planes StandardError(const DenoisedPicture&, const Planes& structure);
+
+// Lightness of linear luminances as a display shows them.
+
+// Returns the lightness L, in [0, 100], of the displayed value of a luminance, and its derivative
+// by luminance, which is 0 above white.
+inline LightnessSlope<float> DisplayedLightness(float y) {
+    return y < 1 ? LightnessAt(y) : LightnessSlope<float>{100, 0};
+}
+
+// Shows denoised pictures as they are graded.
+
+// Replaces linear R, G, B of pixels by those that a display shows, from any thread; null: they
+// stay.
+using Grading = std::function<void(std::span<float> rgb)>;
+
+// Returns the picture as it is shown. Its halves and their samples differ from it by noise, which
+// is scaled by the derivative of the grading there, so that estimates without bias have none after
+// it.
+DenoisedPicture Graded(const DenoisedPicture&, const Grading&);
 
 }  // namespace lull

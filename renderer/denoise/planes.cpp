@@ -14,7 +14,7 @@ void ForEachRows(const Planes& image, const Use& use) {
     constexpr int kRows = 32;
     constexpr size_t kLarge = size_t(1) << 17;
     if (image.Area() < kLarge) return use(0, image.height);
-    // As in tile.h, a thread that waits here takes up no other task of a render.
+    // As in patch_weights.h, a thread that waits here takes up no other task of a render.
     tbb::this_task_arena::isolate([&] {
         ForEachIndex((image.height + kRows - 1) / kRows,
                      [&](int i) { use(i * kRows, std::min(image.height, (i + 1) * kRows)); });

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "renderer/base/color.h"
-#include "renderer/base/zero_values.h"
+#include "renderer/base/memory.h"
 
 namespace lull {
 

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <span>
 
-#include "renderer/denoise/displayed_lightness.h"
-#include "renderer/denoise/sample_range.h"
-#include "renderer/denoise/tile.h"
+#include "renderer/denoise/fireflies.h"
+#include "renderer/denoise/lightness_error.h"
+#include "renderer/denoise/patch_weights.h"
 
 namespace lull {
 

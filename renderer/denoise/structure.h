@@ -16,7 +16,7 @@ inline constexpr int kStructureReach = 10;  // pixels, from which what is found 
 
 // Adds to the middle of each square, line and bar the mean of its residual where that is structure,
 // round by round. Each half gets the mean of its own samples, and stays within their range
-// (sample_range.h). `variance` is of a pixel of either half. The same bits for any number of
+// (fireflies.h). `variance` is of a pixel of either half. The same bits for any number of
 // threads.
 void RestoreStructure(const Halves& noisy, const Planes& variance, Halves* picture);
 

@@ -9,8 +9,8 @@
 
 #include "renderer/denoise/denoiser.h"
 #include "renderer/denoise/dependence.h"
-#include "renderer/embedding/require.h"
-#include "stopping/signals/picture_values.h"
+#include "renderer/embedding/picture.h"
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 

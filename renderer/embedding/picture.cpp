@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "renderer/embedding/require.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

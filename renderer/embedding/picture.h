@@ -1,10 +1,12 @@
 // Reads the pixels that other programs show.
 #pragma once
 
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "lull/lull.h"
-#include "stopping/signals/picture_values.h"
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 
@@ -33,5 +35,38 @@ bool HasFourthChannel(const lull_picture& picture);
 // Counts the values of a part of a picture that begins at `origin`. None of 8-bit codes, all of
 // which are possible.
 PictureValues ValuesOf(const lull_picture& picture, const void* origin, const lull_rect& part);
+
+// Notices pictures of a block that lie too far apart for rules that compare them: these then look
+// at none, and never stop the block.
+
+class PictureSpacing {
+  public:
+    // Returns the samples of the last three pictures, "64, 128 and 256", if the third has come when
+    // it was asked for, could still not be checked, and each has 1.6 times the samples of the one
+    // before or more; "" otherwise.
+    std::string Note(const lull_answer& answer) {
+        constexpr double kFar = 1.6;
+        const bool isFar = before > 0 && last >= kFar * before && answer.spp >= kFar * last;
+        const bool isMissed = !answer.stop && !answer.checked && answer.spp >= awaited;
+        const std::string pictures = std::to_string(before) + ", " + std::to_string(last) +
+                                     " and " + std::to_string(answer.spp);
+        before = last;
+        last = answer.spp;
+        awaited = answer.next_spp;
+        return isFar && isMissed ? pictures : "";
+    }
+
+  private:
+    int before = 0, last = 0;  // spp
+    int awaited = 0;
+};
+
+// Refuses what callers of the C interface hand over.
+
+inline constexpr int kLargestSide = 1 << 16;  // pixels of a picture
+
+inline void Require(bool holds, const std::string& message) {
+    if (!holds) throw std::invalid_argument(message);
+}
 
 }  // namespace lull

@@ -1,18 +1,19 @@
 #include "renderer/embedding/stopper.h"
 
+#include <dlfcn.h>
 #include <tbb/task_arena.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "renderer/embedding/model_folder.h"
 #include "renderer/embedding/picture.h"
-#include "renderer/embedding/require.h"
 #include "stopping/base/parallel.h"
 #include "stopping/base/state.h"
 #include "stopping/rules/lnoise.h"
@@ -297,6 +298,19 @@ void Stopper::Restore(std::span<const std::byte> state) {
     reader.Finish();
     const auto all = LockAll();
     states = std::move(restored);
+}
+
+std::string InstalledModels() {
+    const char* set = std::getenv("LULL_MODELS");
+    if (set && *set) return set;
+    Dl_info library;
+    if (!dladdr(reinterpret_cast<const void*>(&InstalledModels), &library) || !library.dli_fname)
+        return LULL_MODELS_FROM_LIBRARY;
+    // Links to the library may lie elsewhere.
+    std::error_code ignored;
+    std::filesystem::path file = std::filesystem::canonical(library.dli_fname, ignored);
+    if (ignored) file = library.dli_fname;
+    return (file.parent_path() / LULL_MODELS_FROM_LIBRARY).lexically_normal().string();
 }
 
 }  // namespace lull

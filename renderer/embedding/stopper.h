@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "lull/lull.h"
-#include "renderer/embedding/picture_spacing.h"
-#include "stopping/rules/block_grid.h"
+#include "renderer/embedding/picture.h"
 #include "stopping/rules/rule.h"
-#include "stopping/signals/picture_values.h"
+#include "stopping/rules/thresholds.h"
+#include "stopping/signals/lightness.h"
 
 namespace lull {
 
@@ -68,5 +68,11 @@ class Stopper {
     std::string spacingWarning, channelWarning;
     mutable std::string warning;  // as it was last handed out
 };
+
+// Finds the installed models from within a library that may have been moved.
+
+// Returns the folder of installed models: $LULL_MODELS if that is set and not empty, else the one
+// relative to this library as installed.
+std::string InstalledModels();
 
 }  // namespace lull

@@ -9,7 +9,16 @@
 #include <string_view>
 #include <vector>
 
+#include "renderer/base/error.h"
+#include "stopping/base/input_file.h"
+
 namespace lull {
+
+// Names of open files.
+
+// Returns whether the name is still of the open file: an earlier holder of its lock may have
+// removed or renamed it.
+bool IsNamed(int fd, const std::string& name);
 
 // Replaces the file at `path` by `bytes` atomically: they are written to a new file in its folder,
 // synced to disk and renamed, so that an interrupted or failed write leaves the old file unchanged.
@@ -38,5 +47,27 @@ class AtomicFile {
 // Throws Error if WriteFileAtomically(path, ...) could not create its file now: the directory is
 // missing or takes no new files, or `path` is itself a directory. For use before a long render.
 void CheckWritable(const std::string& path);
+
+// Reads files whole.
+
+struct FileContents {
+    std::unique_ptr<char[]> bytes;
+    size_t size = 0;
+
+    std::string_view View() const { return {bytes.get(), size}; }
+};
+
+// Reads the regular file `path` in one go. Throws Error, beginning with `loc` (the place that names
+// the file), if it is missing, a directory, or cannot be read.
+FileContents ReadFile(const std::string& path, const FileLoc& loc = {});
+
+// Cleans texts of what editors and old programs put around them.
+
+// Returns the text without UTF-8's byte-order mark. Throws Error at `loc` for UTF-16 and UTF-32,
+// with or without theirs.
+std::string_view WithoutByteOrderMark(std::string_view text, const FileLoc& loc);
+
+// Does so, and leaves out Control-Z and NUL at the end, by which old programs mark it.
+std::string_view CleanText(std::string_view text, const FileLoc& loc);
 
 }  // namespace lull

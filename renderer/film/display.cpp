@@ -10,9 +10,8 @@
 
 #include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
-#include "renderer/film/display/connection.h"
 #include "renderer/film/display/snapshot.h"
-#include "renderer/film/display/tev_messages.h"
+#include "renderer/film/display/tev.h"
 
 namespace lull {
 

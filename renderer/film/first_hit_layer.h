@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 
-#include "renderer/film/film_pixel.h"
+#include "renderer/base/color.h"
 #include "renderer/film/layer.h"
+#include "renderer/film/pixel_plane.h"
 
 namespace lull {
 
@@ -129,6 +131,89 @@ class FirstHitLayer {
     std::optional<PixelPlane<SurfaceSums>> surface;
     std::optional<PixelPlane<PlaceSums>> place;
     std::optional<PixelPlane<NearestHit>> nearest;
+};
+
+// Sums up the light of surfaces that are seen directly, of which the denoiser leaves small ones as
+// they are.
+
+// The sums of a pixel, R, G, B, of the samples that are in the half (InHalf()), and of the others.
+struct EmissionSums {
+    std::array<std::array<float, 3>, 2> halves = {};
+
+    bool operator==(const EmissionSums&) const = default;
+};
+
+class EmissionLayer {
+  public:
+    // Groups of lights are denoised one by one, each with its lamps.
+    static bool IsWanted(const LayerOptions& o) { return o.features && o.groups.Count() == 0; }
+    static int64_t Bytes(const LayerOptions&) { return int64_t(sizeof(EmissionSums)); }
+    static int Channels(const LayerOptions&) { return 0; }
+    EmissionLayer(const PixelRect& region, const LayerOptions&) : plane(region) {}
+
+    static bool NeedsFirstHits(const LayerOptions&) { return true; }
+    void Add(const Vec2i& p, const PathSample& sample) {
+        const Rgb& emission = sample.hit.emission;
+        if (IsBlack(emission)) return;
+        std::array<float, 3>& sum = plane.At(p).halves[InHalf(sample.index) ? 0 : 1];
+        for (size_t c = 0; c < 3; ++c) sum[c] += emission[int(c)];
+    }
+    static std::string Identity(const LayerOptions&) { return ""; }
+    template <typename Self, typename Visit>
+    static void ForEachPlane(Self& self, const Visit& visit) {
+        visit("lamps for the denoiser", self.plane);
+    }
+
+    const EmissionSums& At(const Vec2i& p) const { return plane.At(p); }
+
+  private:
+    // Few pixels show lamps: the others take no memory.
+    PixelPlane<EmissionSums, ZeroAllocator<EmissionSums>> plane;
+};
+
+// Sums up the squares of the samples' luminance, which tell the noise of pixels.
+
+class SquareLayer {
+  public:
+    static bool IsWanted(const LayerOptions& o) { return o.features || o.aovs.noise; }
+    static int64_t Bytes(const LayerOptions& o) {
+        return int64_t(o.features ? sizeof(float) : sizeof(double));
+    }
+    static int Channels(const LayerOptions& o) { return o.aovs.noise ? 2 : 0; }
+    // The denoiser, which has little use for the rest of a double, halves the memory.
+    SquareLayer(const PixelRect& region, const LayerOptions& o)
+        : plane(o.features ? Plane(PixelPlane<float>(region)) : Plane(PixelPlane<double>(region))) {
+    }
+
+    static bool NeedsFirstHits(const LayerOptions&) { return false; }
+    void Add(const Vec2i& p, const PathSample& sample) {
+        if (auto* floats = std::get_if<PixelPlane<float>>(&plane))
+            floats->At(p) += Sqr(Luminance(sample.radiance));
+        else
+            std::get<PixelPlane<double>>(plane).At(p) += Sqr(double(Luminance(sample.radiance)));
+    }
+    void AddSplats(const Vec2i& p, const PixelSplats& splats) {
+        std::visit(
+            [&](auto& sums) {
+                auto& sum = sums.At(p);
+                sum += std::remove_reference_t<decltype(sum)>(splats.all.Squares());
+            },
+            plane);
+    }
+    static std::string Identity(const LayerOptions&) { return ""; }
+    template <typename Self, typename Visit>
+    static void ForEachPlane(Self& self, const Visit& visit) {
+        const char* name = self.plane.index() == 0 ? "noise for the denoiser" : "noise";
+        std::visit([&](auto& sums) { visit(name, sums); }, self.plane);
+    }
+
+    double At(const Vec2i& p) const {
+        return std::visit([&](const auto& sums) { return double(sums.At(p)); }, plane);
+    }
+
+  private:
+    using Plane = std::variant<PixelPlane<float>, PixelPlane<double>>;
+    Plane plane;
 };
 
 }  // namespace lull

@@ -22,12 +22,10 @@
 // are resolved at compile time; those that are not wanted cost a comparison a sample.
 #pragma once
 
-#include "renderer/base/optional_kinds.h"
-#include "renderer/film/emission_layer.h"
+#include "renderer/base/variant.h"
 #include "renderer/film/first_hit_layer.h"
 #include "renderer/film/light_group_layer.h"
 #include "renderer/film/matte_layer.h"
-#include "renderer/film/square_layer.h"
 
 namespace lull {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "renderer/base/color.h"
-#include "renderer/film/film_pixel.h"
 #include "renderer/film/layer.h"
+#include "renderer/film/pixel_plane.h"
 
 namespace lull {
 

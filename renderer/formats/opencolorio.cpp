@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "renderer/formats/view_transform.h"
+#include "renderer/formats/formats.h"
 
 namespace {
 

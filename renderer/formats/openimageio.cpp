@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "renderer/formats/image_file.h"
+#include "renderer/formats/formats.h"
 
 namespace {
 

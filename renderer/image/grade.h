@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "renderer/base/enum_names.h"
-#include "renderer/formats/view_transform.h"
+#include "renderer/base/variant.h"
+#include "renderer/formats/formats.h"
 
 namespace lull {
 

@@ -9,11 +9,11 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
-#include "renderer/files/file_contents.h"
+#include "renderer/files/file_io.h"
 #include "renderer/image/files/exr_file.h"
+#include "renderer/image/files/exr_header.h"
 #include "renderer/image/files/other_formats.h"
 #include "renderer/image/files/png_file.h"
-#include "renderer/image/files/primaries.h"
 
 namespace lull {
 

@@ -1,8 +1,9 @@
 #include "renderer/input/description.h"
-#include "stopping/base/input_file.h"
 
 #include <filesystem>
 #include <utility>
+
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {

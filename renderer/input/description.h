@@ -4,17 +4,30 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "renderer/base/enum_names.h"
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
+#include "renderer/base/variant.h"
 
 namespace lull {
+
+// A triangle mesh as a file or a subdivision gives it.
+
+// Normals need not have unit length: as in pbrt-v3 their lengths weigh in interpolation, and a
+// zero normal stands for the triangle's own.
+struct MeshData {
+    std::vector<Vec3f> positions;
+    std::vector<Vec3f> normals;                      // none or one per position
+    std::vector<Vec2f> uvs;                          // none or one per position
+    std::vector<std::array<uint32_t, 3>> triangles;  // into positions
+    std::vector<int> faceIndices;                    // none or one per triangle
+};
 
 // Refers to a texture by its index in Description::textures, as its name was bound when the
 // parameter was read (pbrt-v3 keeps float and spectrum textures in separate name spaces).

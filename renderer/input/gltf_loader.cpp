@@ -12,12 +12,8 @@
 #include "renderer/input/gltf/lights.h"
 #include "renderer/input/gltf/materials.h"
 #include "renderer/input/gltf/nodes.h"
-#include "renderer/input/gltf/parameters.h"
 #include "renderer/input/gltf/primitives.h"
-#include "renderer/input/gltf/skins.h"
 #include "renderer/input/gltf/uri.h"
-#include "renderer/input/gltf/variants.h"
-#include "renderer/input/gltf/visibility.h"
 
 namespace lull {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/base/error.h"
-#include "renderer/files/file_contents.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 

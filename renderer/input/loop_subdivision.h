@@ -4,7 +4,7 @@
 #include <span>
 
 #include "renderer/base/error.h"
-#include "renderer/input/mesh_data.h"
+#include "renderer/input/description.h"
 
 namespace lull {
 

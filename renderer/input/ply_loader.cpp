@@ -1,5 +1,5 @@
 #include "renderer/input/ply_loader.h"
-#include "renderer/base/rounding.h"
+#include "renderer/base/math.h"
 
 #include <fmt/format.h>
 
@@ -12,12 +12,11 @@
 #include <unordered_set>
 #include <utility>
 
-#include "renderer/files/text_file.h"
+#include "renderer/files/file_io.h"
 #include "renderer/input/inflate.h"
-#include "renderer/input/ply/ply_cursor.h"
 #include "renderer/input/ply/ply_header.h"
 #include "renderer/input/ply/polygon.h"
-#include "stopping/base/text_encoding.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {

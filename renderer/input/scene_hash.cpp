@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "renderer/files/file_contents.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 

@@ -3,9 +3,11 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
+#include "renderer/input/description.h"
 
 namespace lull {
 
@@ -32,5 +34,23 @@ Rgb LoadSpectrum(const std::string& path, const FileLoc& loc = {}, Warnings* war
 // Return pbrt-v3's defaults for metals: copper's index of refraction and absorption as RGB.
 Rgb CopperEta();
 Rgb CopperK();
+
+// Reads text files that are nothing but numbers, such as spectra and lenses.
+
+// Reads numbers that spaces or commas separate, up to '#' in each line. Throws Error, with file and
+// line, for anything else and for numbers that are not finite; `kind` names the file in messages
+// ("spectrum"). `loc` is the place that names the file.
+std::vector<float> ReadNumberFile(const std::string& path, const std::string& kind,
+                                  const FileLoc& loc);
+
+// Reads numbers that have to be at least 0, of which rounding may have left some just below.
+
+// Returns x, and 0 for what rounding a 0 could leave below it (NotNegative()). Other negative
+// numbers and NaN stay as they are.
+float RaisedToZero(float x);
+
+// Returns a parameter so. Throws Error with its place for all that is then no finite number of at
+// least 0.
+float GetNonnegative(const Entity& entity, const std::string& name, float otherwise);
 
 }  // namespace lull

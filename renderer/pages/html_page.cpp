@@ -8,7 +8,6 @@
 #include "renderer/base/color.h"
 #include "renderer/film/spp_map.h"
 #include "renderer/image/image_io.h"
-#include "renderer/pages/embedded.h"
 
 namespace lull {
 

@@ -1,8 +1,10 @@
 // Writes reports for people: one HTML file with everything in it, which opens from disk.
 #pragma once
 
+#include <string_view>
+
 #include "renderer/render/block_monitor.h"
-#include "renderer/results/report_json.h"
+#include "renderer/results/report.h"
 
 namespace lull {
 
@@ -39,5 +41,10 @@ std::string MakeRenderPage(const Provenance&, const RenderResult&, const Film&,
                            const std::vector<BlockHistory>& histories,
                            const std::map<std::string, int>& warnings,
                            const DenoisedImage* denoised);
+
+// Gives access to files that are part of the program (lull_embed() in cmake/EmbedFiles.cmake).
+
+// Returns the text of a file by its name without folder; empty if there is none.
+std::string_view EmbeddedFile(std::string_view name);
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-#include "renderer/python/bindings.h"
+#include "renderer/python/arrays.h"
 
 #include <lull/lull.h>
 #include <pybind11/numpy.h>
@@ -10,9 +10,6 @@
 #include <string>
 #include <tuple>
 #include <vector>
-
-#include "renderer/python/arrays.h"
-#include "renderer/python/check.h"
 
 namespace py = pybind11;
 

@@ -1,4 +1,4 @@
-#include "renderer/python/bindings.h"
+#include "renderer/python/arrays.h"
 
 #include <lull/lull.h>
 #include <pybind11/numpy.h>
@@ -8,9 +8,6 @@
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include "renderer/python/check.h"
-#include "renderer/python/picture.h"
 
 namespace py = pybind11;
 

@@ -12,9 +12,6 @@
 #include <vector>
 
 #include "renderer/python/arrays.h"
-#include "renderer/python/bindings.h"
-#include "renderer/python/check.h"
-#include "renderer/python/picture.h"
 
 namespace py = pybind11;
 

@@ -6,7 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "stopping/rules/criterion.h"
+#include "renderer/image/grade.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 
@@ -65,6 +66,32 @@ class BlockMonitor final : public Criterion {
     std::vector<std::unique_ptr<Criterion>> rules;  // null once they have stopped the block
     MonitorOptions options;
     BlockHistory* history;
+    std::optional<double> networkNoise;
+};
+
+// Judges blocks as graded pictures show them.
+
+// The criterion of a block in a picture that is graded so.
+struct GradedJudge {
+    Grade grade;
+    std::unique_ptr<Criterion> criterion;
+};
+
+// Shows a block to each judge until that has stopped it, and stops it once all have: the picture
+// with the most visible noise counts. The numbers are those of the judge that is farthest from
+// stopping.
+class GradedCriterion final : public Criterion {
+  public:
+    explicit GradedCriterion(std::vector<GradedJudge> judges);
+
+    ViewNeed Need(int spp) const override;
+    Decision Observe(const BlockView&) override;
+    std::optional<double> NetworkNoise() const override { return networkNoise; }
+    std::vector<std::byte> Save() const override;
+    void Restore(std::span<const std::byte> state) override;
+
+  private:
+    std::vector<GradedJudge> judges;  // without a criterion once it has stopped the block
     std::optional<double> networkNoise;
 };
 

@@ -16,7 +16,7 @@
 #include <functional>
 
 #include "renderer/film/film.h"
-#include "renderer/film/splat_plane.h"
+#include "renderer/film/pixel_plane.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/bdpt.h"
 

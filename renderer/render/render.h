@@ -8,8 +8,7 @@
 #include "renderer/progress/progress.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/integrator.h"
-#include "stopping/rules/criterion.h"
-#include "stopping/rules/trend.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 

@@ -34,7 +34,7 @@ struct SessionOptions {
     RenderOptions render;
     Estimator estimator = Estimator::Combined;
     FilmOptions film;  // with the half where there are features
-    // Whether the film gets a first look (first_look.h) before the samples; not on several ranks.
+    // Whether the film gets a first look (film_picture.h) before the samples; not on several ranks.
     bool firstLook = false;
     CheckpointOptions checkpoint;
     // Settings that decide the pixels, for checkpoints and for ranks, which have to agree on them.

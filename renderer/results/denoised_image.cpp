@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "renderer/denoise/scales.h"
+#include "renderer/base/error.h"
+#include "renderer/denoise/denoise.h"
 #include "renderer/denoise/visible_error.h"
 #include "renderer/render/film_picture.h"
+#include "renderer/results/channel_names.h"
 
 namespace lull {
 
@@ -98,6 +100,133 @@ std::vector<ExrChannel> MakeDenoisedChannels(const DenoisedImage& image,
     std::vector<ExrChannel> channels = ColourChannels("noisy.", noisy);
     channels.push_back({"error", image.error});
     return channels;
+}
+
+namespace {
+
+constexpr std::array<const char*, kColours> kColourNames = {"R", "G", "B"};
+constexpr std::array<const char*, kFeatures> kFeatureNames = {
+    "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "disparity"};
+constexpr std::array<const char*, kColours> kEmissionNames = {"emission.R", "emission.G",
+                                                              "emission.B"};
+constexpr const char* kVarianceName = "variance.Y";
+
+Halves MakeHalves(int width, int height, int count) {
+    return {Planes(width, height, count), Planes(width, height, count)};
+}
+
+template <size_t N>
+void AddChannels(const std::string& layer, const Planes& planes,
+                 const std::array<const char*, N>& names, std::vector<ExrChannel>* channels) {
+    for (size_t c = 0; c < N; ++c)
+        channels->push_back(
+            {layer + names[c], {planes.Plane(int(c)), planes.Plane(int(c)) + planes.Area()}});
+}
+
+// The values of channels; null where there are none.
+template <size_t N>
+using FoundChannels = std::array<const float*, N>;
+
+// Returns channels that must be there.
+template <size_t N>
+FoundChannels<N> Channels(const ExrImage& image, const std::string& file, const std::string& layer,
+                          const std::array<const char*, N>& names) {
+    FoundChannels<N> channels;
+    for (size_t c = 0; c < N; ++c) {
+        const ExrChannel* found = image.Find(layer + names[c]);
+        if (!found)
+            throw Error(
+                fmt::format("{}: it has no channel '{}'; `lull render --denoise-layers` writes "
+                            "all that is needed to denoise a picture later, and images of other "
+                            "programs need a second render (--half). Its channels are {}",
+                            file, layer + names[c], ListOfChannels(image)));
+        channels[c] = found->values.data();
+    }
+    return channels;
+}
+
+void Copy(const FoundChannels<kColours>& channels, Planes* to) {
+    for (int c = 0; c < kColours; ++c) std::copy_n(channels[size_t(c)], to->Area(), to->Plane(c));
+}
+
+// Reads the features of an image; the last is converted by `disparityOf`.
+Planes ReadFeatures(
+    const ExrImage& image, const FoundChannels<kFeatures>& a, const FoundChannels<kFeatures>& b,
+    float (*disparityOf)(float) = [](float d) { return d; }) {
+    const size_t width = size_t(image.width);
+    return FilterFeatures(image.width, image.height, [&](int y0, int y1) {
+        Halves rows = MakeHalves(image.width, y1 - y0, kFeatures);
+        const auto copy = [&](const FoundChannels<kFeatures>& from, Planes* to) {
+            for (int f = 0; f < kFeatures; ++f)
+                if (const float* values = from[size_t(f)])
+                    std::copy_n(values + size_t(y0) * width, to->Area(), to->Plane(f));
+            float* disparity = to->Plane(kFeatures - 1);
+            std::transform(disparity, disparity + to->Area(), disparity, disparityOf);
+        };
+        copy(a, &rows.a);
+        copy(b, &rows.b);
+        return rows;
+    });
+}
+
+}  // namespace
+
+std::vector<ExrChannel> MakeHalfChannels(const Film& film, const PixelRect& rect) {
+    std::vector<ExrChannel> channels;
+    const auto add = [&](const Halves& halves, const auto& names) {
+        AddChannels("halfA.", halves.a, names, &channels);
+        AddChannels("halfB.", halves.b, names, &channels);
+    };
+    add(ColoursOf(film, rect), kColourNames);
+    add(FeatureHalvesOf(film, rect), kFeatureNames);
+    if (const Halves emission = EmissionOf(film, rect); emission.a.count > 0)
+        add(emission, kEmissionNames);
+    AddChannels("", VarianceOf(film, rect), std::array{kVarianceName}, &channels);
+    return channels;
+}
+
+NoisyPicture ReadPicture(const ExrImage& image, const std::string& name) {
+    NoisyPicture picture{MakeHalves(image.width, image.height, kColours),
+                         ReadFeatures(image, Channels(image, name, "halfA.", kFeatureNames),
+                                      Channels(image, name, "halfB.", kFeatureNames)),
+                         {},
+                         {}};
+    Copy(Channels(image, name, "halfA.", kColourNames), &picture.colour.a);
+    Copy(Channels(image, name, "halfB.", kColourNames), &picture.colour.b);
+    // Images of former versions have none.
+    if (image.Find("halfA." + std::string(kEmissionNames[0]))) {
+        picture.emission = MakeHalves(image.width, image.height, kColours);
+        Copy(Channels(image, name, "halfA.", kEmissionNames), &picture.emission.a);
+        Copy(Channels(image, name, "halfB.", kEmissionNames), &picture.emission.b);
+    }
+    if (const ExrChannel* variance = image.Find(kVarianceName)) {
+        picture.variance = Planes(image.width, image.height, 1);
+        std::ranges::copy(variance->values, picture.variance.values.begin());
+    }
+    return picture;
+}
+
+NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const ExrImage& b,
+                         const std::string& nameOfB) {
+    if (a.width != b.width || a.height != b.height)
+        throw Error(
+            fmt::format("{} has {}x{} pixels and {} has {}x{}: they are to be of the same "
+                        "picture",
+                        nameOfA, a.width, a.height, nameOfB, b.width, b.height));
+    if (a.origin != b.origin)
+        throw Error(fmt::format("{} and {} show different parts of the picture", nameOfA, nameOfB));
+    NoisyPicture picture{MakeHalves(a.width, a.height, kColours), {}, {}, {}};
+    Copy(Channels(a, nameOfA, "", kColourNames), &picture.colour.a);
+    Copy(Channels(b, nameOfB, "", kColourNames), &picture.colour.b);
+    FoundChannels<kFeatures> featuresOfA = {}, featuresOfB = {};
+    for (size_t f = 0; f < kFeatures; ++f) {
+        const std::string name = f == kFeatures - 1 ? "Z" : kFeatureNames[f];
+        if (!a.Find(name) || !b.Find(name)) continue;
+        featuresOfA[f] = a.Find(name)->values.data();
+        featuresOfB[f] = b.Find(name)->values.data();
+    }
+    picture.features = ReadFeatures(a, featuresOfA, featuresOfB, DisparityOf);
+    return picture;
 }
 
 }  // namespace lull

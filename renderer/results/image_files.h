@@ -1,7 +1,11 @@
 // Writes the pictures of a render: EXR, with a header that says how it was made, and PNG.
 #pragma once
 
-#include "renderer/files/result_files.h"
+#include <string>
+#include <vector>
+
+#include "renderer/base/math.h"
+#include "renderer/files/outputs.h"
 #include "renderer/image/image_io.h"
 #include "renderer/render/provenance.h"
 #include "renderer/render/render.h"
@@ -54,5 +58,21 @@ struct ImageOfBlocks {
     double seconds;  // of processors
 };
 void WriteImage(const PictureFiles&, const PictureOrigin&, const ImageOfBlocks&, ResultFiles*);
+
+// The windows of an EXR: its data can be a part of the picture, and reach beyond.
+
+PixelRect DataWindow(const ExrImage&);
+
+// Returns the window of the picture that a file shows: of our own renders the part that was
+// rendered (--crop), of other programs' the display window. Throws Error with `file` where that
+// needs more memory than there is.
+PixelRect ShownWindow(const ExrImage&, const std::string& file);
+
+// Returns interleaved channels of the data window, moved to another window; 0 where data lack.
+std::vector<float> MovedTo(const PixelRect& window, const PixelRect& data, int channels,
+                           const std::vector<float>& values);
+
+// Moves all channels so; the display window stays.
+void MoveTo(const PixelRect& window, ExrImage*);
 
 }  // namespace lull

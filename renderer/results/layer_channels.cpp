@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "renderer/base/utf8.h"
-#include "renderer/results/cryptomatte.h"
+#include "renderer/base/error.h"
+#include "renderer/results/channel_names.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

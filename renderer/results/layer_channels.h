@@ -47,7 +47,7 @@ LayerChannels ChannelsOf(const FirstHitLayer&, const FinishedFilm&);
 LayerChannels ChannelsOf(const SquareLayer&, const FinishedFilm&);
 //   none
 inline LayerChannels ChannelsOf(const EmissionLayer&, const FinishedFilm&) { return {}; }
-//   A                the coverage of the pixel; and Cryptomattes (cryptomatte.h)
+//   A                the coverage of the pixel; and Cryptomattes (channel_names.h)
 LayerChannels ChannelsOf(const MatteLayer&, const FinishedFilm&);
 //   light.NAME.R     of each group of lights, and .G .B: they add up to the image, and are
 //   denoised,

@@ -1,9 +1,13 @@
 #include "renderer/results/report.h"
 
 #include <cmath>
+#include <sstream>
 
+#include "renderer/files/file_io.h"
+#include "renderer/film/spp_map.h"
+#include "renderer/image/image_io.h"
 #include "renderer/render/shortfall.h"
-#include "renderer/results/report_json.h"
+#include "stopping/rules/thresholds.h"
 
 namespace lull {
 
@@ -145,6 +149,32 @@ std::string MakeReport(const Provenance& provenance, const RenderResult& result,
                        int64_t rejectedSamples, const std::map<std::string, int>& warnings,
                        const DenoisedImage* denoised) {
     return Dump(ReportJson(provenance, result, rejectedSamples, warnings, denoised));
+}
+
+void WriteSppMap(const std::string& file, const Provenance& provenance,
+                 const RenderResult& result) {
+    const ScheduleOptions& schedule = provenance.schedule;
+    std::vector<SppBlock> blocks;
+    const bool isNoisyAtCap = result.trend.kind != RuleTrend::Samples;
+    for (const BlockResult& b : result.blocks)
+        blocks.push_back({b.block.pixels, b.block.spp, isNoisyAtCap && b.block.IsAtCap()});
+    const int lowest = std::min(schedule.passLength, schedule.cap);
+    const SppMap map = DrawSppMap(provenance.crop, blocks, lowest, schedule.cap);
+    WritePng(file, map.srgb, map.width, map.height);
+}
+
+void WriteThresholdsOf(const std::string& file, const std::string& scene, std::vector<int> spp) {
+    std::ostringstream text;
+    WriteThresholds(text, {{SceneName(scene), std::move(spp)}});
+    WriteFileAtomically(file, text.str());
+}
+
+std::vector<int> ThresholdsOf(const Provenance& provenance, const RenderResult& result) {
+    std::vector<int> spp;
+    for (const BlockResult& b : result.blocks)
+        spp.push_back(b.block.stoppedByVote || !b.block.stopped ? b.block.spp
+                                                                : provenance.schedule.cap);
+    return spp;
 }
 
 }  // namespace lull

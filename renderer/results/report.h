@@ -1,6 +1,8 @@
 // Reports the decisions and the cost of a render.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include <map>
 #include <string>
 
@@ -31,5 +33,34 @@ Savings ComputeSavings(const RenderResult&, int cap);
 // image is the mean of the samples.
 std::string MakeReport(const Provenance&, const RenderResult&, int64_t rejectedSamples,
                        const std::map<std::string, int>& warnings, const DenoisedImage* denoised);
+
+// Writes the stops of the blocks of a render: files next to its image.
+
+// All write a file whole or not at all, and throw Error.
+
+// Writes a picture of the samples per pixel of each block, in false colours.
+void WriteSppMap(const std::string& file, const Provenance&, const RenderResult&);
+
+// Writes a thresholds file (stopping/rules/thresholds.h) with the row of a scene, which is given as
+// its file.
+void WriteThresholdsOf(const std::string& file, const std::string& scene, std::vector<int> spp);
+
+// Returns the thresholds that repeat a render.
+std::vector<int> ThresholdsOf(const Provenance&, const RenderResult&);
+
+// JSON that reports have in common; for those .cpp files that write reports.
+
+using Json = nlohmann::ordered_json;
+
+Json RectJson(const PixelRect&);
+Json ProvenanceJson(const Provenance&);
+// Lists decisions by column, which takes a tenth of the size of an object for each.
+Json DecisionsJson(const std::vector<BlockDecision>&);
+// Returns the report as JSON; MakeReport() writes it.
+Json ReportJson(const Provenance&, const RenderResult&, int64_t rejectedSamples,
+                const std::map<std::string, int>& warnings, const DenoisedImage*);
+
+// Returns the text; bytes of file names that are not UTF-8 are replaced.
+std::string Dump(const Json&);
 
 }  // namespace lull

@@ -18,4 +18,12 @@ struct CompileOptions {
 // left in `warnings`: for all of it, as Warnings::ThrowErrors() has it.
 std::unique_ptr<const Scene> Compile(const Description&, const CompileOptions&, Warnings&);
 
+// Finds flat slabs in meshes, such as window panes that are modelled with a thickness.
+
+struct Mesh;
+
+// Returns the number of closed parts of a mesh that are flat, and at least 20 times as wide, in
+// both directions, as they are thick. Vertices at the same place are the same.
+int CountSlabs(const Mesh&);
+
 }  // namespace lull

@@ -7,8 +7,6 @@
 #include "renderer/scene/cameras/camera.h"
 #include "renderer/scene/cameras/camera_view.h"
 #include "renderer/scene/cameras/film_settings.h"
-#include "renderer/scene/cameras/filter.h"
-#include "renderer/scene/cameras/footprint.h"
 #include "renderer/scene/geometry/accelerator.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/integrator.h"

@@ -1,6 +1,6 @@
 #include "renderer/schedule/schedule.h"
 
-#include "stopping/rules/block_grid.h"
+#include "stopping/rules/thresholds.h"
 
 namespace lull {
 

@@ -23,7 +23,7 @@ struct ScheduleOptions {
     // Pixels a side of the pieces that threads take, > 0. A sample costs the same at 8 as at 16,
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
-    int smallestSide = 0;  // blocks with a shorter side follow a neighbour (block_grid.h)
+    int smallestSide = 0;  // blocks with a shorter side follow a neighbour (thresholds.h)
     // For renders that are viewed in progress: the first pass is taken in steps of 1,
     // 2, 4, ... spp.
     bool inSteps = false;

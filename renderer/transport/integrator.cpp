@@ -1,9 +1,20 @@
+#include "renderer/transport/integrator.h"
+
+#include <algorithm>
+
+#include "renderer/base/variant.h"
 #include "renderer/transport/integrator_internal.h"
 
-#include "renderer/base/visit.h"
-#include "renderer/transport/group_radiance.h"
-
 namespace lull {
+
+void GroupRadiance::Clear() { std::ranges::fill(All(), Rgb::Zero()); }
+
+void GroupRadiance::Scale(float factor) {
+    for (Rgb& radiance : All()) {
+        radiance *= factor;
+        if (!IsFinite(radiance)) radiance = Rgb::Zero();
+    }
+}
 
 namespace {
 

@@ -1,10 +1,57 @@
 // Takes samples of the image by the scene's integrator.
 #pragma once
 
+#include <array>
+#include <span>
+#include <vector>
+
+#include "renderer/base/color.h"
+#include "renderer/base/math.h"
+#include "renderer/scene/light_groups.h"
 #include "renderer/scene/scene.h"
-#include "renderer/transport/first_hit.h"
 
 namespace lull {
+
+// The first hit of a path, for AOVs.
+
+// Describes a surface, or a point in a medium, which has no normal, object or material.
+struct FirstHit {
+    Rgb albedo = Rgb::Zero();        // in [0, 1]; where light is seen instead, that
+    Vec3f normal = Vec3f::Zero();    // shading, unit, world, on the viewer's side
+    Vec3f position = Vec3f::Zero();  // world
+    float depth = 0;        // from the camera's plane along its axis; environment cameras: distance
+    uint32_t object = 0;    // 1 + number of the shape, then of the instances; 0: none
+    uint32_t material = 0;  // 1 + number of the material; 0: none
+    bool found = false;     // there was one
+    // Of the sample's radiance, that of a surface that the camera's ray meets unscattered.
+    Rgb emission = Rgb::Zero();
+    // Of the sample: its filter weight, and the squared distance from the pixel's centre.
+    float weight = 1, offset2 = 0;
+};
+
+// The radiance of a sample, told apart by groups of lights.
+
+class GroupRadiance {
+  public:
+    // The groups must outlive it.
+    explicit GroupRadiance(const LightGroups& groups)
+        : ofLight(groups.ofLight), count(size_t(groups.Count())) {}
+
+    // Clear() and Scale() are not inlined: samples without groups would have to pass by them.
+    void Clear();
+    // Adds the radiance of light `index` of the scene.
+    void Add(int index, const Rgb& radiance) { radiances[ofLight[size_t(index)]] += radiance; }
+    // Multiplies all by `factor`. What is not finite then is black.
+    void Scale(float factor);
+    // Of each group; they add up to the radiance of the sample.
+    std::span<Rgb> All() { return {radiances.data(), count}; }
+    std::span<const Rgb> All() const { return {radiances.data(), count}; }
+
+  private:
+    std::span<const uint8_t> ofLight;
+    size_t count;
+    std::array<Rgb, kMostLightGroups + 1> radiances;
+};
 
 class GroupRadiance;
 
@@ -63,5 +110,38 @@ inline PathSample RenderSample(const Scene& scene, const PathOptions& options, S
     RenderSample(scene, options, sampler, pixel, index, &sample);
     return sample;
 }
+
+// Records the vertices of one path, to find the source of a bright pixel.
+
+// The end of one ray of a path.
+struct PathStep {
+    enum class Kind { Surface, Medium, Sky };
+
+    Kind kind = Kind::Surface;
+    float distance = 0;                 // from the step before, or from the camera
+    Vec3f position = Vec3f::Zero();     // world; for the sky, the ray's direction
+    Vec3f normal = Vec3f::Zero();       // surfaces: geometric, unit
+    uint32_t object = 0, material = 0;  // numbers as in FirstHit
+    Rgb throughput = Rgb::Ones();       // of the path that arrives here
+    Rgb emitted = Rgb::Zero();          // radiance emitted here, weighted by throughput
+    Rgb direct = Rgb::Zero();           // of light that arrives here directly, counted
+    bool goesOn = false;                // the path was scattered; then:
+    Vec3f direction = Vec3f::Zero();    // unit, world
+    float pdf = 0;                      // of the direction, 1/sr; of a specular lobe, no density
+    bool isSpecular = false, isTransmission = false;
+};
+
+struct PathLog {
+    Ray ray;                 // the camera's
+    float filterWeight = 1;  // these factors are in the sample's radiance, but not in the steps
+    float cameraWeight = 1;
+    float filmScale = 1;
+    std::vector<PathStep> steps;
+    PathSample sample;
+};
+
+// Takes the same sample of a scene that has a PathIntegrator as RenderSample(), and records
+// its path.
+PathLog LogSample(const Scene&, Estimator, Sampler&, const Vec2i& pixel, uint32_t index);
 
 }  // namespace lull

@@ -1,12 +1,115 @@
 // A path between two vertices, and its way from one to the next.
 #pragma once
 
+#include "renderer/base/math.h"
 #include "renderer/base/sampling.h"
+#include "renderer/bsdf/phase.h"
+#include "renderer/scene/scene.h"
 #include "renderer/transport/integrator.h"
-#include "renderer/transport/no_recorder.h"
-#include "renderer/transport/path_vertex.h"
 
 namespace lull {
+
+// Recorders, which are told of a path's vertices. The loop over a path is compiled for each of
+// them, so that where none is needed there is not even a branch.
+
+struct Path;
+struct Hit;
+struct SurfaceInteraction;
+class Bsdf;
+
+// The default for all callbacks: records nothing.
+struct NoRecorder {
+    // Whether a path at its greatest depth has to continue for the recorder.
+    static constexpr bool Wanted() { return false; }
+    // The path, of this throughput, has found light of light `index`: that of a sample of it, or
+    // its emission.
+    static void FindLight(const Path&, int, const Rgb&) {}
+    // The path's ray, of unit direction, ends: it leaves the scene, is at a surface whose BSDF is
+    // not yet known, or is scattered by a medium at p, at this distance. The path has found the
+    // emission there.
+    static void LeaveScene(const Path&) {}
+    static void ReachSurface(const Path&, const Hit&, const SurfaceInteraction&) {}
+    static void MeetMedium(const Path&, float, const Vec3f&) {}
+    // It has come to a surface of this BSDF.
+    static void MeetSurface(const Path&, const Hit&, const SurfaceInteraction&, const Bsdf&) {}
+    // It is scattered; `isTransmission`: through the surface, or medium.
+    static void Scatter(const Path&, bool) {}
+    static void End(const Path&) {}
+};
+
+// Represents where a path scatters: on a surface, or in a medium. Directions point away from there,
+// unit, world.
+
+// Returns whether both directions leave a surface of normal n on the same side.
+inline bool IsSameSide(const Vec3f& n, const Vec3f& a, const Vec3f& b) {
+    return (a.dot(n) < 0) == (b.dot(n) < 0);
+}
+
+// Returns the factor of radiance that is refracted from wo's side of a surface to the other.
+inline float EtaScaleAt(const SurfaceInteraction& hit, const Bsdf& bsdf) {
+    const float eta2 = Sqr(bsdf.Eta());
+    return hit.wo.dot(hit.n) > 0 ? eta2 : 1 / eta2;
+}
+
+struct SurfaceVertex {
+    const SurfaceInteraction& hit;
+    const Bsdf& bsdf;
+    int shape;
+
+    const Vec3f& Position() const { return hit.p; }
+    LightChoice Choice(const LightTable& lights, size_t place) const {
+        return lights.Choice(hit, bsdf, place);
+    }
+
+    BsdfValue Evaluate(const Vec3f& wi, LobeSet set) const {
+        return bsdf.Evaluate(hit.wo, wi, set);
+    }
+    // Does so without specular lobes, with the density that all others are as likely.
+    BsdfValue EvaluateEvenly(const Vec3f& wi) const {
+        return bsdf.WithoutShares().Evaluate(hit.wo, wi, LobeSet::NonSpecular);
+    }
+    std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet set) const {
+        return bsdf.Sample(hit.wo, u, set);
+    }
+    // Returns the factor of f.
+    float Cosine(const Vec3f& wi) const { return std::abs(wi.dot(hit.ns)); }
+
+    // Returns the point where a ray of direction d, of any length, starts.
+    Vec3f OriginTowards(const Vec3f& d) const {
+        return OffsetRayOrigin(hit.p, hit.pError, hit.n, d);
+    }
+    Ray SpawnRay(const Vec3f& d) const { return hit.SpawnRay(d); }
+    float EtaScale() const { return EtaScaleAt(hit, bsdf); }
+    bool IsSameSide(const Vec3f& a, const Vec3f& b) const { return lull::IsSameSide(hit.n, a, b); }
+};
+
+// f is the phase function, which is its density as well.
+struct MediumVertex {
+    Vec3f p, wo;
+    float g;
+
+    const Vec3f& Position() const { return p; }
+    LightChoice Choice(const LightTable& lights, size_t place) const {
+        return lights.Choice(p, place);
+    }
+
+    BsdfValue Evaluate(const Vec3f& wi, LobeSet) const {
+        const float phase = PhaseHenyeyGreenstein(wo.dot(wi), g);
+        return {Rgb::Constant(phase), phase};
+    }
+    BsdfValue EvaluateEvenly(const Vec3f& wi) const { return Evaluate(wi, LobeSet::All); }
+    std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet) const {
+        const Vec3f wi = SampleHenyeyGreenstein(wo, g, u);
+        const BsdfValue value = Evaluate(wi, LobeSet::All);
+        return BsdfSample{value.f, value.pdf, wi, false, true};
+    }
+    float Cosine(const Vec3f&) const { return 1; }
+    float EtaScale() const { return 1; }
+
+    Vec3f OriginTowards(const Vec3f&) const { return p; }
+    Ray SpawnRay(const Vec3f& d) const { return {p, d, kInfinity}; }
+    bool IsSameSide(const Vec3f&, const Vec3f&) const { return true; }
+};
 
 // Constants of a path and, in `media`, the medium about its next ray: a
 // policy (path_media.h).

@@ -1,8 +1,7 @@
-#include "renderer/scene/cameras/footprint.h"
+#include "renderer/scene/cameras/camera_view.h"
 #include "renderer/transport/direct_light.h"
-#include "renderer/transport/first_hit_internal.h"
 #include "renderer/transport/integrator_internal.h"
-#include "renderer/transport/path_recorder_internal.h"
+#include "renderer/transport/recorders_internal.h"
 #include "renderer/transport/subsurface.h"
 
 namespace lull {

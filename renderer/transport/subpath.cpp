@@ -1,6 +1,6 @@
 #include "renderer/transport/subpath.h"
 
-#include "renderer/transport/panes.h"
+#include "renderer/transport/path_media.h"
 
 namespace lull {
 namespace {

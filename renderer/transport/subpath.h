@@ -15,7 +15,7 @@
 #pragma once
 
 #include "renderer/scene/lights/light_emission.h"
-#include "renderer/transport/path_vertex.h"
+#include "renderer/transport/path_state.h"
 
 namespace lull {
 

@@ -1,6 +1,6 @@
 #include "renderer/transport/subsurface.h"
 
-#include "renderer/bsdf/fresnel_moments.h"
+#include "renderer/bsdf/fresnel.h"
 
 namespace lull {
 namespace {

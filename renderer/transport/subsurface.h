@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "renderer/bsdf/diffusion_profile.h"
+#include "renderer/bsdf/subsurface.h"
 #include "renderer/scene/scene.h"
 
 namespace lull {

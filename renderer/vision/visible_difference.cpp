@@ -6,7 +6,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
-#include "renderer/vision/convolution.h"
+#include "renderer/vision/image_pyramid.h"
 
 namespace lull {
 

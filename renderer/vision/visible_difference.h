@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/base/pixel_rect.h"
-#include "renderer/vision/contrast_sensitivity.h"
+#include "renderer/base/math.h"
 #include "renderer/vision/display_model.h"
 #include "renderer/vision/image_pyramid.h"
 

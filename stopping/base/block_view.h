@@ -19,7 +19,7 @@ struct BlockView {
 };
 
 // Spans of a BlockView that are read; the others may be left empty. Measured: both, and the
-// program's own measurements (RuleContext::measures in rules/criterion.h), for which it needs all
+// program's own measurements (RuleContext::measures in rules/rule.h), for which it needs all
 // of the block's samples. Each needs those before it.
 enum class ViewNeed { Nothing, Mean, MeanAndHalf, Measured };
 
@@ -28,5 +28,15 @@ void CheckView(const BlockView& view, ViewNeed need);
 
 // Pixels a side below which a block is too small for meaningful statistics.
 inline constexpr int kSmallestVotingSide = 40;
+
+// Weighs linear R, G and B (Rec. 709 primaries) in the luminance Y, with pbrt-v3's weights.
+
+// They add up to 1, the luminance of white.
+inline constexpr double kLuminanceWeights[3] = {0.212671, 0.715160, 0.072169};
+
+inline float Luminance(float r, float g, float b) {
+    return float(kLuminanceWeights[0]) * r + float(kLuminanceWeights[1]) * g +
+           float(kLuminanceWeights[2]) * b;
+}
 
 }  // namespace lull

@@ -1,7 +1,12 @@
 // Opens the files that a user names, and quotes their contents.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <cstdlib>
 #include <fstream>
+#include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,5 +27,65 @@ std::ifstream OpenInput(const std::string& path);
 // Returns untrusted text for a message: control and non-ASCII bytes as \xNN, and "..." in place of
 // all behind the first `most` bytes.
 std::string Printable(std::string_view text, size_t most = 60);
+
+// Reads text line by line, as the editors of all systems write it.
+
+// Lines end with LF, CR LF or CR. A byte-order mark of UTF-8 before the first is left out, and
+// Control-Z or NUL behind the last, by which old programs mark the end.
+class TextLines {
+  public:
+    // Reads all of the stream. Throws std::runtime_error for UTF-16 and UTF-32, "NAME: REASON".
+    TextLines(std::istream&, const std::string& name);
+
+    // Moves to the next line; returns false after the last. Throws std::runtime_error, "NAME:LINE:
+    // REASON", for a mark of the end with text behind it.
+    bool Next();
+    const std::string& Line() const { return line; }
+    int Number() const { return number; }  // of the line, from 1
+
+  private:
+    std::string name, text, line;
+    size_t next = 0;
+    int number = 0;
+};
+
+// Recognises what editors and old programs put around a text.
+
+// The byte-order mark of UTF-8, which a text may begin with.
+inline constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
+// Returns "UTF-16" or "UTF-32" for such text, "" for all else.
+std::string_view WideEncoding(std::string_view bytes);
+
+// Old programs mark the end of a text by these: Control-Z and NUL.
+inline constexpr std::string_view kEndMarks("\x1a\0", 2);
+
+// Returns the text without them and all behind, if nothing but blanks is there.
+std::string_view WithoutEndMarks(std::string_view text);
+
+// Writes tables of comma-separated values.
+
+// Returns whether a spreadsheet would evaluate a text as a formula.
+inline bool IsFormula(const std::string& text) {
+    if (text.empty() || std::string("=+-@\t\r").find(text[0]) == std::string::npos) return false;
+    char* end;
+    std::strtod(text.c_str(), &end);
+    return *end != 0 || end == text.c_str();
+}
+
+// Returns a text as a field: in quotation marks where a comma, a quotation mark or the end of a
+// line would break the line, and after an apostrophe where it would be a formula.
+inline std::string CsvField(const std::string& text) {
+    if (IsFormula(text)) return CsvField('\'' + text);
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+// Returns a number as a field, which is empty where it is not defined.
+inline std::string CsvField(const std::optional<double>& number) {
+    return number ? fmt::format("{:.6f}", *number) : "";
+}
 
 }  // namespace lull

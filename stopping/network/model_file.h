@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/features/window.h"
+#include "stopping/features/block_memory.h"
 #include "stopping/network/lstm.h"
 
 namespace lull {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "stopping/rules/argument.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 

@@ -2,15 +2,17 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
-#include "stopping/features/window.h"
+#include "stopping/features/block_memory.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule.h"
+#include "stopping/signals/svd_entropy.h"
 
 namespace lull {
 
-// Returns the probability that the block of a window (see window.h) is noisy, in
+// Returns the probability that the block of a window (see block_memory.h) is noisy, in
 // [0, 1]; 1 where the network's values overflow, so that nonsense never stops a block.
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 
@@ -35,5 +37,25 @@ std::string ModelPath(const std::string& argument, const std::string& models);
 
 // Reads a model as it is used in a context, with its cap and caution. Throws std::runtime_error.
 Model ReadModelFor(const std::string& path, const RuleContext& context);
+
+// Stops blocks by the noise in their SVD-entropy: lull's own rule with one number.
+
+// The sub-blocks that the rule looks at.
+inline constexpr int kEntropySubBlocks = 100;
+
+// Stops a block when the mean visible drop of its sub-blocks (see svd_entropy.h) was below
+// `threshold`, > 0, at three checks in a row. The block needs at least 20 x 20 pixels.
+Rule EntropyRule(double threshold, const NoiseVisibility& visibility, int passSpp);
+
+// Reads the threshold T, which the context's caution divides.
+Rule ReadEntropy(const std::string& argument, const RuleContext& context);
+
+// Returns its checks: after the first pass and every 40 spp from then on, or every pass if passes
+// are longer, as in recordings (see recording.h); with a passSpp of 0, at the first picture 40 spp
+// or more after the last check.
+Checks EntropyChecks(int passSpp);
+
+// Returns the number that is compared with the threshold.
+double MeanVisible(std::span<const double> visibleDrops);
 
 }  // namespace lull

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "stopping/rules/argument.h"
+#include "stopping/rules/rule.h"
 #include "stopping/signals/lightness_noise.h"
 
 namespace lull {
@@ -37,6 +37,24 @@ Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context)
     Rule rule = LightnessNoiseRule(ParseThreshold(argument) / context.caution);
     rule.peak.most = kPeakOverThreshold * rule.threshold;
     return rule;
+}
+
+namespace {
+
+constexpr uint32_t kTag = 0x33534e44;  // "DNS3"
+constexpr int kVotes = 1;
+constexpr int kFirstSpp = 20;
+constexpr double kGrowth = 1.25;
+
+}  // namespace
+
+Rule ReadDenoised(const std::string& argument, const RuleContext& context) {
+    return {.tag = kTag,
+            .checks = {.first = kFirstSpp, .growth = kGrowth},
+            .threshold = ParseThreshold(argument) / context.caution,
+            .votes = kVotes,
+            .need = ViewNeed::Measured,
+            .measure = SuppliedMeasure(context, kDenoisedRuleName)};
 }
 
 }  // namespace lull

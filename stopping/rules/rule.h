@@ -6,21 +6,130 @@
 // recordings have its measurements, on which the same decisions are made.
 #pragma once
 
+#include <charconv>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "stopping/base/block_view.h"
+#include "stopping/base/input_file.h"
 #include "stopping/base/state.h"
 #include "stopping/features/model_inputs.h"
-#include "stopping/rules/criterion.h"
-#include "stopping/rules/trend.h"
 
 namespace lull {
+
+// Defines the one interface between renderer and stopping rules: after each pass a block is shown
+// to its criterion, which answers continue or stop.
+
+// Answer of a criterion. No number in it is ever NaN.
+struct Decision {
+    bool stop = false;
+    // Whether the block was checked in this call; if not, the numbers are the last check's.
+    bool checked = false;
+    double value = 0;      // an error estimate, P(noisy) or the spp
+    double threshold = 0;  // of the value
+    int votes = 0;         // checks in a row that were below it (rules that vote only)
+};
+
+// Decides on one block over all its passes, with the state of its earlier checks. Different
+// criteria can be used by different threads at the same time.
+class Criterion {
+  public:
+    virtual ~Criterion() = default;
+
+    // Returns the spans that Observe() will read at `spp`, so that no view is built in vain.
+    virtual ViewNeed Need(int spp) const = 0;
+
+    // Adds the block after a pass and decides. To be called once after every pass, with increasing
+    // spp, whatever Need() returns, and no more once it has answered stop. Throws
+    // std::invalid_argument if the spans that Need() asks for do not have the block's size, or if
+    // spp or the size contradict earlier calls.
+    virtual Decision Observe(const BlockView& view) = 0;
+
+    // Returns the noise given to a network at the last check, if it has no other input: forecasts
+    // follow it in place of the probability (rule.h).
+    virtual std::optional<double> NetworkNoise() const { return {}; }
+
+    // Return and set the state that Observe() keeps between calls, for checkpoints. Restore()
+    // throws std::runtime_error if `state` was saved by another rule or is damaged; the criterion
+    // must not be used afterwards.
+    virtual std::vector<std::byte> Save() const { return {}; }
+    virtual void Restore(std::span<const std::byte> state);
+};
+
+// Position of the block of a criterion.
+struct BlockInfo {
+    int index = 0;            // row-major place in the grid of blocks
+    double areaFraction = 1;  // pixels of the block / pixels of the image, in (0, 1]
+};
+
+// Makes a block's own criterion, in any thread.
+using CriterionMaker = std::function<std::unique_ptr<Criterion>(const BlockInfo&)>;
+
+// Reads the arguments of stopping rules.
+
+// Parses all of `text` as a number > 0, finite. Throws std::invalid_argument with `needed`, the
+// noun of such a number.
+template <typename T>
+T ParsePositive(const std::string& text, const std::string& needed) {
+    T value = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || rest != end || !(value > 0) || !std::isfinite(double(value)))
+        throw std::invalid_argument("'" + Printable(text) + "' is not " + needed);
+    return value;
+}
+
+inline double ParseThreshold(const std::string& text) {
+    return ParsePositive<double>(text, "a threshold; a number > 0 is needed");
+}
+
+// Describes the course of the number that a rule compares over the sample count, from which the
+// stops of blocks are predicted.
+
+struct Model;
+
+struct RuleTrend {
+    enum Kind {
+        Error,        // above 0; falls as a power of the spp
+        Probability,  // in [0, 1]; falls too
+        Samples       // the spp themselves, which rise to the threshold
+    };
+    Kind kind = Error;
+    int votes = 1;  // in a row that stop a block
+    // Noise at which a network with no other input is undecided. Predictions follow the noise then,
+    // as a probability is no power of the spp. 0: not known.
+    double undecided = 0;
+    // Spp of the picture that noise is compared with: it falls as a power of 1/spp - 1/reference.
+    // 0: none.
+    int reference = 0;
+    // Whether it falls more slowly where there is much noise, as falls of entropies do, and
+    // approaches the power -1/2 with less.
+    bool saturates = false;
+};
+
+struct NoiseVisibility;
+
+// Returns the trend of visible falls of entropies (svd_entropy.h).
+RuleTrend TrendOfFalls(const NoiseVisibility& visibility);
+
+// Returns the trend of a model's answers, or of its noise input.
+RuleTrend TrendOf(const Model& model);
+
+// Returns the noise, times the caution, above which a model takes a block for noisy. It is defined
+// for models with no input but noise, whose window then has the noise of earlier steps too: at
+// geometric spacing as if it had fallen with the root of the spp, at fixed spacing as if it were
+// the same. 0 for other models, and where the limit is not between 0.001 and 1000.
+double UndecidedNoise(const Model& model);
 
 // A rule checks a block at first, first + every, first + 2 every, ... spp; or, where pictures come
 // at any spp, at whatever comes `every` spp or more after the last check.
@@ -81,7 +190,7 @@ struct Rule {
     std::string text = {};      // as it was given, for headers and reports
     std::string checksum = {};  // of the file that it reads; empty if it reads none
     RuleTrend trend = {};
-    // Pixels a side below which a block is not checked, but follows a neighbour (block_grid.h).
+    // Pixels a side below which a block is not checked, but follows a neighbour (thresholds.h).
     int smallestSide = kSmallestVotingSide;
     uint32_t tag = 0;  // tells saved states of its criteria from those of others
 

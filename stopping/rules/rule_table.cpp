@@ -8,11 +8,9 @@
 
 #include "stopping/base/input_file.h"
 #include "stopping/rules/baselines.h"
-#include "stopping/rules/denoised.h"
-#include "stopping/rules/entropy.h"
 #include "stopping/rules/learned.h"
 #include "stopping/rules/lnoise.h"
-#include "stopping/rules/thresholds_rule.h"
+#include "stopping/rules/thresholds.h"
 
 namespace lull {
 

@@ -15,7 +15,7 @@ namespace lull {
 // population), in the unit of L. The filters are: mean 3x3 and 5x5; Gaussian 3x3 with a standard
 // deviation of 0.5, 1 and 1.5 pixels, then 5x5 with the same; median 3x3 and 5x5; Wiener 3x3 and
 // 5x5; hard shrinkage of two levels of wavelets by the universal threshold, sigma sqrt(2
-// log(pixels)) with sigma = DiagonalNoise() (haar_shrinkage.h).
+// log(pixels)) with sigma = DiagonalNoise() (attributes26.h).
 //
 // Beyond the border, mean and Gaussian see the image reflected without its edge pixel, median and
 // Wiener (Lim 1990, Eqs. 9.44 to 9.46, with the mean of the local variances as that of the noise)
@@ -27,5 +27,20 @@ namespace lull {
 inline constexpr int kAttributes = 26;
 std::array<double, kAttributes> ComputeAttributes(std::span<const double> lightness, int width,
                                                   int height);
+
+// Removes noise from an image by wavelets.
+
+// Returns the median of the absolute values of the finest diagonal details of Daubechies 2, of
+// those that are not 0, divided by the 3/4 quantile of the normal distribution; 0 if there are none
+// (Donoho, Johnstone: Ideal spatial adaptation by wavelet shrinkage. Biometrika 81, 1994, 425).
+// Beyond the border the image is reflected including its edge pixel. `image` holds width * height
+// finite values, row-major, with at least 2 pixels a side.
+double DiagonalNoise(std::span<const double> image, int width, int height);
+
+// Sets those details of two levels of Daubechies 1 to 0 that are below `threshold` in absolute
+// value, and reconstructs the rest in `shrunk`, which has the size of `image`. If a number of
+// pixels is odd, the last is repeated.
+void ShrinkDetails(std::span<const double> image, int width, int height, double threshold,
+                   std::span<double> shrunk);
 
 }  // namespace lull

@@ -7,10 +7,13 @@
 #pragma once
 
 #include <Eigen/Core>
+
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "stopping/base/block_view.h"
+#include "stopping/signals/history.h"
 
 namespace lull {
 
@@ -44,5 +47,89 @@ std::vector<SvdEntropy> SubBlockEntropies(std::span<const double> lightness, int
 // Computes the same from the lightness of a block as an 8-bit display shows it. Reads the mean
 // only. Also throws as CheckView() does.
 std::vector<SvdEntropy> PictureEntropies(const BlockView& view, int subBlocks);
+
+// Measures noise by its contribution to the SVD-entropy of a picture: an entropy alone says little,
+// but its fall since half as many samples is due to noise.
+//
+// Noise of variance v in lightness, small against the mean lightness L, adds about c v / L^2 to the
+// entropy of a sub-block, with a c that hardly changes. As v falls as 1 / spp, the fall from n / 2
+// to n equals the rest at n, and sqrt(fall) L is the noise's standard deviation, apart from the
+// factor sqrt(c), 1.5 to 2: c is 1/log(n) times the logarithm of one over the noise's fraction of
+// each singular value. This needs only two displayed pictures.
+
+// How an observer sees noise.
+struct NoiseVisibility {
+    // Detail of deviation d in L hides noise: it counts 1 / (1 + d / mask).
+    double mask = 40;
+    // Light that the screen reflects, as a share of white: 0.05 is the typical viewing flare of the
+    // sRGB standard (IEC 61966-2-1). It hides noise in dark parts.
+    double flare = 0.05;
+    // People compared each picture with the one at N = `reference` spp, the same samples and more:
+    // the variance of the difference is (1 - n / N) v(n), so that noise counts
+    // (1 - n / N)^nearness.
+    int reference = 10000;
+    double nearness = 0.5;
+};
+
+// Returns the visibility where renders end at `cap` spp (0: not known). The observers' reference
+// counts as free of noise; where the cap is larger, the picture at the cap does, and a smaller cap
+// does not change the reference.
+NoiseVisibility VisibilityAt(int cap, NoiseVisibility visibility);
+
+// The entropies of the sub-blocks of a picture, row-major, at some spp.
+using EntropyState = BlockState<float>;
+
+// Returns the exponent a, in [1, 2], with which noise falls as spp^-a, from three states with
+// increasing spp, using weighted roots of the sub-blocks' falls; 1 if nothing changes. Independent
+// samples have 1 (entropies give some 0.1 less); if noise falls faster, less is left than the fall.
+double RateOfFall(const EntropyState& oldest, const EntropyState& before, const EntropyState& now,
+                  std::span<const double> weights);
+
+// Returns for each sub-block sqrt(|H(before) - H(now)| / ((n / n')^rate - 1)), where n, n' are the
+// spp of `now` and `before`: the root of the noise's part of the entropy now. Both have the same
+// length, and `before` has fewer spp. (Noise that happens to be correlated with detail moves an
+// entropy up or down, and rare events raise it when they occur: both count as noise.)
+std::vector<double> EntropyDrop(const EntropyState& before, const EntropyState& now, double rate);
+
+// Mean and standard deviation of the displayed lightness of sub-blocks, row-major, in
+// [0, 100].
+struct SubBlockLightness {
+    std::vector<float> mean, deviation;
+};
+
+// Measures the count x count pieces of a block, where count^2 is `subBlocks`. Reads the mean only.
+// Throws as CheckView() does, and std::invalid_argument if the block cannot be cut into them.
+SubBlockLightness MeasureLightness(const BlockView& view, int subBlocks);
+
+// Returns the factor by which a screen that reflects `flare` reduces a difference in lightness
+// around L: the derivative of the lightness of (Y + flare) / (1 + flare) over that of Y. In (0, 1];
+// for the 0.05 of sRGB 0.3 in black, 0.6 at L = 25, 0.9 at 65.
+double FlareFactor(double lightness, double flare);
+
+// Returns (1 - spp / reference)^nearness: the part of noise that counts at `spp`; 0 from the
+// reference on.
+double NearnessFactor(int spp, const NoiseVisibility& visibility);
+
+// Returns the visible noise of each sub-block, drop * L * FlareFactor(L) / (1 + d / mask) *
+// (1 - spp / reference)^nearness, in lightness; 0 from the reference on. All have the same length.
+std::vector<double> VisibleDrop(std::span<const double> drop, const SubBlockLightness& lightness,
+                                int spp, const NoiseVisibility& visibility);
+
+// Adds the entropies of the sub-blocks at `spp`, and keeps the states that later ones need: about
+// eight an octave down to a quarter of the spp, at most 19 (8 KB per block for 100 sub-blocks),
+// however many samples there are. Throws as History::Add() does.
+void AddEntropies(int spp, std::span<const double> entropies, History<float>* history);
+
+// Returns EntropyDrop() of the last state since that nearest to half of its spp, corrected by
+// RateOfFall() with these weights if there is also one at about a quarter; nothing before there is
+// such a state. Throws std::invalid_argument if there are not as many weights as sub-blocks.
+std::optional<std::vector<double>> LatestDrop(const History<float>& history,
+                                              std::span<const double> weights);
+
+// Returns VisibleDrop() of the last state, which has this lightness, as LatestDrop() does; for the
+// rate of the fall, sub-blocks are weighted as their noise is in lightness.
+std::optional<std::vector<double>> LatestVisibleDrop(const History<float>& history,
+                                                     const SubBlockLightness& lightness,
+                                                     const NoiseVisibility& visibility);
 
 }  // namespace lull

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "renderer/film/film.h"
-#include "renderer/scene/textures/image_lookup.h"
+#include "renderer/scene/textures/imagemap.h"
 #include "stopping/rules/learned.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/svd_entropy.h"

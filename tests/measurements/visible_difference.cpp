@@ -17,8 +17,8 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
-#include "renderer/denoise/displayed_lightness.h"
-#include "renderer/denoise/worst_pixels.h"
+#include "renderer/denoise/lightness_error.h"
+#include "renderer/denoise/visible_error.h"
 #include "renderer/vision/visible_difference.h"
 
 using namespace lull;

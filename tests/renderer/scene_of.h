@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "renderer/base/pixel_rect.h"
+#include "renderer/base/math.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
 #include "tests/renderer/files/test_files.h"

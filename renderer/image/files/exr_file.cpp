@@ -23,7 +23,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "renderer/image/files/exr_channels.h"
 #include "renderer/image/files/exr_header.h"
 
 namespace lull {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/formats/image_file.h"
+#include "renderer/formats/formats.h"
 #include "renderer/image/image_io.h"
 
 namespace lull {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "renderer/formats/image_file.h"
+#include "renderer/formats/formats.h"
 
 namespace lull {
 

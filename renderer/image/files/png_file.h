@@ -1,12 +1,40 @@
 // Reads PNGs of all kinds.
 #pragma once
 
+#include <png.h>
+
+#include <csetjmp>
+#include <cstdio>
 #include <memory>
 #include <span>
 
-#include "renderer/formats/image_file.h"
+#include "renderer/formats/formats.h"
 
 namespace lull {
+
+// Calls libpng, which leaves its functions by longjmp() if something is wrong.
+
+// The last error message of libpng.
+struct PngError {
+    char message[128] = "";
+};
+
+// For png_create_read_struct() and png_create_write_struct(), with a PngError.
+[[noreturn]] inline void OnPngError(png_structp png, png_const_charp message) {
+    auto* error = static_cast<PngError*>(png_get_error_ptr(png));
+    std::snprintf(error->message, sizeof(error->message), "%s", message);
+    png_longjmp(png, 1);
+}
+inline void OnPngWarning(png_structp, png_const_charp) {}
+
+// Calls `call`, which calls libpng; returns false if that gives up. As it is then left midway,
+// `call` must own nothing.
+template <typename Call>
+bool TryPng(png_structp png, const Call& call) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    call();
+    return true;
+}
 
 // Returns whether bytes begin like a PNG.
 bool IsPng(std::span<const std::byte> bytes);

@@ -9,8 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "renderer/files/file_contents.h"
-#include "renderer/files/text_file.h"
+#include "renderer/files/file_io.h"
 #include "renderer/input/gltf/decompression.h"
 #include "renderer/input/gltf/json_at.h"
 #include "renderer/input/gltf/uri.h"

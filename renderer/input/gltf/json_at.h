@@ -2,17 +2,19 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "renderer/base/error.h"
-#include "renderer/base/rounding.h"
-#include "renderer/files/file_contents.h"
+#include "renderer/base/math.h"
+#include "renderer/files/file_io.h"
+#include "renderer/input/gltf/document.h"
 
 namespace lull {
 
@@ -215,5 +217,15 @@ struct JsonAt {
         for (const nlohmann::json& n : member.value) check(n);
     }
 };
+
+// Selects entries of a glTF file by name or number.
+
+// Writes names with their numbers: 0 "red", 1 "blue"; "none" where there are none.
+std::string NumberedNames(const std::vector<std::string>& names);
+
+// Returns the index of the first of `names` equal to `wanted`, or the index that `wanted` is, from
+// 0. Throws Error with a list of them where there is none; `what` is their noun: "camera".
+size_t ChooseByName(const GltfDocument&, const std::string& what,
+                    const std::vector<std::string>& names, const std::string& wanted);
 
 }  // namespace lull

@@ -4,9 +4,9 @@
 
 #include <numbers>
 
-#include "renderer/base/rounding.h"
-#include "renderer/input/gltf/parameters.h"
-#include "renderer/input/gltf/visibility.h"
+#include "renderer/base/math.h"
+#include "renderer/input/gltf/materials.h"
+#include "renderer/input/gltf/nodes.h"
 
 namespace lull {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "renderer/base/rounding.h"
-#include "renderer/input/gltf/visibility.h"
+#include "renderer/base/math.h"
+#include "renderer/input/gltf/nodes.h"
 
 namespace lull {
 namespace {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/rounding.h"
+#include "renderer/base/math.h"
 #include "renderer/input/gltf/accessors.h"
+#include "renderer/input/gltf/json_at.h"
+#include "renderer/input/gltf/materials.h"
 
 namespace lull {
 namespace {
@@ -125,6 +127,58 @@ std::vector<Mat4d> ReadCopies(const GltfDocument& document, int index) {
         copies.push_back(MatrixOf(three(translations, 0), rotation, three(scales, 1)));
     }
     return copies;
+}
+
+namespace {
+
+constexpr const char* kExtension = "KHR_materials_variants";
+
+}  // namespace
+
+std::vector<std::string> VariantNames(const GltfDocument& document) {
+    std::vector<std::string> names;
+    const auto extension = document.model.extensions.find(kExtension);
+    if (extension == document.model.extensions.end()) return names;
+    const tinygltf::Value& variants = extension->second.Get("variants");
+    for (size_t i = 0; i < variants.ArrayLen(); ++i)
+        names.push_back(variants.Get(i).Get("name").Get<std::string>());
+    return names;
+}
+
+void UseVariant(const std::string& wanted, GltfDocument* document) {
+    const auto variant = int(ChooseByName(*document, "variant", VariantNames(*document), wanted));
+    const auto isMeant = [&](const tinygltf::Value& mapping) {
+        const tinygltf::Value& variants = mapping.Get("variants");
+        for (size_t i = 0; i < variants.ArrayLen(); ++i)
+            if (variants.Get(i).GetNumberAsInt() == variant) return true;
+        return false;
+    };
+    for (tinygltf::Mesh& mesh : document->model.meshes)
+        for (tinygltf::Primitive& primitive : mesh.primitives) {
+            const auto extension = primitive.extensions.find(kExtension);
+            if (extension == primitive.extensions.end()) continue;
+            const tinygltf::Value& mappings = extension->second.Get("mappings");
+            for (size_t i = 0; i < mappings.ArrayLen(); ++i)
+                if (isMeant(mappings.Get(i)))
+                    primitive.material = mappings.Get(i).Get("material").GetNumberAsInt();
+        }
+}
+
+GltfVisibility VisibilityOf(const GltfDocument& document, const tinygltf::Value& extras,
+                            const std::string& path) {
+    return {OwnFlag(document, extras, "hiddenFromCamera", path),
+            OwnFlag(document, extras, "castsNoShadow", path)};
+}
+
+GltfVisibility VisibilityOf(const GltfDocument& document, int node) {
+    return VisibilityOf(document, document.model.nodes[size_t(node)].extras,
+                        fmt::format("/nodes/{}", node));
+}
+
+void Hide(const GltfVisibility& visibility, Parameters* parameters) {
+    const ParameterWriter write(parameters, {});
+    if (visibility.hiddenFromCamera) write.Bool("hiddenfromcamera", true);
+    if (visibility.castsNoShadow) write.Bool("castsnoshadow", true);
 }
 
 }  // namespace lull

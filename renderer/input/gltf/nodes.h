@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "renderer/base/math.h"
+#include "renderer/input/description.h"
 #include "renderer/input/gltf/document.h"
 
 namespace lull {
@@ -28,5 +30,31 @@ std::vector<Mat4d> ReadCopies(const GltfDocument&, int node);
 // Makes a matrix of a translation, a rotation (a quaternion x, y, z, w of any length) and a scale.
 Mat4d MatrixOf(const Eigen::Vector3d& translation, const Eigen::Vector4d& rotation,
                const Eigen::Vector3d& scale);
+
+// Finds the materials that a glTF file has under other names (KHR_materials_variants).
+
+// Lists the names of a file's variants, in its order.
+std::vector<std::string> VariantNames(const GltfDocument&);
+
+// Gives all primitives the materials that they have in the variant of that name or number, from 0;
+// those that it does not name keep their own. Throws Error if there is none such.
+void UseVariant(const std::string& wanted, GltfDocument*);
+
+// Reads our own properties of nodes and materials that say which rays do not see them.
+
+// Rays that pass the mesh of a node, the sphere of its light, or a surface.
+struct GltfVisibility {
+    bool hiddenFromCamera = false, castsNoShadow = false;
+
+    auto operator<=>(const GltfVisibility&) const = default;
+};
+
+// Reads the `extras` of the node or material at the JSON pointer `path`. Throws Error.
+GltfVisibility VisibilityOf(const GltfDocument&, const tinygltf::Value& extras,
+                            const std::string& path);
+GltfVisibility VisibilityOf(const GltfDocument&, int node);
+
+// Adds parameters of a shape.
+void Hide(const GltfVisibility&, Parameters*);
 
 }  // namespace lull

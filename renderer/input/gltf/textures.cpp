@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "renderer/files/file_contents.h"
-#include "renderer/input/gltf/parameters.h"
+#include "renderer/files/file_io.h"
+#include "renderer/input/gltf/materials.h"
 #include "renderer/input/gltf/uri.h"
 
 namespace lull {

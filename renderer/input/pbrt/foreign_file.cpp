@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "stopping/base/text_encoding.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "renderer/input/pbrt/shape_material.h"
+#include "renderer/input/pbrt/pbrt_state.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "renderer/files/text_file.h"
+#include "renderer/files/file_io.h"
 #include "renderer/input/pbrt/foreign_file.h"
-#include "stopping/base/text_encoding.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/base/error.h"
-#include "renderer/files/file_contents.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 

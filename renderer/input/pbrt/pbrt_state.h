@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -62,5 +63,12 @@ Mat4d ColumnsMatrix(std::span<const double, 16> m, const FileLoc& loc);
 
 // Throws Error at `loc` unless m and its inverse are within float's range.
 void CheckInvertible(const Mat4d& m, const FileLoc& loc);
+
+// Parameters of materials that shapes set for themselves.
+
+// Returns the material of a shape that has parameters of materials itself: they replace those of
+// `material`, as in pbrt-v3. Nothing is returned where the shape has none.
+std::optional<MaterialEntity> MaterialOfShape(const MaterialEntity& material,
+                                              const ShapeEntity& shape);
 
 }  // namespace lull

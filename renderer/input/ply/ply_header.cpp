@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "renderer/files/file_contents.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 namespace {

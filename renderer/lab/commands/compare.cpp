@@ -4,19 +4,19 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 
-#include "renderer/commands/input_files.h"
-#include "renderer/commands/interrupt.h"
+#include "renderer/commands/checkpoint_options.h"
+#include "renderer/commands/render_files.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/lab/commands/compare_options.h"
-#include "renderer/lab/commands/comparison_table.h"
 #include "renderer/lab/commands/lab_options.h"
+#include "renderer/lab/commands/tables.h"
 #include "renderer/lab/comparison/compared_files.h"
 #include "renderer/lab/comparison/error_curves.h"
 #include "renderer/mpi/job.h"
-#include "renderer/results/block_files.h"
 #include "renderer/results/image_files.h"
+#include "renderer/results/report.h"
 #include "stopping/base/parallel.h"
-#include "stopping/rules/denoised.h"
+#include "stopping/rules/lnoise.h"
 
 namespace lull::compare {
 

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/option_values.h"
 #include "renderer/lab/commands/lab_options.h"
 
 namespace lull::compare {

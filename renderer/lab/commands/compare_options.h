@@ -3,7 +3,7 @@
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/files/result_files.h"
+#include "renderer/files/outputs.h"
 #include "renderer/lab/pages/comparison_page.h"
 #include "renderer/vision/display_model.h"
 #include "stopping/rules/rule_table.h"

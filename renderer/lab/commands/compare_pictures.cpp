@@ -1,12 +1,12 @@
 // `lull compare --images`: the images of a rule and of people, made of another renderer's pictures.
 #include <fmt/format.h>
 
-#include "renderer/commands/input_files.h"
+#include "renderer/commands/render_files.h"
 #include "renderer/image/image_io.h"
 #include "renderer/lab/commands/compare_options.h"
-#include "renderer/lab/commands/picture_options.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/viewpoints/picture_comparison.h"
-#include "renderer/results/block_files.h"
+#include "renderer/results/report.h"
 #include "stopping/base/parallel.h"
 #include "stopping/rules/thresholds.h"
 

@@ -7,12 +7,11 @@
 #include <filesystem>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/option_values.h"
 #include "renderer/files/file_io.h"
-#include "renderer/lab/commands/picture_options.h"
+#include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/comparison/compared_files.h"
-#include "renderer/lab/viewpoints/picture_entropies.h"
-#include "stopping/base/csv.h"
+#include "renderer/lab/viewpoints/picture_folder.h"
+#include "stopping/base/input_file.h"
 
 namespace lull::entropy {
 

@@ -6,19 +6,14 @@
 #include <iterator>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/input_files.h"
-#include "renderer/commands/option_values.h"
+#include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"
-#include "renderer/lab/commands/answers_table.h"
-#include "renderer/lab/commands/evaluation_table.h"
 #include "renderer/lab/commands/lab_options.h"
-#include "renderer/lab/commands/picture_options.h"
-#include "stopping/lab/evaluation/constants.h"
+#include "renderer/lab/commands/tables.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
-#include "stopping/lab/evaluation/recorded_rules.h"
-#include "stopping/lab/recordings/block_split.h"
+#include "stopping/lab/evaluation/rivals.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

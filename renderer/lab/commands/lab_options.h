@@ -6,6 +6,9 @@
 #include <span>
 #include <string>
 
+#include "renderer/commands/command.h"
+#include "renderer/files/outputs.h"
+#include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "renderer/vision/display_model.h"
 
 namespace lull {
@@ -21,5 +24,18 @@ void AddViewingOption(CLI::App& app, DisplayModel* display);
 // Throws CLI::ValidationError if an option was given that is not one of `names`, those that have an
 // effect `where`, as "without a SCENE".
 void AllowOnly(const CLI::App& app, std::span<const char* const> names, const std::string& where);
+
+// Lets commands take folders of another renderer's pictures.
+
+// Adds --images, which can be given again, and --block unless the command has it already.
+void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blockSize);
+CLI::Option* AddBlockOption(CLI::App& app, int* blockSize);
+
+// Returns the pictures as files that are read.
+std::vector<NamedFile> InputsOf(const PictureFolder& folder);
+
+// Records pictures and tells every ten seconds how far it is, and at last how many there were.
+ViewpointRecording RecordAndTell(const PictureFolder& folder, PictureRecordingOptions options,
+                                 const Talk& talk);
 
 }  // namespace lull

@@ -6,11 +6,9 @@
 #include <algorithm>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/option_values.h"
 #include "renderer/commands/render_job.h"
-#include "renderer/files/result_files.h"
+#include "renderer/files/outputs.h"
 #include "renderer/lab/commands/lab_options.h"
-#include "renderer/lab/commands/picture_options.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "renderer/mpi/job.h"
 #include "stopping/base/parallel.h"

@@ -5,13 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "renderer/base/error.h"
 #include "renderer/base/memory.h"
-#include "renderer/base/say.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_job.h"
-#include "renderer/files/result_files.h"
+#include "renderer/files/outputs.h"
 #include "renderer/lab/commands/study_options.h"
-#include "renderer/lab/viewpoints/study_render.h"
+#include "renderer/lab/viewpoints/study.h"
 #include "stopping/base/parallel.h"
 
 namespace lull::study {

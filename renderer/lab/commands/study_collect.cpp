@@ -4,12 +4,12 @@
 #include <map>
 #include <sstream>
 
-#include "renderer/base/say.h"
+#include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
 #include "renderer/files/outputs.h"
 #include "renderer/lab/commands/study_options.h"
-#include "renderer/lab/pages/collected_page.h"
-#include "stopping/lab/observers/observer_tables.h"
+#include "renderer/lab/pages/study_page.h"
+#include "stopping/lab/observers/observers.h"
 
 namespace lull::study {
 

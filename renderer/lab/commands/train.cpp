@@ -6,15 +6,13 @@
 
 #include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/interrupt.h"
-#include "renderer/commands/talk.h"
 #include "renderer/files/file_io.h"
-#include "renderer/lab/commands/evaluation_table.h"
+#include "renderer/lab/commands/tables.h"
 #include "renderer/lab/commands/train_options.h"
 #include "renderer/lab/commands/training_printer.h"
 #include "stopping/base/parallel.h"
 #include "stopping/lab/recordings/labelled_blocks.h"
-#include "stopping/lab/training/training_run.h"
+#include "stopping/lab/training/training_plan.h"
 #include "stopping/network/model_file.h"
 
 namespace lull::train {

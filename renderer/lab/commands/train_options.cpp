@@ -8,9 +8,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "renderer/commands/option_values.h"
+#include "renderer/commands/command.h"
 #include "renderer/lab/commands/lab_options.h"
-#include "stopping/lab/training/training_preset.h"
+#include "stopping/lab/training/training_plan.h"
 
 namespace lull::train {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/base/clocks.h"
-#include "renderer/base/say.h"
+#include "renderer/base/error.h"
 
 namespace lull {
 

@@ -9,7 +9,7 @@
 #include "renderer/base/error.h"
 #include "renderer/image/image_io.h"
 #include "renderer/results/channel_names.h"
-#include "renderer/results/exr_windows.h"
+#include "renderer/results/image_files.h"
 
 namespace lull {
 

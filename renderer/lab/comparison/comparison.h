@@ -6,7 +6,6 @@
 #include <string>
 
 #include "renderer/lab/metrics/image_error.h"
-#include "renderer/lab/metrics/seams.h"
 #include "renderer/render/block_monitor.h"
 #include "renderer/render/render.h"
 

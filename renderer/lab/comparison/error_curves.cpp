@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "stopping/base/parallel.h"
-#include "stopping/lab/evaluation/recorded_rules.h"
+#include "stopping/lab/evaluation/evaluated_rules.h"
 
 namespace lull {
 

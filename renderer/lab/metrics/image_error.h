@@ -1,6 +1,8 @@
 // Measures how far an image is from a reference, as a whole and by block.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "renderer/film/film.h"
@@ -16,7 +18,7 @@ struct ErrorMaps {
     std::vector<float> relative;   // the same divided by reference^2 + 0.01
     std::vector<float> lightness;  // squared, of L in [0, 100] of the 8-bit display image
     std::vector<float> display;    // squared, of the 8-bit display values, the mean over R, G, B
-    std::vector<float> ssim;       // ssim.h; NaN near the border
+    std::vector<float> ssim;       // image_error.h; NaN near the border
     std::vector<float> flip;       // flip.h, at the viewing distance it takes by default
     VisibleDifference visibleDifference;  // of the 8-bit display images
 };
@@ -40,5 +42,38 @@ struct ErrorFigures {
 // Averages the maps over `rect`, in pixels from the image's upper left corner; not empty.
 ErrorFigures Average(const ErrorMaps&, const PixelRect& rect);
 ErrorFigures Average(const ErrorMaps&);
+
+// Measures whether borders of blocks are visible: the noise level jumps where blocks stop at
+// different spp.
+
+// Mean jumps of the noise level: the difference of the root mean squares of the noise in the
+// 10 pixels to either side of a line, over 20 pixels of its length. Where the noise is even, only
+// the spread of the estimate remains; `inside` says how much that and the picture itself
+// contribute.
+struct Seams {
+    double border = 0;  // across the borders between blocks
+    double inside = 0;  // across the middle lines of the blocks, both ways
+    // 1: borders are like the rest of the image; NaN where there is no border or no noise.
+    double Ratio() const;
+};
+
+// Measures an image's noise: a signed value per pixel, such as the error of the lightness,
+// row-major. Blocks are in pixels from the image's upper left corner. Lines less than 10 pixels
+// from the next one are left out.
+Seams MeasureSeams(std::span<const float> noise, int width, std::span<const PixelRect> blocks);
+
+// Compares the structure of images: SSIM.
+
+// Half the side of the window, which is 11 x 11 pixels.
+inline constexpr int kSsimRadius = 5;
+
+// Returns the structural similarity around each pixel, in [-1, 1] and 1 where both images are the
+// same, of two images in 8-bit sRGB (R, G, B of the first pixel, row by row): Wang, Bovik, Sheikh,
+// Simoncelli: Image Quality Assessment: From Error Visibility to Structural Similarity, IEEE
+// Transactions on Image Processing 13(4), 2004, with its Gaussian window (standard deviation 1.5),
+// K1 = 0.01 and K2 = 0.03, on the luma 0.299 R + 0.587 G + 0.114 B. NaN where the window would
+// extend beyond the image, where the paper defines no value.
+std::vector<float> SsimMap(std::span<const uint8_t> image, std::span<const uint8_t> reference,
+                           int width, int height);
 
 }  // namespace lull

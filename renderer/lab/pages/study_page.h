@@ -2,7 +2,8 @@
 #pragma once
 
 #include "renderer/lab/viewpoints/study.h"
-#include "renderer/results/report_json.h"
+#include "renderer/results/report.h"
+#include "stopping/lab/observers/observers.h"
 
 namespace lull {
 
@@ -18,5 +19,11 @@ std::string MakeStudyPage(const Study&, const StudySettings&);
 // "references", as data URIs. Throws Error beginning with the path for anything that is not such a
 // page.
 Json ReadStudyPage(const std::string& path);
+
+// Writes the page of the observers' answers.
+
+// Returns the page. `study` is the result of ReadStudyPage() for the viewpoint, or null: then there
+// are tables, but no image.
+std::string MakeCollectedPage(const Collected&, const Json& study);
 
 }  // namespace lull

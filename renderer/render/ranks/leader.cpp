@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "renderer/render/light_rounds.h"
-#include "renderer/render/ranks/deal.h"
 #include "renderer/render/ranks/rank.h"
 
 namespace lull {

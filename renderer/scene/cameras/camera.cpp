@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/rounding.h"
+#include "renderer/base/math.h"
 #include "renderer/base/sampling.h"
-#include "renderer/files/file_contents.h"
-#include "renderer/input/nonnegative.h"
-#include "renderer/scene/cameras/lens_file.h"
-#include "renderer/scene/geometry/reach.h"
+#include "renderer/files/file_io.h"
+#include "renderer/input/spectrum.h"
+#include "renderer/scene/cameras/lens_system.h"
+#include "renderer/scene/geometry/shape.h"
 
 namespace lull {
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "renderer/scene/cameras/camera.h"
+#include "renderer/scene/interaction.h"
 
 namespace lull {
 
@@ -25,5 +26,12 @@ std::optional<CameraView> ViewOf(const Camera&, const Vec3f& p, const Vec2f& len
 
 // Returns the pixels per sr about the direction d of a ray of such a camera.
 float PixelsPerSolidAngle(const Camera&, const Vec3f& d, float time);
+
+// Computes how far apart the samples of neighbouring pixels lie on a surface.
+
+// Fills in dpdx, dpdy, duvdx and duvdy of a hit of the sample's camera ray, from where the rays one
+// pixel to the right and below meet the tangent plane (Igehy 1999; pbrt 3rd ed., 10.1). Samples lie
+// Camera::sampleSpacing apart.
+void ComputeFootprint(const Camera&, const CameraSample&, SurfaceInteraction* hit);
 
 }  // namespace lull

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <thread>
 
-#include "renderer/scene/cameras/lens_bundle.h"
+#include "renderer/files/file_io.h"
+#include "renderer/input/spectrum.h"
 
 namespace lull {
 namespace {
@@ -202,6 +205,122 @@ Ray LensSystem::Generate(const Vec2f& st, const Vec2f& u, float* weight) const {
     if (!TraceFromFilm(&ray)) return {Vec3f::Zero(), Vec3f::UnitZ()};
     *weight = float(Sqr(cos2) * size.prod() * scale);
     return {ray.o.cast<float>(), ray.d.normalized().cast<float>(), kInfinity};
+}
+
+namespace {
+
+using Values = LensBundle::Values;
+using Passes = std::array<int64_t, LensBundle::kMost>;  // 0: stopped
+
+// Tell which rays pass an interface at height z of the axis, and carry them through it. They treat
+// each ray as LensSystem does, in loops without branches, which compilers vectorise.
+void PassStop(const LensInterface& stop, double z, LensBundle* rays, Passes* passes) {
+    const double aperture2 = stop.apertureRadius * stop.apertureRadius;
+    for (size_t i = 0; i < rays->count; ++i) {
+        const double t = (z - rays->oz[i]) / rays->dz[i];
+        const double x = rays->ox[i] + t * rays->dx[i], y = rays->oy[i] + t * rays->dy[i];
+        (*passes)[i] =
+            (rays->dz[i] > 0) & (t >= 0) & (t < kInfinity) & (x * x + y * y <= aperture2);
+        rays->ox[i] = x;
+        rays->oy[i] = y;
+        rays->oz[i] += t * rays->dz[i];
+    }
+}
+
+void PassLens(const LensInterface& lens, double z, double eta, LensBundle* rays, Passes* passes) {
+    const double center = z - lens.radius, radius2 = lens.radius * lens.radius;
+    const double aperture2 = lens.apertureRadius * lens.apertureRadius;
+    const double convex = lens.radius < 0 ? -1 : 1;
+    for (size_t i = 0; i < rays->count; ++i) {
+        const double ox = rays->ox[i], oy = rays->oy[i], oz = rays->oz[i] - center;
+        double dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
+        const double a = dx * dx + dy * dy + dz * dz, halfB = dx * ox + dy * oy + dz * oz;
+        const double discriminant = halfB * halfB - a * (ox * ox + oy * oy + oz * oz - radius2);
+        const double root = convex * std::sqrt(std::max(discriminant, 0.));
+        const double t = (-halfB + (dz < 0 ? -root : root)) / a;
+        const double px = ox + t * dx, py = oy + t * dy, pz = oz + t * dz;
+        // The normal, turned to where the ray comes from.
+        const double side = px * dx + py * dy + pz * dz > 0 ? -1 : 1;
+        const double n = side / std::sqrt(px * px + py * py + pz * pz), unit = 1 / std::sqrt(a);
+        const double nx = px * n, ny = py * n, nz = pz * n;
+        dx *= unit, dy *= unit, dz *= unit;
+        const double cosine = -(nx * dx + ny * dy + nz * dz);
+        const double sine2 = eta * eta * std::max(0., 1 - cosine * cosine);
+        const double bend = eta * cosine - std::sqrt(std::max(0., 1 - sine2));
+        (*passes)[i] =
+            (discriminant >= 0) & (t >= 0) & (px * px + py * py <= aperture2) & (sine2 < 1);
+        rays->ox[i] = px;
+        rays->oy[i] = py;
+        rays->oz[i] = pz + center;
+        rays->dx[i] = eta * dx + bend * nx;
+        rays->dy[i] = eta * dy + bend * ny;
+        rays->dz[i] = eta * dz + bend * nz;
+    }
+}
+
+// Moves those that pass to the front.
+void Keep(const Passes& passes, LensBundle* rays) {
+    size_t kept = 0;
+    for (size_t i = 0; i < rays->count; ++i) {
+        for (Values* values : {&rays->ox, &rays->oy, &rays->oz, &rays->dx, &rays->dy, &rays->dz})
+            (*values)[kept] = (*values)[i];
+        rays->rear[kept] = rays->rear[i];
+        kept += size_t(passes[i]);
+    }
+    rays->count = kept;
+}
+
+}  // namespace
+
+void LensBundle::Add(const Eigen::Vector3d& film, const Eigen::Vector3d& lens) {
+    ox[count] = film.x(), oy[count] = film.y(), oz[count] = film.z();
+    dx[count] = lens.x() - film.x(), dy[count] = lens.y() - film.y(),
+    dz[count] = lens.z() - film.z();
+    rear[count++] = lens.head<2>();
+}
+
+void LensBundle::TraceFromFilm(std::span<const LensInterface> interfaces) {
+    double z = 0;
+    Passes passes;
+    for (size_t i = interfaces.size(); i-- > 0 && count > 0;) {
+        const LensInterface& interface = interfaces[i];
+        z += interface.thickness;
+        const double beyond = i > 0 ? interfaces[i - 1].eta : 1;
+        if (interface.radius == 0)
+            PassStop(interface, z, this, &passes);
+        else
+            PassLens(interface, z, interface.eta / beyond, this, &passes);
+        Keep(passes, this);
+    }
+}
+
+std::vector<LensInterface> LoadLens(const std::string& path, const FileLoc& loc) {
+    const std::vector<float> numbers = ReadNumberFile(path, "lens", loc);
+    const auto fail = [&](const std::string& what) {
+        throw Error(loc, fmt::format("the lens file '{}' {}", Printable(path, 4096), what));
+    };
+    constexpr size_t kMost = 1000;
+    if (numbers.empty() || numbers.size() % 4 != 0 || numbers.size() > 4 * kMost)
+        fail(fmt::format("has {} numbers; four are needed for each of 1 to {} interfaces",
+                         numbers.size(), kMost));
+    std::vector<LensInterface> interfaces;
+    for (size_t i = 0; i < numbers.size(); i += 4) {
+        const double radius = double(numbers[i]), thickness = double(numbers[i + 1]);
+        const double eta = double(numbers[i + 2]), diameter = double(numbers[i + 3]);
+        constexpr double kMetres = 1e-3, kMostLength = 1e9;
+        if (!(std::abs(radius) <= kMostLength) || !(std::abs(thickness) <= kMostLength))
+            fail(fmt::format("has a radius or thickness beyond {:g} mm in row {}", kMostLength,
+                             i / 4 + 1));
+        if (!(diameter > 0 && diameter <= kMostLength))
+            fail(fmt::format("has a diameter of {:g} mm in row {}; it has to be positive", diameter,
+                             i / 4 + 1));
+        if (!(eta == 0 || (eta >= 0.1 && eta <= 10)))
+            fail(fmt::format("has an index of refraction of {:g} in row {}", eta, i / 4 + 1));
+        // An index of 0 stands for air.
+        interfaces.push_back(
+            {radius * kMetres, thickness * kMetres, eta == 0 ? 1 : eta, 0.5 * diameter * kMetres});
+    }
+    return interfaces;
 }
 
 }  // namespace lull

@@ -2,7 +2,9 @@
 // pbrt-v3's realistic camera does (3rd ed., 6.4).
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "renderer/base/error.h"
@@ -66,5 +68,31 @@ class LensSystem {
     double filmRadius;  // half its diagonal
     double scale;       // of weights
 };
+
+// Traces many rays through the lenses of a camera at once, as wide as the processor's vectors are.
+
+// Each ray has its number in every array.
+struct LensBundle {
+    static constexpr size_t kMost = 64;
+    using Values = std::array<double, kMost>;
+
+    size_t count = 0;
+    Values ox, oy, oz, dx, dy, dz;            // origins, directions
+    std::array<Eigen::Vector2d, kMost> rear;  // where they were to meet the rear lens
+
+    bool IsFull() const { return count == kMost; }
+    // Adds a ray from a point of the film to one at the rear lens. There must be room.
+    void Add(const Eigen::Vector3d& film, const Eigen::Vector3d& lens);
+    // Follows all from the film to the scene and keeps those that get there, in their order.
+    void TraceFromFilm(std::span<const LensInterface>);
+};
+
+// Reads descriptions of lenses.
+
+// Reads the lens file of pbrt-v3: for each interface, from the scene to the film, radius of
+// curvature (0: the stop), thickness, index of refraction and diameter, lengths in millimetres.
+// Throws Error, beginning with the file, if a row is cut short, there are none or too many, or a
+// number is out of range. `loc` is the place that names the file.
+std::vector<LensInterface> LoadLens(const std::string& path, const FileLoc& loc);
 
 }  // namespace lull

@@ -34,8 +34,8 @@
 //         bounds the normals that samples and hits have.
 #pragma once
 
-#include "renderer/base/rounding.h"
-#include "renderer/base/visit.h"
+#include "renderer/base/math.h"
+#include "renderer/base/variant.h"
 #include "renderer/scene/geometry/shapes/curves.h"
 #include "renderer/scene/geometry/shapes/mesh.h"
 #include "renderer/scene/geometry/shapes/quadric.h"
@@ -43,6 +43,31 @@
 #include "renderer/scene/textures/texture.h"
 
 namespace lull {
+
+// Limits how far from the origin a scene may go. Embree takes no ray with a coordinate of more than
+// 1.84e18, and finds no triangle where products of three lengths are beyond floats. That is made
+// sure of where rays come from, and costs those between surfaces nothing.
+
+// All that a scene consists of lies within this distance of the origin, so that no ray that starts
+// there and ends there is longer than kLongestRay.
+constexpr float kFarthest = 1e12f;
+constexpr float kLongestRay = 1e18f;
+
+// Embree takes hits of triangles of less than 1e-18 square units for hits of their first corner: a
+// scene of triangles has to be larger than this.
+constexpr float kSmallestScene = 1e-6f;
+
+// Returns the greatest distance of a point of the box from the origin, also where that is beyond
+// the squares of floats; 0 for an empty box.
+double Farthest(const Bounds3f& box);
+
+// Returns the distance within which things may lie so that rays between them can be carried by the
+// transform, an affine one; kFarthest at most. It may be negative.
+double ReachThrough(const Mat4d& transform);
+
+// Returns whether an affine transform can be inverted by Cramer's rule in floats, as Embree does:
+// the products of two and of three lengths are floats.
+bool IsInvertibleInFloats(const Mat4d& transform);
 
 using Geometry = std::variant<Mesh, Sphere, Disk, Revolved, Curves>;
 
@@ -97,5 +122,25 @@ struct Shape {
     uint32_t PrimitiveCount() const;
     Bounds3f WorldBounds() const;
 };
+
+// Computes the coverage of a mesh at a point.
+
+// Returns the probability, in [0, 1], that a ray hits the shape at this point of a triangle. The
+// shape is a mesh with coverage.
+inline float CoverageAt(const Shape& shape, const TextureTable& textures, const Vec3f& p,
+                        uint32_t triangle, float b1, float b2) {
+    const Coverage& coverage = *shape.coverage;
+    const Mesh& mesh = *std::get_if<Mesh>(&shape.geometry);
+    float alpha = coverage.factor;
+    if (!coverage.alpha.IsConstant()) {
+        const Vec2f uv = coverage.secondUv ? mesh.Uv1(triangle, b1, b2) : mesh.Uv(triangle, b1, b2);
+        alpha *= textures.Evaluate(coverage.alpha, TextureContext{p, uv});
+    } else {
+        alpha *= coverage.alpha.constant;
+    }
+    if (coverage.vertexAlpha) alpha *= mesh.Color(triangle, b1, b2)[3];
+    if (coverage.cutoff >= 0) return alpha >= coverage.cutoff ? 1 : 0;
+    return std::clamp(alpha, 0.f, 1.f);
+}
 
 }  // namespace lull

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "renderer/scene/geometry/shapes/placement.h"
 #include "renderer/scene/geometry/shapes/shape_factory.h"
 
 namespace lull {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "renderer/scene/geometry/animated_transform.h"
-#include "renderer/scene/geometry/reach.h"
 #include "renderer/scene/geometry/shape.h"
 #include "renderer/scene/materials/material.h"
 

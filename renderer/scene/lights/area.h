@@ -1,10 +1,8 @@
 #pragma once
 
 #include "renderer/scene/geometry/shape.h"
-#include "renderer/scene/lights/emission_map.h"
-#include "renderer/scene/lights/emission_profile.h"
-#include "renderer/scene/lights/light_bounds.h"
 #include "renderer/scene/lights/light_sample.h"
+#include "renderer/scene/lights/point.h"
 
 namespace lull {
 

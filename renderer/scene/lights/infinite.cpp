@@ -1,12 +1,148 @@
 #include "renderer/scene/lights/infinite.h"
 
+#include <numbers>
+#include <numeric>
+
 #include "renderer/base/color.h"
-#include "renderer/base/rounding.h"
+#include "renderer/base/math.h"
+#include "renderer/base/memory.h"
+#include "renderer/base/sampling.h"
+#include "renderer/base/variant.h"
 #include "renderer/image/image_io.h"
-#include "renderer/scene/lights/light_color.h"
-#include "renderer/scene/lights/studio.h"
+#include "renderer/scene/lights/light_sample.h"
+#include "renderer/scene/textures/imagemap.h"
 
 namespace lull {
+namespace {
+
+// Growth of the variance that blocks may add which a compensated map samples evenly.
+constexpr float kTolerance = 0.02f;
+
+// Dark cells keep this much of their brightness: directions that scatter light but are never
+// sampled, which shading normals cause, need it.
+constexpr float kLeast = 0.1f;
+
+// Returns the texel beside that of a cell, on the side of the cell, of n in a ring.
+int NeighbourOf(int cell, int n) { return (cell / 2 + (cell % 2 == 0 ? n - 1 : 1)) % n; }
+
+}  // namespace
+
+EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated)
+    : image(std::move(i)), scale(s) {
+    const int columns = 2 * image.width, rows = 2 * image.height;
+    const auto solidAngle = [&](int row) {
+        return std::sin(kPi * (float(row) + 0.5f) / float(rows));
+    };
+    float mean = 0;
+    if (isCompensated) {
+        double sum = 0, weights = 0;
+        std::vector<float> brightness(columns);
+        for (int row = 0; row < rows; ++row) {
+            Brightness(row, brightness);
+            sum += solidAngle(row) * std::accumulate(brightness.begin(), brightness.end(), 0.0);
+            weights += double(solidAngle(row)) * columns;
+        }
+        mean = float(sum / weights);
+    }
+    const auto weigh = [&](int row, std::span<float> weights) {
+        Brightness(row, weights);
+        for (float& w : weights) w = solidAngle(row) * std::max(w - mean, kLeast * w);
+    };
+    cells = BlockDistribution(columns, rows, weigh, isCompensated ? kTolerance : 0);
+}
+
+Rgb EnvironmentMap::Radiance(const Vec2f& st) const {
+    return scale * BilinearRgb(image, st, Wrap::Repeat);
+}
+
+void EnvironmentMap::Prefetch(const Vec2f& st) const {
+    const Footprint f = BilinearFootprint(st, image.width, image.height, Wrap::Repeat);
+    Visit(image.texels, [&](const auto& texels) {
+        for (const int y : {f.y0, f.y1})
+            lull::Prefetch(
+                &texels[(size_t(y) * size_t(image.width) + size_t(f.x0)) * size_t(image.channels)]);
+    });
+}
+
+void EnvironmentMap::Brightness(int row, std::span<float> cells) const {
+    // Interpolate between the centres of the texels, down and then across.
+    const int near = row / 2, far = NeighbourOf(row, image.height);
+    std::vector<float> column(image.width);
+    std::visit(
+        [&](const auto& texels) {
+            for (int x = 0; x < image.width; ++x)
+                column[x] = Luminance(scale * (0.75f * TexelRgb(image, texels, x, near) +
+                                               0.25f * TexelRgb(image, texels, x, far)));
+        },
+        image.texels);
+    for (int u = 0; u < int(cells.size()); ++u)
+        cells[u] = 0.75f * column[u / 2] + 0.25f * column[NeighbourOf(u, image.width)];
+}
+
+Rgb EnvironmentMap::MeanTexel() const {
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    std::visit(
+        [&](const auto& texels) {
+            for (int y = 0; y < image.height; ++y)
+                for (int x = 0; x < image.width; ++x)
+                    sum += TexelRgb(image, texels, x, y).template cast<double>();
+        },
+        image.texels);
+    return scale * (sum / (double(image.width) * image.height)).cast<float>();
+}
+
+namespace {
+
+// A square soft box: where it hangs, in degrees, to the right of the camera and above the horizon,
+// half its width, and how bright it is.
+struct SoftBox {
+    float azimuth, elevation, halfWidth, radiance;
+};
+constexpr SoftBox kBoxes[] = {
+    {-45, 45, 22, 4},    // the key light
+    {60, 15, 25, 1.5f},  // fills its shadows
+    {160, 55, 15, 3},    // draws the outline from behind
+};
+
+float SmoothStep(float x) {
+    x = std::clamp(x, 0.f, 1.f);
+    return x * x * (3 - 2 * x);
+}
+
+Vec3f Direction(float azimuth, float elevation) {
+    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+            std::sin(elevation)};
+}
+
+float RadianceOf(const SoftBox& box, const Vec3f& w) {
+    constexpr float kDegree = kPi / 180, kEdge = 0.2f;  // of half the width
+    const float a = box.azimuth * kDegree, e = box.elevation * kDegree;
+    const Vec3f center = Direction(a, e), right(-std::sin(a), std::cos(a), 0);
+    const float ahead = w.dot(center);
+    if (ahead <= 0) return 0;
+    const float scale = 1 / (ahead * std::tan(box.halfWidth * kDegree));
+    const float x = std::abs(w.dot(right)) * scale,
+                y = std::abs(w.dot(center.cross(right))) * scale;
+    return box.radiance * SmoothStep((1 - std::max(x, y)) / kEdge);
+}
+
+}  // namespace
+
+Image MakeStudio() {
+    constexpr int kWidth = 256, kHeight = 128;
+    std::vector<float> texels;
+    texels.reserve(size_t(kWidth) * kHeight);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const float elevation = (0.5f - (float(y) + 0.5f) / kHeight) * kPi;
+            const Vec3f w = Direction(2 * kPi * (float(x) + 0.5f) / kWidth, elevation);
+            float radiance = 0.12f + 0.33f * SmoothStep(0.5f + 0.5f * w.z());
+            for (const SoftBox& box : kBoxes) radiance += RadianceOf(box, w);
+            texels.push_back(radiance);
+        }
+    return {kWidth, kHeight, 1, std::move(texels)};
+}
+
 namespace {
 
 // Returns latitude-longitude coordinates of a unit vector of light space, each in [0, 1].
@@ -119,6 +255,46 @@ float InfiniteLight::Stretch(const Vec3f& w) const {
 // pbrt-v3.
 Rgb InfiniteLight::Power() const {
     return kPi * Sqr(worldRadius) * (map ? map->MeanTexel() : constant);
+}
+
+DistantLight DistantLight::Make(const LightReader& in) {
+    const LightEntity& entity = in.entity;
+    const Parameters& params = entity.parameters;
+    const Rgb L = LightColor(entity, "L", in.warnings);
+    const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
+    const Vec3f to = params.GetPoint3("to", Vec3f(0, 0, 1));
+    const Vec3f w = TransformVector(entity.worldFromLight, from - to);
+    if (!(w.norm() > 0))
+        throw Error(entity.loc, "the distant light's \"from\" and \"to\" coincide");
+    return {w.normalized(), L, in.worldRadius};
+}
+
+std::optional<LightSample> DistantLight::Sample(const Vec3f&, const Vec2f&) const {
+    return LightSample{
+        .L = L, .wi = w, .pdf = 1, .isDelta = true, .isHidden = false, .isAtInfinity = true};
+}
+
+// The disc's irradiance is pi sin^2 of its radius times L.
+SunLight::SunLight(const DistantLight& parallel, double angle)
+    : w(parallel.w),
+      L(parallel.L / float(std::numbers::pi * Sqr(std::sin(angle / 2)))),
+      height(float(2 * Sqr(std::sin(angle / 4)))),
+      solidAngle(2 * kPi * height),
+      power(parallel.Power()) {}
+
+std::optional<LightSample> SunLight::Sample(const Vec3f&, const Vec2f& u) const {
+    // A point of the unit disk, whose area is that of the cap.
+    const Vec2f d = SampleConcentricDisk(u);
+    const float h = height * std::min(d.squaredNorm(), 1.f);
+    const float across = std::sqrt(height * (2 - h));
+    Vec3f s, t;
+    CoordinateSystem(w, &s, &t);
+    return LightSample{.L = L,
+                       .wi = ((1 - h) * w + across * (d.x() * s + d.y() * t)).normalized(),
+                       .pdf = 1 / solidAngle,
+                       .isDelta = false,
+                       .isHidden = false,
+                       .isAtInfinity = true};
 }
 
 }  // namespace lull

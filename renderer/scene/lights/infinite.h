@@ -2,12 +2,52 @@
 
 #include <memory>
 
-#include "renderer/scene/lights/environment_map.h"
-#include "renderer/scene/lights/light_bounds.h"
-#include "renderer/scene/lights/light_reader.h"
+#include "renderer/base/block_distribution.h"
+#include "renderer/image/image.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
+
+// Radiance from all directions as an image, sampled by its brightness.
+
+// Interpolates bilinearly and repeats in both directions, as pbrt-v3 does. The density is constant
+// over cells of half a texel a side, in proportion to the brightness at their centres.
+class EnvironmentMap {
+  public:
+    // Sums of a few such texels are still finite.
+    static constexpr float kMaxTexel = 1e37f;
+
+    // Multiplies the texels by `scale`. The products must be from 0 to kMaxTexel. Rows run from
+    // theta = 0; the density follows the solid angle of a row. Not compensated, it is pbrt-v3's
+    // (3rd ed., 14.2.4). A compensated map leaves texels darker than the mean to BSDF sampling,
+    // which suffices there (Karlik et al. 2019), and samples nearly constant maps uniformly.
+    EnvironmentMap(Image image, const Rgb& scale, bool isCompensated = false);
+
+    // Returns the radiance at a point of the unit square.
+    Rgb Radiance(const Vec2f& st) const;
+    // Starts to load the texels there: every access to a large map waits for memory.
+    void Prefetch(const Vec2f& st) const;
+    // Returns a point of the unit square, and the density there, which is 0 if the map is black.
+    Vec2f Sample(const Vec2f& u, float* pdf) const { return cells.Sample(u, pdf); }
+    // Returns the density over the unit square.
+    float Pdf(const Vec2f& st) const { return cells.Pdf(st); }
+    Rgb MeanTexel() const;
+
+  private:
+    // Writes the brightness of a row of cells.
+    void Brightness(int row, std::span<float> cells) const;
+
+    Image image;
+    Rgb scale;
+    BlockDistribution cells;
+};
+
+// The light of a photographer's studio, for scenes that have none of their own.
+
+// Returns a latitude-longitude map: a grey backdrop, brighter above, and three soft boxes. Its +z
+// is up, its +x where the camera is, its +y to the right of the camera. A white matte surface that
+// faces up or to the camera reflects about 1.
+Image MakeStudio();
 
 // Surrounds the scene with radiance: constant, or an image in latitude-longitude form whose
 // brightness guides the sampling (pbrt 3rd ed., 14.2.4).
@@ -37,6 +77,46 @@ class InfiniteLight {
     float stretch = 0;           // |determinant| of lightFromWorld; 0: the transform scales evenly
     Rgb constant = Rgb::Ones();  // where there is no map
     std::shared_ptr<const EnvironmentMap> map;  // null: none
+};
+
+// Lights in one direction, without size or with.
+
+// Emits L, W/(m^2 sr) times the solid angle it stands for, from one direction.
+struct DistantLight {
+    static constexpr LightType kType = LightType::DeltaDirection;
+
+    Vec3f w;  // towards the light, unit
+    Rgb L;
+    float worldRadius = 1;
+
+    static DistantLight Make(const LightReader&);
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
+    std::optional<LightBounds> Bounds() const { return {}; }
+    Rgb Power() const { return kPi * Sqr(worldRadius) * L; }
+};
+
+// A distant light of some size: a disc that emits evenly, and gives a surface that faces it the
+// irradiance of the parallel light, L. Rays that leave the scene see it.
+struct SunLight {
+    static constexpr LightType kType = LightType::Infinite;
+
+    Vec3f w;       // towards its centre, unit
+    Rgb L;         // radiance
+    float height;  // 1 - cos of the disc's radius
+    float solidAngle;
+    Rgb power;
+
+    // Takes the angle across the disc, radians, in (0, pi].
+    SunLight(const DistantLight& parallel, double angle);
+
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
+    Emitted LeAndPdf(const Vec3f& direction) const {
+        // Of nearly parallel vectors, the product is less precise than the difference.
+        if ((direction - w).squaredNorm() > 2 * height) return {Rgb::Zero(), 0};
+        return {L, 1 / solidAngle};
+    }
+    std::optional<LightBounds> Bounds() const { return {}; }
+    Rgb Power() const { return power; }
 };
 
 }  // namespace lull

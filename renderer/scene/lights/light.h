@@ -30,9 +30,8 @@
 // shines into, which ConeOf() returns there.
 #pragma once
 
-#include "renderer/base/visit.h"
+#include "renderer/base/variant.h"
 #include "renderer/scene/lights/area.h"
-#include "renderer/scene/lights/distant.h"
 #include "renderer/scene/lights/infinite.h"
 #include "renderer/scene/lights/point.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/scene/lights/light_bounds.h"
+#include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
 

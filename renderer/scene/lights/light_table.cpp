@@ -4,10 +4,10 @@
 
 #include <numbers>
 
-#include "renderer/base/rounding.h"
+#include "renderer/base/math.h"
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/kinds.h"
-#include "renderer/scene/lights/light_color.h"
+#include "renderer/scene/lights/light_sample.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

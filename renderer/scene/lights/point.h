@@ -1,13 +1,150 @@
 // Lights at points.
 #pragma once
 
-#include "renderer/scene/lights/emission_profile.h"
-#include "renderer/scene/lights/light_bounds.h"
-#include "renderer/scene/lights/light_image.h"
-#include "renderer/scene/lights/light_reader.h"
+#include <memory>
+#include <variant>
+
+#include "renderer/base/sampling.h"
+#include "renderer/base/variant.h"
+#include "renderer/image/image.h"
+#include "renderer/input/description.h"
+#include "renderer/scene/geometry/shape.h"
 #include "renderer/scene/lights/light_sample.h"
 
 namespace lull {
+
+// The image that shapes the beam of a light.
+
+struct LightImage {
+    Image image;
+    Rgb mean;  // of all texels
+
+    // Returns the texels around st, interpolated; they repeat. The first row is at st.y() = 0.
+    Rgb Lookup(const Vec2f& st) const;
+};
+
+// Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear.
+// Texels that are negative or not finite count as black, with a counted warning. Null substitutes
+// an image that cannot be read.
+std::shared_ptr<const LightImage> ReadLightImage(const LightReader&);
+
+// Varies the emission of a mesh over its surface.
+
+// Shared data of the triangles of an emitting mesh. The shape and textures are a scene's.
+struct EmissionMap {
+    const TextureTable* textures;
+    const Shape* shape;
+    SpectrumTexture emission;  // multiplies the light's L
+    bool secondUv = false;
+    bool vertexColors = false;  // multiply it, too
+    bool cutsOut = false;       // where the shape's alpha is 0, as rays see it
+
+    // Returns the factor of the radiance at a point of a triangle.
+    Rgb At(uint32_t triangle, float b1, float b2) const {
+        const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
+        const Vec2f uv = secondUv ? mesh.Uv1(triangle, b1, b2) : mesh.Uv(triangle, b1, b2);
+        Rgb factor = textures->Evaluate(emission, TextureContext{Vec3f::Zero(), uv});
+        if (vertexColors) {
+            const auto c = mesh.Color(triangle, b1, b2);
+            factor *= Rgb(c[0], c[1], c[2]);
+        }
+        return factor.max(0.f);
+    }
+
+    // Returns the same for light sampling, times the probability that a ray hits the surface.
+    Rgb Covered(uint32_t triangle, float b1, float b2) const {
+        const Rgb e = At(triangle, b1, b2);
+        if (cutsOut && IsCutOut(triangle, b1, b2)) return Rgb::Zero();
+        if (!shape->coverage) return e;
+        return e * CoverageAt(*shape, *textures, Vec3f::Zero(), triangle, b1, b2);
+    }
+
+    bool IsCutOut(uint32_t triangle, float b1, float b2) const {
+        const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
+        const auto& p = mesh.corners[triangle].p;
+        return textures->Evaluate(*shape->alpha,
+                                  TextureContext{(1 - b1 - b2) * p[0] + b1 * p[1] + b2 * p[2],
+                                                 mesh.Uv(triangle, b1, b2)}) == 0;
+    }
+
+    // Returns the mean over a triangle, from a few points: for the choice of lights only.
+    Rgb Mean(uint32_t triangle) const {
+        constexpr int kSteps = 4;
+        Rgb sum = Rgb::Zero();
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                const Vec2f b = SampleUniformTriangle(
+                    {(float(i) + 0.5f) / float(kSteps), (float(j) + 0.5f) / float(kSteps)});
+                sum += Covered(triangle, b.y(), 1 - b.x() - b.y());
+            }
+        return sum / float(kSteps * kSteps);
+    }
+};
+
+// How the light of spots and of area lights depends on the direction.
+
+// How the light of spots falls off to the sides.
+//
+// The light is whole up to the angle whose cosine is cosFalloffStart, and falls smoothly to none at
+// that of cosTotalWidth: by the fourth power of how far the cosine is from there, as in pbrt-v3, or
+// by its square, as KHR_lights_punctual proposes.
+struct SpotCone {
+    Vec3f axis;  // unit, world
+    float cosTotalWidth, cosFalloffStart;
+    bool isSquared = false;
+
+    // Reads "from", "to", "coneangle" and "conedeltaangle", degrees. Throws Error where the points
+    // are the same.
+    static SpotCone Make(const Entity&, const Mat4d& worldFromLight, bool isSquared);
+
+    // Returns the fraction of the light that leaves towards w, unit.
+    float Falloff(const Vec3f& w) const {
+        const float cosTheta = w.dot(axis);
+        if (cosTheta < cosTotalWidth) return 0;
+        const float x = cosTheta >= cosFalloffStart
+                            ? 1.f
+                            : (cosTheta - cosTotalWidth) / (cosFalloffStart - cosTotalWidth);
+        return isSquared ? Sqr(x) : Sqr(Sqr(x));
+    }
+    // Returns about how many steradians the whole light would fill, as pbrt-v3 has it.
+    float SolidAngle() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)); }
+    // Returns the cosines of the angle where the light begins to fall off, and of that from there
+    // to where it ends: LightBounds.
+    Vec2f CosinesOfBounds() const;
+};
+
+// The light of each point leaves within a cone about its normal: the radiance falls with the
+// tangent of the angle, to none at the edge, as with the spread of Cycles' area lamps. The power is
+// that of the same radiance to all sides, as the integral over the cone of (tan h - tan theta) cos
+// theta is pi (tan h - h).
+struct Spread {
+    float tangent, sine;  // of h, half the angle across the cone
+    float cosEmission;    // as in LightBounds
+    float scale;          // 1 / (tan h - h)
+
+    // `degrees`, across the cone: above 0, at most 180; below 0.12, as 0.12.
+    static Spread Make(double degrees);
+
+    // Returns whether the cone about n, unit, has w, unit, on either side.
+    bool Has(const Vec3f& n, const Vec3f& w) const { return n.cross(w).norm() < sine; }
+};
+
+using EmissionProfile = std::variant<SpotCone, Spread>;
+
+// Return the factor of the radiance that leaves a point with normal n towards w, both unit. The
+// normal's side is for callers to check.
+inline float Falloff(const SpotCone& cone, const Vec3f&, const Vec3f& w) { return cone.Falloff(w); }
+inline float Falloff(const Spread& spread, const Vec3f& n, const Vec3f& w) {
+    // The cross product keeps small angles, which the cosine rounds away.
+    const float tangent = n.cross(w).norm() / std::abs(n.dot(w));
+    return spread.scale * std::max(0.f, spread.tangent - tangent);
+}
+inline float Falloff(const EmissionProfile& profile, const Vec3f& n, const Vec3f& w) {
+    return Visit(profile, [&](const auto& p) { return Falloff(p, n, w); });
+}
+
+// Returns the power as a fraction of that of the whole radiance to all sides of the normals.
+float PowerFraction(const EmissionProfile& profile);
 
 // Emits I, W/sr, equally in all directions from one point.
 struct PointLight {

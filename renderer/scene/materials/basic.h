@@ -2,7 +2,6 @@
 #pragma once
 
 #include "renderer/scene/materials/material_inputs.h"
-#include "renderer/scene/materials/roughness.h"
 
 namespace lull {
 

@@ -1,7 +1,7 @@
 // Represents Disney's principled material (Burley 2012 and 2015).
 #pragma once
 
-#include "renderer/bsdf/diffusion_profile.h"
+#include "renderer/bsdf/subsurface.h"
 #include "renderer/scene/materials/material_inputs.h"
 
 namespace lull {

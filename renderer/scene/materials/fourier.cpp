@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "renderer/files/file_contents.h"
+#include "renderer/files/file_io.h"
 
 namespace lull {
 

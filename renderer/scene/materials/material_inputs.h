@@ -25,10 +25,33 @@
 
 #include "renderer/bsdf/bsdf.h"
 #include "renderer/scene/interaction.h"
-#include "renderer/scene/materials/tilt.h"
 #include "renderer/scene/textures/texture.h"
 
 namespace lull {
+
+// Tilts the shading geometry of surfaces by textures.
+
+// Tilts the shading geometry as a displacement of the surface would.
+//
+// Turns hit->ns, dpdu and dpdv to those of the surface displaced by the texture along its shading
+// normal, which stays on the side of hit->n (Blinn 1978, with the displacement's own term, as
+// pbrt-v3). Differences are taken over the step pbrt-v3 uses where it has no ray differentials,
+// 0.0005 in u and v. If the result has no normal, the hit stays unchanged.
+void ApplyBumpMap(const FloatTexture& displacement, const TextureTable&, SurfaceInteraction* hit);
+
+// Tilts shading normals by an image of normals.
+//
+// Normals in the frame of the surface's tangents, each coordinate from -1 to 1 stored as 0 to
+// 1: x along u, y along v, which grows upwards in the image (glTF 2.0, 3.9.3).
+struct NormalMap {
+    SpectrumTexture texture;
+    float scale = 1;        // of x and y
+    bool secondUv = false;  // which texture coordinates it is looked up with
+};
+
+// Turns hit->ns, and the tangents with it, as the map says. The hit needs tangents. It stays
+// unchanged if the result has no direction or points below the surface.
+void ApplyNormalMap(const NormalMap&, const TextureTable&, SurfaceInteraction* hit);
 
 struct Material;
 
@@ -141,5 +164,72 @@ inline bool IsAlwaysBlack(const SpectrumTexture& t) {
 const MaterialTraits& TraitsOfOperand(int operand, std::span<const Material>);
 const SurfaceTilt& TiltOfOperand(int operand, std::span<const Material>);
 void AddOperandLobes(int operand, const MaterialInputs&, Bsdf*);
+
+// Reads roughness parameters and turns them into a microfacet distribution.
+
+// The roughness along one tangent; a constant is turned into alpha once.
+class RoughnessAxis {
+  public:
+    RoughnessAxis(const FloatTexture& texture, bool remap) : texture(texture), remap(remap) {
+        if (!texture.IsConstant()) return;
+        constantIsZero = texture.constant == 0;
+        this->texture.constant = ToAlpha(texture.constant);
+    }
+
+    // Returns alpha; `isZero` tells whether the roughness itself was 0.
+    float Alpha(const MaterialInputs& in, bool* isZero) const {
+        if (texture.IsConstant()) {
+            *isZero = constantIsZero;
+            return texture.constant;
+        }
+        const float roughness = in(texture);
+        *isZero = roughness == 0;
+        return ToAlpha(roughness);
+    }
+    const FloatTexture& Texture() const { return texture; }
+
+  private:
+    float ToAlpha(float roughness) const { return remap ? RoughnessToAlpha(roughness) : roughness; }
+
+    FloatTexture texture;  // a constant holds alpha
+    bool remap, constantIsZero = false;
+};
+
+// The roughness of a surface along both tangents. "remaproughness" (true) says whether the
+// parameters are pbrt's perceptual roughness or alpha itself.
+class Roughness {
+  public:
+    Roughness(const MaterialReader& in, const FloatTexture& u, const FloatTexture& v)
+        : Roughness(u, v, in.entity.parameters.GetBool("remaproughness", true)) {}
+    Roughness(const FloatTexture& u, const FloatTexture& v, bool remap) : u(u, remap), v(v, remap) {
+        isIsotropic = u.index == v.index && (!u.IsConstant() || u.constant == v.constant);
+    }
+
+    // `isSmooth`, if given, receives whether both were 0, which some materials take as specular.
+    TrowbridgeReitz Evaluate(const MaterialInputs& in, bool* isSmooth = nullptr) const {
+        bool uIsZero, vIsZero;
+        const float alphaU = u.Alpha(in, &uIsZero);
+        if (isIsotropic) {
+            if (isSmooth) *isSmooth = uIsZero;
+            return {alphaU, alphaU};
+        }
+        const float alphaV = v.Alpha(in, &vIsZero);
+        if (isSmooth) *isSmooth = uIsZero && vIsZero;
+        return {alphaU, alphaV};
+    }
+
+    // Returns whether both tangents always have the same roughness, so that any frame will do.
+    bool IsIsotropic() const { return isIsotropic; }
+
+    template <typename F>
+    void VisitTextures(F&& f) const {
+        f(u.Texture());
+        f(v.Texture());
+    }
+
+  private:
+    RoughnessAxis u, v;
+    bool isIsotropic;
+};
 
 }  // namespace lull

@@ -1,7 +1,7 @@
 #include "renderer/scene/materials/metallic_roughness.h"
 
-#include "renderer/base/rounding.h"
-#include "renderer/bsdf/sheen_albedo.h"
+#include "renderer/base/math.h"
+#include "renderer/bsdf/directional_albedo.h"
 
 namespace lull {
 namespace {

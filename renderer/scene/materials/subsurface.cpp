@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/rounding.h"
-#include "renderer/input/nonnegative.h"
+#include "renderer/base/math.h"
+#include "renderer/bsdf/subsurface.h"
+#include "renderer/input/spectrum.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
@@ -80,6 +82,14 @@ std::optional<SubsurfaceProfile> KdSubsurface::Profile(const MaterialInputs& in)
     Rgb albedo;
     for (int c = 0; c < 3; ++c) albedo[c] = AlbedoOfScattering(*table, effective[c]);
     return SubsurfaceProfile{DiffusionProfile(*table, (1 - albedo) * sigmaT, albedo * sigmaT), eta};
+}
+
+MediumPreset ReadMediumPreset(const std::string& name, const FileLoc& loc, Warnings& warnings) {
+    MediumPreset preset{{0.0011f, 0.0024f, 0.014f}, {2.55f, 3.21f, 3.77f}};
+    preset.isMeasured = FindMediumPreset(name, &preset.sigmaA, &preset.sigmaS);
+    if (!preset.isMeasured && !name.empty())
+        warnings.Add(loc, "unknown medium preset, pbrt-v3's default is used", Printable(name));
+    return preset;
 }
 
 }  // namespace lull

@@ -2,11 +2,26 @@
 // elsewhere, given by their coefficients ("subsurface") or their appearance ("kdsubsurface").
 #pragma once
 
-#include "renderer/bsdf/diffusion_profile.h"
+#include <string>
+
+#include "renderer/base/error.h"
+#include "renderer/base/math.h"
+#include "renderer/bsdf/subsurface.h"
 #include "renderer/scene/materials/basic.h"
-#include "renderer/scene/materials/medium_preset.h"
 
 namespace lull {
+
+// Reads measured coefficients of media by name.
+
+// Absorption and scattering. Those that were measured are reduced: the mean cosine is 0.
+struct MediumPreset {
+    Rgb sigmaA, sigmaS;
+    bool isMeasured = false;
+};
+
+// Returns the coefficients of that name; pbrt-v3's default for "" and, with a warning, for names
+// that no table has.
+MediumPreset ReadMediumPreset(const std::string& name, const FileLoc& loc, Warnings& warnings);
 
 // The surface of both kinds, below which transmitted light continues.
 struct TranslucentSolid {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/rounding.h"
-#include "renderer/input/nonnegative.h"
+#include "renderer/base/math.h"
+#include "renderer/input/spectrum.h"
 #include "renderer/scene/geometry/animated_transform.h"
-#include "renderer/scene/geometry/reach.h"
-#include "renderer/scene/materials/medium_preset.h"
+#include "renderer/scene/geometry/shape.h"
+#include "renderer/scene/materials/subsurface.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

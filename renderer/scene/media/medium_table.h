@@ -4,10 +4,9 @@
 #include <variant>
 #include <vector>
 
-#include "renderer/base/visit.h"
+#include "renderer/base/variant.h"
 #include "renderer/input/description.h"
-#include "renderer/scene/media/grid.h"
-#include "renderer/scene/media/homogeneous.h"
+#include "renderer/scene/media/medium.h"
 
 namespace lull {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "renderer/base/visit.h"
+#include "renderer/base/variant.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "renderer/scene/textures/texture_input.h"
+#include "renderer/scene/textures/texture_image.h"
 
 namespace lull {
 

@@ -1,10 +1,10 @@
 // Textures that are constants, mixtures of others, and patterns of these.
 #pragma once
 
-#include "renderer/base/visit.h"
+#include "renderer/base/variant.h"
 #include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/noise.h"
-#include "renderer/scene/textures/texture_input.h"
+#include "renderer/scene/textures/texture_image.h"
 
 namespace lull {
 

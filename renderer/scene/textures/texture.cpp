@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "renderer/base/visit.h"
+#include "renderer/base/variant.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/noise.h"

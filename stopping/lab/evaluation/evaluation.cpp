@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "stopping/lab/evaluation/roc.h"
 #include "stopping/lab/evaluation/statistics.h"
 
 namespace lull {

@@ -8,7 +8,7 @@
 
 #include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
-#include "stopping/lab/evaluation/recorded_rules.h"
+#include "stopping/lab/evaluation/evaluated_rules.h"
 #include "stopping/rules/rule_table.h"
 #include "stopping/rules/thresholds.h"
 #include "stopping/signals/lightness_noise.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,5 +38,13 @@ ProbitFit FitProbit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& answers,
 // of their ranks. Nothing where there are fewer than three pairs, or all numbers of one side are
 // the same. Throws std::invalid_argument if the lengths differ or a number is NaN.
 std::optional<double> RankCorrelation(std::span<const double> a, std::span<const double> b);
+
+// Measures how well numbers tell two classes apart.
+
+// Returns the area under the curve of the receiver operating characteristic: the probability that
+// a sample with the label 1 has a higher score than one with 0; equal scores count one half. 0.5
+// if there are no two classes. Throws std::invalid_argument if the lengths differ or a score is
+// NaN.
+double AreaUnderRoc(std::span<const float> scores, std::span<const char> labels);
 
 }  // namespace lull

@@ -1,6 +1,8 @@
 // Computes human thresholds from the answers of observers.
 #pragma once
 
+#include <string>
+
 #include "stopping/lab/observers/observer_answers.h"
 #include "stopping/rules/thresholds.h"
 
@@ -67,5 +69,22 @@ Collected CollectObservers(std::vector<ObserverAnswers> answers, const CollectOp
 
 // Returns the thresholds: means over the observers, rounded to whole spp.
 std::vector<ThresholdsRow> ThresholdsOf(const Collected& collected);
+
+// Writes the answers of observers as CSV tables.
+
+// Returns a CSV with a line of column names: a row for each block. Thresholds are in spp; unknown
+// fields are empty.
+std::string DetailsCsv(const Collected& collected);
+
+// Returns a CSV with a line of column names and a row for each file of answers: whether it
+// counts or why not, the consistency of its answers, and the recorded display and
+// distance.
+std::string ObserversCsv(const Collected& collected);
+
+// Returns the single answers of observers who count, as read by ReadSingleAnswers()
+// (evaluation/single_answers.h) and `lull evaluate --answers`: for each adjustment, noise seen at
+// the levels that were left, and none at its end, with a number for the adjustment, as these
+// answers are steps on one path. Empty if there is none.
+std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint);
 
 }  // namespace lull

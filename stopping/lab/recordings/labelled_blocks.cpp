@@ -55,4 +55,68 @@ std::vector<LabelledBlock> KeepRecorded(const std::vector<LabelledBlock>& judged
     return blocks;
 }
 
+BlockSplit LeaveOut(std::span<const LabelledBlock> blocks, std::span<const std::string> names) {
+    BlockSplit split;
+    for (const std::string& name : names) {
+        if (std::ranges::find(blocks, name, &LabelledBlock::viewpoint) == blocks.end())
+            throw std::invalid_argument("--leave-out: there is no viewpoint '" + Printable(name) +
+                                        "'");
+        split.name.append(split.name.empty() ? "" : ", ").append(name);
+    }
+    for (const LabelledBlock& block : blocks) {
+        const bool isOut = std::ranges::find(names, block.viewpoint) != names.end();
+        (isOut ? split.test : split.training).push_back(block);
+    }
+    return split;
+}
+
+std::vector<BlockSplit> LeaveEachOut(std::span<const LabelledBlock> blocks,
+                                     std::span<const std::string> together) {
+    // Of each part that is left out, the names of its viewpoints; `together` first.
+    std::vector<std::vector<std::string>> parts(together.size());
+    for (const LabelledBlock& block : blocks) {
+        const auto group = std::ranges::find_if(together, [&](const std::string& beginning) {
+            return block.viewpoint.starts_with(beginning);
+        });
+        if (group == together.end() &&
+            (parts.size() == together.size() || parts.back().front() != block.viewpoint))
+            parts.emplace_back();
+        std::vector<std::string>& part =
+            group == together.end() ? parts.back() : parts[size_t(group - together.begin())];
+        if (part.empty() || part.back() != block.viewpoint) part.push_back(block.viewpoint);
+    }
+    std::vector<BlockSplit> splits;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i].empty())
+            throw std::invalid_argument("--together: no viewpoint's name begins with '" +
+                                        Printable(together[i]) + "'");
+        splits.push_back(LeaveOut(blocks, parts[i]));
+    }
+    if (splits.size() < 2)
+        throw std::invalid_argument(
+            "--cross-validate: two viewpoints are needed, to leave each out in turn");
+    return splits;
+}
+
+void KeepListed(std::span<const ThresholdsRow> rows, BlockSplit* split) {
+    std::vector<LabelledBlock> kept;
+    for (const LabelledBlock& block : split->training) {
+        const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
+        if (row == rows.end())
+            throw std::invalid_argument("has no row '" + Printable(block.viewpoint) + "'");
+        const bool isListed = std::ranges::find(row->spp, block.block) != row->spp.end();
+        (isListed ? kept : split->test).push_back(block);
+    }
+    split->training = std::move(kept);
+}
+
+std::vector<LabelledBlock> TestBlocks(std::span<const LabelledBlock> blocks,
+                                      std::span<const ThresholdsRow> rows) {
+    BlockSplit split{.training = {blocks.begin(), blocks.end()}};
+    KeepListed(rows, &split);
+    if (split.test.empty())
+        throw std::invalid_argument("lists all blocks, so that none is left to judge by");
+    return std::move(split.test);
+}
+
 }  // namespace lull

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -74,5 +75,17 @@ NetworkWeights<Scalar> ZerosLike(const NetworkWeights<Scalar>& weights) {
 
 // Returns the network that has these weights.
 Network MakeNetwork(const NetworkWeights<float>& weights);
+
+// Moves weights against their gradient, each with a step size of its own.
+
+// Keras' RMSprop (Tieleman, Hinton 2012): with the running mean square a of the gradients g,
+// a <- rho a + (1 - rho) g^2, w <- w - rate g / (sqrt(a) + epsilon).
+struct RmsProp {
+    float rate = 1e-3f, rho = 0.9f, epsilon = 1e-7f;
+    NetworkWeights<float> meanSquares = {};  // of the shape of the weights, initially zero
+
+    // Takes a step; the gradient is the sum of `gradients`, each of the shape of the weights.
+    void Step(std::span<const NetworkWeights<float>> gradients, NetworkWeights<float>* weights);
+};
 
 }  // namespace lull

@@ -4,16 +4,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 
+#include "stopping/base/checksum.h"
 #include "stopping/base/counter_random.h"
+#include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 #include "stopping/base/state.h"
-#include "stopping/lab/evaluation/roc.h"
+#include "stopping/lab/evaluation/statistics.h"
 
 namespace lull {
+
+namespace {
+
+constexpr uint32_t kCheckpointTag = 0x3143524c;  // "LRC1"
+
+}  // namespace
+
+void TrainingCheckpoint::Read() try {
+    if (const std::string reason = ReasonNotToRead(path); !reason.empty())
+        throw std::runtime_error("there is no checkpoint to resume from: " + reason);
+    std::ifstream file = OpenInput(path);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    StateReader reader(CheckSeal(std::as_bytes(std::span(text))));
+    reader.Expect(kCheckpointTag);
+    while (reader.Left() > 0) {
+        const uint64_t size = reader.Get<uint64_t>();
+        if (size > reader.Left()) throw std::runtime_error("the checkpoint is cut short");
+        reader.GetAll(std::span(states.emplace_back(size)));
+    }
+} catch (const std::runtime_error& error) {
+    throw std::runtime_error(path + ": " + error.what());
+}
+
+void TrainingCheckpoint::Set(size_t training, std::vector<std::byte> state) {
+    states.resize(std::max(states.size(), training + 1));
+    states[training] = std::move(state);
+}
+
+void TrainingCheckpoint::Restore(size_t training, Trainer* trainer) const {
+    if (training >= states.size()) return;
+    try {
+        trainer->Restore(states[training]);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(path + ": " + error.what());
+    }
+}
+
+bool TrainingCheckpoint::IsDue() const {
+    return !path.empty() && Clock::now() > written + interval;
+}
+
+void TrainingCheckpoint::Write() {
+    if (path.empty()) return;
+    StateWriter writer;
+    writer.Put(kCheckpointTag);
+    for (const std::vector<std::byte>& state : states) writer.PutVector(state);
+    Seal(&writer.bytes);
+    write(path, writer.bytes);
+    written = Clock::now();
+}
+
+void TrainingCheckpoint::Remove() {
+    states.clear();
+    if (!path.empty()) std::filesystem::remove(path);
+}
 
 namespace {
 

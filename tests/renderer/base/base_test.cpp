@@ -8,7 +8,6 @@
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
-#include "renderer/base/say.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "renderer/base/utf8.h"
+#include "renderer/base/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/base/zero_values.h"
+#include "renderer/base/memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,9 @@
 // Tests the tabulated profiles of light below a surface: their integral, sampling and extremes.
-#include "renderer/bsdf/diffusion_profile.h"
+#include "renderer/bsdf/subsurface.h"
 
 #include <gtest/gtest.h>
 
 #include "renderer/bsdf/fresnel.h"
-#include "renderer/bsdf/fresnel_moments.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 
 namespace lull {

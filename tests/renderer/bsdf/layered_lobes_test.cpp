@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/bsdf/sheen_albedo.h"
+#include "renderer/bsdf/directional_albedo.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "renderer/denoise/denoise.h"
-#include "renderer/denoise/tile.h"
+#include "renderer/denoise/patch_weights.h"
 
 namespace lull {
 

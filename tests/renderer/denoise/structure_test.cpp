@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/denoise/fireflies.h"
 #include "renderer/denoise/lightness_error.h"
-#include "renderer/denoise/sample_range.h"
 #include "tests/renderer/denoise/example_pictures.h"
 
 namespace lull::structure_test {

@@ -127,5 +127,89 @@ TEST(VisibleError, IsThatOfTheBlock) {
     EXPECT_GT(MeasureVisibleError(denoised, error, {{60, 0}, {110, 50}}).upper, 0.3);
 }
 
+constexpr int kSide = 100;
+
+// Returns residuals of denoised halves that lack `texture`, which the samples have, and differ by
+// little.
+CrossedResiduals Lacking(double noise, const std::function<double(int x, int y)>& texture,
+                         unsigned seed, int side = kSide) {
+    std::mt19937 generator(seed);
+    std::normal_distribution<double> gauss;
+    CrossedResiduals of;
+    of.noise = of.half = of.a = of.b = Planes(side, side, 1);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const double noiseA = noise * gauss(generator), noiseB = noise * gauss(generator);
+            of.a.Row(0, y)[x] = float(-texture(x, y) - noiseB);
+            of.b.Row(0, y)[x] = float(-texture(x, y) - noiseA);
+            of.noise.Row(0, y)[x] = float(noiseA - noiseB);
+            of.half.Row(0, y)[x] = float(0.1 * noise * gauss(generator));
+        }
+    return of;
+}
+
+double Nothing(int, int) { return 0; }
+double Waves(int x, int y) { return 2 * std::sin(1.1 * x) * std::cos(0.7 * y); }  // RMS 1
+
+double RmsOf(const Planes& image) {
+    double sum = 0;
+    for (const float v : image.values) sum += double(v) * double(v);
+    return std::sqrt(sum / double(image.values.size()));
+}
+
+TEST(MissingDetail, IsNotFoundInNoise) {
+    int found = 0;
+    for (unsigned seed = 1; seed <= 20; ++seed)
+        found += RmsOf(MissingDetail(Lacking(3, Nothing, seed), 1.27f)) > 0;
+    EXPECT_LE(found, 2);
+}
+
+TEST(MissingDetail, IsTextureThatWasRemoved) {
+    for (const double noise : {0.5, 1., 2.}) {
+        const Planes missing = MissingDetail(Lacking(noise, Waves, 1), 1.27f);
+        EXPECT_GT(RmsOf(missing), 1) << noise;
+        EXPECT_LT(RmsOf(missing), 2.5) << noise;
+        double product = 0;  // where the noise is less than the texture, it is its pattern
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x)
+                product += double(missing.Row(0, y)[x]) * Waves(x, y) / (kSide * kSide);
+        if (noise <= 1) {
+            EXPECT_GT(product, 0.7) << noise;
+        }
+    }
+}
+
+TEST(MissingDetail, IsNoneWhereTheHalvesTellAsMuch) {
+    CrossedResiduals of = Lacking(0.5, Waves, 1);
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) of.half.Row(0, y)[x] = float(Waves(x, y));
+    EXPECT_EQ(RmsOf(MissingDetail(of, 1.27f)), 0);
+}
+
+TEST(MissingDetail, IsNoneInBlocksThatAreTooSmallToTell) {
+    const Planes missing = MissingDetail(Lacking(0.1, Waves, 1, 7), 1);
+    EXPECT_EQ(missing.values, Planes(7, 7, 1).values);
+}
+
+// Returns the worst pixels of a grey picture whose pixels of these indices are lighter or darker.
+std::vector<size_t> WorstOf(int side, const std::vector<std::pair<size_t, float>>& differences) {
+    std::vector<float> grey(size_t(3 * side * side), 0.2f), other = grey,
+                                                            lightness(size_t(side * side));
+    for (const auto& [pixel, difference] : differences) {
+        for (size_t c = 0; c < 3; ++c) other[3 * pixel + c] += difference;
+        lightness[pixel] = 100 * difference;
+    }
+    return WorstPixels(FindVisibleDifference(other, grey, side, side, DisplayModel()), lightness);
+}
+
+// The pixels around one that is wrong differ visibly, too, but are right.
+TEST(WorstPixels, AreThoseThatAreWrong) {
+    constexpr int kSide = 100;  // two of whose pixels are taken
+    EXPECT_EQ(WorstOf(kSide, {{2020, 0.2f}, {7070, -0.19f}, {5050, 0.1f}}),
+              (std::vector<size_t>{2020, 7070}));
+}
+
+TEST(WorstPixels, AreNoneOfSmallBlocks) { EXPECT_TRUE(WorstOf(60, {{1830, 0.2f}}).empty()); }
+
 }  // namespace
 }  // namespace lull

@@ -1,4 +1,4 @@
-#include "renderer/film/aov_set.h"
+#include "renderer/film/layer.h"
 
 #include <gtest/gtest.h>
 

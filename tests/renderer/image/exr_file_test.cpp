@@ -16,8 +16,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "renderer/image/files/exr_channels.h"
-#include "renderer/image/files/primaries.h"
+#include "renderer/image/files/exr_header.h"
 #include "renderer/image/image_io.h"
 #include "tests/renderer/files/test_files.h"
 

@@ -1,4 +1,4 @@
-#include "renderer/mpi/agreement.h"
+#include "renderer/mpi/job.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@ inline Json DataOf(const std::string& page) {
 }
 
 // Returns how many pixels a picture has: its header is known before it is decoded.
-inline Vec2i SizeOf(const std::string& uri) {
+inline Vec2i PictureSize(const std::string& uri) {
     const std::string head = "data:image/png;base64,", digits = uri.substr(head.size(), 32);
     std::string bytes;
     for (size_t i = 0, bits = 0, have = 0; i < digits.size(); ++i) {

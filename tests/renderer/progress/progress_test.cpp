@@ -1,5 +1,4 @@
 #include "renderer/progress/progress.h"
-#include "renderer/progress/step_printer.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <ctime>
 #include <memory>
 
-#include "renderer/progress/time_limit.h"
+#include "renderer/progress/forecast.h"
 #include "renderer/render/render.h"
 #include "stopping/rules/lnoise.h"
 #include "tests/renderer/render/synthetic_samples.h"

@@ -1,5 +1,5 @@
 // Checks the parts of Cryptomattes; cryptomatte.py reads whole files.
-#include "renderer/results/cryptomatte.h"
+#include "renderer/results/channel_names.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "renderer/base/error.h"
 #include "renderer/denoise/visible_error.h"
-#include "stopping/rules/denoised.h"
+#include "renderer/render/film_picture.h"
+#include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/renderer/render/feature_render.h"
 
@@ -52,6 +54,24 @@ TEST(DenoisePreview, IsQuick) {
     EXPECT_EQ(quick.image.width, kPictureRegion.Width());
     EXPECT_EQ(quick.error, std::vector<float>(60 * 40, kUnknownError));
     EXPECT_NE(whole.error, quick.error);
+}
+
+// What the denoiser needs of a picture goes through files.
+
+TEST(HalfChannels, AreReadAsTheyWere) {
+    const FeatureRender render(1);
+    const NoisyPicture picture = PictureOf(render.film, kPictureRegion);
+    ExrImage exr;
+    exr.width = 60;
+    exr.height = 40;
+    exr.channels = MakeHalfChannels(render.film, kPictureRegion);
+    const NoisyPicture again = ReadPicture(exr, "a.exr");
+    EXPECT_EQ(again.colour.a.values, picture.colour.a.values);
+    EXPECT_EQ(again.features.values, picture.features.values);
+    EXPECT_EQ(again.variance.values, picture.variance.values);
+    EXPECT_EQ(again.emission.b.values, picture.emission.b.values);
+    exr.channels.erase(exr.channels.begin());
+    EXPECT_THROW(ReadPicture(exr, "a.exr"), Error);
 }
 
 }  // namespace

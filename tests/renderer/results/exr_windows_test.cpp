@@ -1,4 +1,4 @@
-#include "renderer/results/exr_windows.h"
+#include "renderer/results/image_files.h"
 
 #include <gtest/gtest.h>
 

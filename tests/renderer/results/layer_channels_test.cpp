@@ -25,7 +25,8 @@ struct OnePixel {
     explicit OnePixel(const std::vector<std::string>& aovs, bool features = false)
         : film(kPixel, {.layers = {.aovs = ParseAovs(aovs), .features = features}}) {}
     void Add(const FirstHit& hit, const Rgb& radiance = Rgb::Zero()) {
-        film.layers.Add(kPixel.min, {film.At(kPixel.min).count, radiance, hit});
+        film.layers.Add(kPixel.min,
+                        {.index = film.At(kPixel.min).count, .radiance = radiance, .hit = hit});
         AddTo(&film, kPixel.min, radiance);
     }
     float Value(const std::string& channel) const {

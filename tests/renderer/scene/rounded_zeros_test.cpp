@@ -1,5 +1,5 @@
 // Numbers that have to be at least 0 are 0 where an exporter's rounding has left them just below.
-#include "renderer/input/nonnegative.h"
+#include "renderer/input/spectrum.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

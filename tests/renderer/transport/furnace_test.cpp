@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/bsdf/fresnel_moments.h"
+#include "renderer/bsdf/fresnel.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

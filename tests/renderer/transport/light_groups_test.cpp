@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/transport/group_radiance.h"
+#include "renderer/transport/integrator.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

@@ -1,6 +1,6 @@
 // Checks the light that goes straight through panes: by its known share, by both estimators, by
 // bidirectional path tracing, and in renders that learn.
-#include "renderer/transport/panes.h"
+#include "renderer/transport/path_media.h"
 
 #include "renderer/base/color.h"
 #include "tests/renderer/transport/bdpt_comparison.h"

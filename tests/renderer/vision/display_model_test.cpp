@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "renderer/base/error.h"
 
@@ -42,3 +44,67 @@ TEST(DisplayedLight, IsTheDisplaysAndTheRooms) {
 
 }  // namespace
 }  // namespace lull::display_test
+
+namespace lull::sensitivity_test {
+namespace {
+
+// The figures are those of another program that was written from the same formulas.
+TEST(ContrastSensitivity, HasKnownValues) {
+    const GaborPatch patch{.frequency = 4, .area = 7, .luminance = 30};
+    EXPECT_NEAR(ContrastSensitivity(OpponentChannel::Achromatic, patch), 202.81242, 1e-4);
+    EXPECT_NEAR(ContrastSensitivity(OpponentChannel::RedGreen, patch), 151.90201, 1e-4);
+    EXPECT_NEAR(ContrastSensitivity(OpponentChannel::YellowViolet, patch), 14.12398, 1e-4);
+}
+
+// Barten: Formula for the contrast sensitivity of the human eye, Proc. SPIE 5294, 2004, eq. 11.
+double Barten(const GaborPatch& patch) {
+    const double u = patch.frequency, l = patch.luminance;
+    return 5200 * std::exp(-0.0016 * u * u * std::pow(1 + 100 / l, 0.08)) /
+           std::sqrt((1 + 144 / patch.area + 0.64 * u * u) *
+                     (63 / std::pow(l, 0.83) + 1 / (1 - std::exp(-0.02 * u * u))));
+}
+
+// The two models rest on other people and other criteria; Barten's sees fine patches at less
+// contrast.
+TEST(ContrastSensitivity, IsThatOfBartenWithinEightDecibels) {
+    for (const double luminance : {10, 30, 100, 200})
+        for (const double frequency : {1, 2, 4, 8})
+            for (const double area : {0.25, 1.0}) {
+                const GaborPatch patch{frequency, area, luminance};
+                const double ratio =
+                    ContrastSensitivity(OpponentChannel::Achromatic, patch) / Barten(patch);
+                EXPECT_GT(ratio, 0.4) << frequency << " " << luminance;
+                EXPECT_LT(ratio, 1) << frequency << " " << luminance;
+            }
+}
+
+TEST(ContrastSensitivity, PeaksBetweenOneAndEightCyclesADegree) {
+    const auto at = [](double frequency) {
+        return ContrastSensitivity(OpponentChannel::Achromatic, {.frequency = frequency});
+    };
+    EXPECT_LT(at(0.25), at(2));
+    EXPECT_LT(at(16), at(3));
+    EXPECT_LT(at(32), at(16));
+}
+
+TEST(ContrastSensitivity, GrowsWithLuminanceAndArea) {
+    for (const OpponentChannel channel :
+         {OpponentChannel::Achromatic, OpponentChannel::RedGreen, OpponentChannel::YellowViolet}) {
+        EXPECT_GT(ContrastSensitivity(channel, {4, 1, 100}),
+                  ContrastSensitivity(channel, {4, 1, 1}));
+        EXPECT_GT(ContrastSensitivity(channel, {4, 9, 10}),
+                  ContrastSensitivity(channel, {4, 1, 10}));
+    }
+}
+
+TEST(ContrastSensitivity, IsFiniteAtTheEndsOfItsRange) {
+    for (const double luminance : {1e-3, 1e4})
+        for (const double frequency : {0.05, 64.0, 500.0})
+            for (int c = 0; c < kOpponentChannels; ++c) {
+                const double s = ContrastSensitivity(OpponentChannel(c), {frequency, 7, luminance});
+                EXPECT_TRUE(std::isfinite(s) && s >= 0) << luminance << " " << frequency;
+            }
+}
+
+}  // namespace
+}  // namespace lull::sensitivity_test

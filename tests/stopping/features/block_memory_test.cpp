@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "tests/stopping/cut_states.h"
 
@@ -123,6 +127,116 @@ TEST(BlockMemory, RefusesSettingsOfNoSense) {
     refuses([](ModelSettings* s) { s->caution = 0; });
     refuses([](ModelSettings* s) { *s = Geometric(2, 1); });
     refuses([](ModelSettings* s) { *s = Geometric(100, 2); });
+}
+
+ModelSettings Plain(int k, int n) { return {.k = k, .n = n, .m = 4, .snorm = false}; }
+
+// The inputs of a block, and the settings that say what is kept of them.
+struct Inputs {
+    ModelSettings settings;
+    History<double> history = {};
+
+    void Add(int spp, std::vector<double> inputs) {
+        AddInputs(spp, std::move(inputs), settings, &history);
+    }
+    std::optional<Eigen::MatrixXf> WindowAt(int spp) const {
+        return WindowOf(history, settings, spp);
+    }
+};
+
+// Adds the inputs (spp, spp + 1, spp + 2, spp + 3) / 1000.
+void Add(Inputs* history, int spp) {
+    std::vector<double> inputs;
+    for (int i = 0; i < 4; ++i) inputs.push_back((spp + i) / 1000.0);
+    history->Add(spp, std::move(inputs));
+}
+
+TEST(Normalize, MapsToTheUnitInterval) {
+    const Eigen::ArrayXd values = Eigen::Array3d(0.5, 0.1, 0.3);
+    const Eigen::ArrayXd result = Normalize(values);
+    EXPECT_NEAR(result[0], 1, 1e-15);
+    EXPECT_EQ(result[1], 0);
+    EXPECT_NEAR(result[2], 0.5, 1e-15);
+    // Equal values leave 0 / 2.2e-16, those that differ by little a share of it.
+    EXPECT_TRUE((Normalize(Eigen::Array3d::Constant(0.7)) == 0).all());
+    EXPECT_NEAR(Normalize(Eigen::Array2d(0, 2.220446049250313e-16))[1], 0.5, 1e-12);
+}
+
+TEST(Window, TakesEveryNthSpp) {
+    Inputs history{Plain(3, 40)};
+    for (int spp = 20; spp <= 80; spp += 20) {
+        Add(&history, spp);
+        EXPECT_FALSE(history.WindowAt(spp)) << spp;
+    }
+    Add(&history, 100);
+    const auto window = history.WindowAt(100);
+    ASSERT_TRUE(window);
+    EXPECT_EQ(window->rows(), 4);
+    EXPECT_EQ(window->cols(), 3);
+    for (int step = 0; step < 3; ++step)
+        for (int i = 0; i < 4; ++i)
+            EXPECT_FLOAT_EQ((*window)(i, step), float(20 + 40 * step + i) / 1000);
+    Add(&history, 120);
+    EXPECT_FLOAT_EQ((*history.WindowAt(120))(0, 0), 0.040f);
+}
+
+TEST(Window, IsFullFirstAt300SppWithThePapersSettings) {
+    Inputs history{{.m = 4}};
+    for (int spp = 20; spp <= 300; spp += 20) {
+        Add(&history, spp);
+        EXPECT_EQ(history.WindowAt(spp).has_value(), spp == 300);
+    }
+    for (int spp = 320; spp <= 2000; spp += 20) {
+        Add(&history, spp);
+        EXPECT_TRUE(history.WindowAt(spp));
+        EXPECT_EQ(history.history.States().size(), 15u);  // no more is kept than can be needed
+    }
+}
+
+TEST(Window, HasNoWindowWithAGap) {
+    Inputs history{Plain(3, 40)};
+    for (int spp : {20, 100, 140}) Add(&history, spp);
+    EXPECT_FALSE(history.WindowAt(100));
+    EXPECT_FALSE(history.WindowAt(140));
+    Add(&history, 180);
+    EXPECT_TRUE(history.WindowAt(180));
+}
+
+TEST(Window, NormalisesEachFeatureOverTheWindow) {
+    const std::vector<double> first = {0.1, 0.2, 0.3, 0.5}, second = {0.4, 0.0, 0.8, 0.4};
+    Inputs history{{.k = 2, .n = 20, .m = 4}};
+    history.Add(20, first);
+    history.Add(40, second);
+    Eigen::MatrixXf expected(4, 2);
+    expected << 0, 1, 1, 0, 0, 1, 1, 0;
+    EXPECT_TRUE(history.WindowAt(40)->isApprox(expected, 1e-6f));
+}
+
+TEST(Window, NormalisesAConstantWindowToZero) {
+    Inputs history{{.k = 3, .n = 20, .m = 4}};
+    for (int spp : {20, 40, 60}) history.Add(spp, std::vector<double>(4, 0.3));
+    EXPECT_TRUE(history.WindowAt(60)->isZero(0));
+}
+
+TEST(Window, RefusesWhatDoesNotFit) {
+    Inputs history{Plain(3, 40)};
+    Add(&history, 40);
+    EXPECT_THROW(Add(&history, 40), std::invalid_argument);
+    EXPECT_THROW(Add(&history, 20), std::invalid_argument);
+    EXPECT_THROW(history.Add(60, std::vector<double>(3)), std::invalid_argument);
+    for (double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        EXPECT_THROW(history.Add(60, std::vector<double>(4, bad)), std::invalid_argument);
+}
+
+TEST(ModelSettings, AreChecked) {
+    EXPECT_NO_THROW(CheckSettings({}));
+    EXPECT_THROW(CheckSettings({.k = 0}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.n = 0}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.m = 99}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.votes = 0}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.voteSpacing = -20}), std::invalid_argument);
+    EXPECT_THROW(CheckSettings({.features = {}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stopping/signals/haar_shrinkage.h"
 #include "stopping/signals/lightness.h"
 #include "tests/shared_folder.h"
 #include "tests/stopping/golden_data.h"

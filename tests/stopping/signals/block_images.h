@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "stopping/rules/criterion.h"
+#include "stopping/rules/rule.h"
 
 namespace lull {
 

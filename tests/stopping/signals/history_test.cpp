@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "stopping/signals/entropy_drop.h"
+#include "stopping/signals/svd_entropy.h"
 #include "tests/stopping/cut_states.h"
 
 namespace lull {

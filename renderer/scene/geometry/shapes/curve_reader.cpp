@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "renderer/input/nonnegative.h"
-#include "renderer/scene/geometry/shapes/placement.h"
+#include "renderer/input/spectrum.h"
+#include "renderer/scene/geometry/shapes/shape_factory.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

@@ -1,6 +1,6 @@
 #include "renderer/scene/geometry/shapes/curves.h"
 
-#include "renderer/scene/geometry/shapes/quadric_internal.h"
+#include "renderer/scene/geometry/shapes/quadric.h"
 
 namespace lull {
 namespace {

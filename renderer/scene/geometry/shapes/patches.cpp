@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/rounding.h"
+#include "renderer/base/math.h"
 
 namespace lull {
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "renderer/input/description.h"
-#include "renderer/input/mesh_data.h"
 
 namespace lull {
 

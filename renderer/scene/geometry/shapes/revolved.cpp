@@ -2,7 +2,7 @@
 
 #include <tuple>
 
-#include "renderer/scene/geometry/shapes/quadric_internal.h"
+#include "renderer/scene/geometry/shapes/quadric.h"
 
 namespace lull {
 namespace {

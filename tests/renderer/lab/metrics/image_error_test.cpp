@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
@@ -85,6 +86,105 @@ TEST(Average, IsOverThePartAskedFor) {
     EXPECT_NEAR(Average(maps).rmse, 0.2 / std::sqrt(2), 1e-6);
     // At the border there is no window inside the image.
     EXPECT_TRUE(std::isnan(Average(maps, {{0, 0}, {4, 20}}).ssim));
+}
+
+const std::vector<PixelRect> kBlocks = {
+    {{0, 0}, {100, 100}}, {{100, 0}, {200, 100}}, {{0, 100}, {100, 200}}, {{100, 100}, {200, 200}}};
+
+// Makes noise of deviation `left` in the left half, `right` in the other; 200 x 200 pixels.
+std::vector<float> Noise(float left, float right) {
+    std::mt19937 random(7);
+    std::normal_distribution<float> normal;
+    std::vector<float> noise;
+    for (int i = 0; i < 200 * 200; ++i)
+        noise.push_back(normal(random) * (i % 200 < 100 ? left : right));
+    return noise;
+}
+
+TEST(MeasureSeams, SeesNoBorderInEvenNoise) {
+    const Seams seams = MeasureSeams(Noise(1, 1), 200, kBlocks);
+    EXPECT_NEAR(seams.Ratio(), 1, 0.35);
+    EXPECT_LT(seams.border, 0.1);
+}
+
+// One of the two kinds of borders, of the same length, has a jump of 2; the other has none.
+TEST(MeasureSeams, SeesWhereTheNoiseJumps) {
+    const Seams seams = MeasureSeams(Noise(1, 3), 200, kBlocks);
+    EXPECT_NEAR(seams.border, 1, 0.1);
+    EXPECT_GT(seams.Ratio(), 5);
+}
+
+TEST(MeasureSeams, GrowsWithTheNoise) {
+    const Seams one = MeasureSeams(Noise(1, 3), 200, kBlocks),
+                two = MeasureSeams(Noise(2, 6), 200, kBlocks);
+    EXPECT_NEAR(two.border, 2 * one.border, 1e-5);
+    EXPECT_NEAR(two.Ratio(), one.Ratio(), 1e-5);
+}
+
+TEST(MeasureSeams, KnowsNoRatioWithoutBordersOrNoise) {
+    const std::vector<PixelRect> whole = {{{0, 0}, {200, 200}}};
+    EXPECT_TRUE(std::isnan(MeasureSeams(Noise(1, 1), 200, whole).Ratio()));
+    EXPECT_TRUE(std::isnan(MeasureSeams(Noise(0, 0), 200, kBlocks).Ratio()));
+}
+
+TEST(MeasureSeams, LeavesOutBlocksThatAreTooNarrow) {
+    const std::vector<PixelRect> blocks = {{{0, 0}, {195, 200}}, {{195, 0}, {200, 200}}};
+    EXPECT_EQ(MeasureSeams(Noise(1, 3), 200, blocks).border, 0);
+}
+
+double MeanOfNumbers(const std::vector<float>& map) {
+    double sum = 0;
+    int count = 0;
+    for (const float v : map)
+        if (!std::isnan(v)) {
+            sum += double(v);
+            ++count;
+        }
+    return sum / count;
+}
+
+size_t Place(int x, int y) { return size_t(y) * kExampleWidth + x; }
+
+// The figures are those of scikit-image 0.19 with Wang's settings, and of a direct evaluation of
+// the paper's sums, window by window.
+TEST(SsimMap, AgreesWithOtherPrograms) {
+    const ExampleImages e;
+    const std::vector<float> map = SsimMap(e.image, e.reference, kExampleWidth, kExampleHeight);
+    EXPECT_NEAR(MeanOfNumbers(map), 0.9058998900, 1e-6);
+    EXPECT_NEAR(map[Place(5, 5)], 0.8606929982, 1e-5);
+    EXPECT_NEAR(map[Place(32, 24)], 0.9530256816, 1e-5);
+}
+
+TEST(SsimMap, HasNoValueWhereTheWindowWouldLeaveTheImage) {
+    const ExampleImages e;
+    const std::vector<float> map = SsimMap(e.image, e.reference, kExampleWidth, kExampleHeight);
+    EXPECT_TRUE(std::isnan(map[Place(4, 20)]));
+    EXPECT_TRUE(std::isnan(map[Place(20, kExampleHeight - 5)]));
+    EXPECT_FALSE(std::isnan(map[Place(5, kExampleHeight - 6)]));
+    const std::vector<uint8_t> small(3 * 10 * 10, 7);
+    for (const float v : SsimMap(small, small, 10, 10)) EXPECT_TRUE(std::isnan(v));
+}
+
+TEST(SsimMap, IsOneForTheSameImageAndSymmetric) {
+    const ExampleImages e;
+    for (const float v : SsimMap(e.image, e.image, kExampleWidth, kExampleHeight))
+        if (!std::isnan(v)) {
+            EXPECT_FLOAT_EQ(v, 1);
+        }
+    const std::vector<float> ab = SsimMap(e.image, e.reference, kExampleWidth, kExampleHeight),
+                             ba = SsimMap(e.reference, e.image, kExampleWidth, kExampleHeight);
+    for (size_t i = 0; i < ab.size(); ++i)
+        if (!std::isnan(ab[i])) {
+            EXPECT_FLOAT_EQ(ab[i], ba[i]);
+        }
+}
+
+// Of two even images, only the means differ: (2 a b + c1) / (a^2 + b^2 + c1).
+TEST(SsimMap, ComparesTheMeansOfEvenImages) {
+    const std::vector<uint8_t> dark(3 * 11 * 11, 60), light(3 * 11 * 11, 120);
+    const double c1 = 2.55 * 2.55;
+    EXPECT_NEAR(MeanOfNumbers(SsimMap(dark, light, 11, 11)),
+                (2 * 60 * 120 + c1) / (60 * 60 + 120 * 120 + c1), 1e-6);
 }
 
 }  // namespace

@@ -93,10 +93,10 @@ TEST(MakeComparisonPage, ShowsLargeImagesByTheirMeans) {
     EXPECT_EQ(data["width"], 2901);  // blocks are where they are
     EXPECT_EQ(data["notes"][0], "a note");
     EXPECT_TRUE(Contains(data["notes"][1].get<std::string>(), "2x2"));
-    for (const Json& image : data["images"]) EXPECT_EQ(SizeOf(image["src"]), Vec2i(1451, 801));
-    EXPECT_EQ(SizeOf(data["images"][0]["flipSrc"]), Vec2i(1451, 801));
-    EXPECT_EQ(SizeOf(data["images"][0]["visibleDifferenceSrc"]), Vec2i(1451, 801));
-    EXPECT_EQ(SizeOf(PictureUri({3, 2, std::vector<float>(18)})), Vec2i(3, 2));
+    for (const Json& image : data["images"]) EXPECT_EQ(PictureSize(image["src"]), Vec2i(1451, 801));
+    EXPECT_EQ(PictureSize(data["images"][0]["flipSrc"]), Vec2i(1451, 801));
+    EXPECT_EQ(PictureSize(data["images"][0]["visibleDifferenceSrc"]), Vec2i(1451, 801));
+    EXPECT_EQ(PictureSize(PictureUri({3, 2, std::vector<float>(18)})), Vec2i(3, 2));
     EXPECT_EQ(DataOf(MakeComparisonPage(TwoRows()))["notes"].size(), 0u);
 }
 

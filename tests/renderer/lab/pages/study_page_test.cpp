@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "renderer/image/image_io.h"
-#include "renderer/lab/pages/collected_page.h"
-#include "renderer/pages/embedded.h"
 #include "renderer/pages/html_page.h"
 #include "tests/renderer/files/test_files.h"
 

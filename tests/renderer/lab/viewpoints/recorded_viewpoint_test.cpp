@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/lab/viewpoints/study_render.h"
+#include "renderer/lab/viewpoints/study.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 

@@ -1,4 +1,4 @@
-#include "renderer/render/ranks/deal.h"
+#include "renderer/render/ranks/rank.h"
 
 #include <gtest/gtest.h>
 

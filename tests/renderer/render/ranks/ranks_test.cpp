@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "renderer/render/ranks/deal.h"
+#include "renderer/render/ranks/rank.h"
 #include "stopping/rules/lnoise.h"
 #include "tests/renderer/render/ranks/shared_render.h"
 

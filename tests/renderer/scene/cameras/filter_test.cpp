@@ -1,4 +1,4 @@
-#include "renderer/scene/cameras/filter.h"
+#include "renderer/scene/cameras/film_settings.h"
 
 #include <gtest/gtest.h>
 

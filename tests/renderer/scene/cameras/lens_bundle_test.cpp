@@ -1,4 +1,4 @@
-#include "renderer/scene/cameras/lens_bundle.h"
+#include "renderer/scene/cameras/lens_system.h"
 
 #include <gtest/gtest.h>
 

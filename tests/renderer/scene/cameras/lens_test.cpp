@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/scene/cameras/camera.h"
-#include "renderer/scene/cameras/lens_file.h"
+#include "renderer/scene/cameras/lens_system.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"

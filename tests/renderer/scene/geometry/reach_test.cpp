@@ -1,5 +1,5 @@
 // Tests what is too large, too far away or too small for rays to be traced, and what is not.
-#include "renderer/scene/geometry/reach.h"
+#include "renderer/scene/geometry/shape.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

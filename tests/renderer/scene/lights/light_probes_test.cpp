@@ -1,4 +1,4 @@
-#include "renderer/scene/lights/light_probes.h"
+#include "renderer/scene/lights/light_distribution.h"
 
 #include <gtest/gtest.h>
 

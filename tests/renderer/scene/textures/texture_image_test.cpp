@@ -2,7 +2,7 @@
 
 #include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
-#include "renderer/scene/textures/image_lookup.h"
+#include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/texture_image.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"

@@ -1,4 +1,4 @@
-#include "stopping/lab/evaluation/roc.h"
+#include "stopping/lab/evaluation/statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "stopping/lab/evaluation/rivals.h"
 #include "stopping/lab/evaluation/simulation.h"
-#include "stopping/lab/recordings/block_split.h"
 #include "stopping/lab/recordings/extension.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"

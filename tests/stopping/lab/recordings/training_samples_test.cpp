@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "stopping/features/window.h"
+#include "stopping/features/block_memory.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
 
 namespace lull {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "stopping/base/parallel.h"
-#include "stopping/lab/training/rmsprop.h"
+#include "stopping/lab/training/network_weights.h"
 
 namespace lull {
 namespace {

@@ -1,0 +1,124 @@
+// Models light that enters a translucent solid and leaves it elsewhere, as pbrt-v3 does: by
+// tabulated photon beam diffusion (Habel, Christensen, Jarosz 2013; pbrt 3rd ed., 15.5) or by two
+// exponentials (Burley 2015).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/base/math.h"
+#include "renderer/base/variant.h"
+#include "renderer/bsdf/microfacet.h"
+
+namespace lull {
+
+// Tabulates the profile of a semi-infinite solid under a beam along the normal, over the
+// single-scattering albedo and the distance in mean free paths (sigma_t = 1).
+struct DiffusionTable {
+    static constexpr int kAlbedos = 100, kRadii = 64;
+
+    std::array<float, kAlbedos> albedo;
+    std::array<float, kRadii> radius;
+    std::array<float, kAlbedos> effectiveAlbedo;  // the integral of each albedo's profile
+    // Rows of kRadii: the profile times 2 pi r, and its integral from 0 to each radius.
+    std::vector<float> profile, cdf;
+
+    // `g` in (-1, 1) is the mean cosine of scattering, `eta` >= 1 the index of the solid.
+    DiffusionTable(float g, float eta);
+};
+
+// Represents the profile of a solid with given coefficients per channel.
+class DiffusionProfile {
+  public:
+    // `sigmaA`, `sigmaS` >= 0 are the coefficients of absorption and scattering, 1/length. The
+    // table must outlive the profile.
+    DiffusionProfile(const DiffusionTable& table, const Rgb& sigmaA, const Rgb& sigmaS);
+
+    // Returns the light that leaves at distance r from where it entered, 1/area.
+    Rgb operator()(float r) const;
+
+    // Chooses a distance for a channel; nothing if that does not scatter. Pdf is the density over
+    // area, for all directions together.
+    std::optional<float> Sample(int channel, float u) const;
+    float Pdf(int channel, float r) const;
+
+  private:
+    const DiffusionTable* table;
+    Rgb sigmaT, albedo;
+};
+
+// Represents the profile that Burley 2015, "Extending the Disney BRDF to a BSDF with Integrated
+// Subsurface Scattering", fits to measured and simulated ones.
+class BurleyProfile {
+  public:
+    // `albedo` is the integral of the profile, `distance` >= 0 the mean free path, both 1 per
+    // channel; a channel whose distance is 0 scatters nothing.
+    BurleyProfile(const Rgb& albedo, const Rgb& distance)
+        : albedo(albedo), distance(0.2f * distance) {}
+
+    Rgb operator()(float r) const;
+    std::optional<float> Sample(int channel, float u) const;
+    float Pdf(int channel, float r) const;
+
+  private:
+    Rgb albedo, distance;
+};
+
+// Represents either.
+class SubsurfaceProfile {
+  public:
+    SubsurfaceProfile(const DiffusionProfile& profile, float eta) : eta(eta), kind(profile) {}
+    SubsurfaceProfile(const BurleyProfile& profile, float eta) : eta(eta), kind(profile) {}
+
+    // Returns the light that leaves at distance r from where it entered, 1/area.
+    Rgb operator()(float r) const {
+        return Visit(kind, [&](const auto& k) { return k(r); });
+    }
+    // Chooses a distance for a channel; nothing where it scatters nothing.
+    std::optional<float> Sample(int channel, float u) const {
+        return Visit(kind, [&](const auto& k) { return k.Sample(channel, u); });
+    }
+    // Returns the density over area, for all directions together, with which Sample chooses r.
+    float Pdf(int channel, float r) const {
+        return Visit(kind, [&](const auto& k) { return k.Pdf(channel, r); });
+    }
+
+    float eta;  // index of the solid
+
+  private:
+    std::variant<DiffusionProfile, BurleyProfile> kind;
+};
+
+// Returns the single-scattering albedo, in [0, 1], for which a solid has the albedo `effective`
+// under uniform light, or the nearest possible.
+float AlbedoOfScattering(const DiffusionTable& table, float effective);
+
+// The lobe by which light leaves a translucent solid.
+
+// Transmits the part of light from all sides that a smooth dielectric does not reflect: the
+// directional part of a separable BSSRDF (pbrt 3rd ed., eq. 11.8).
+struct DiffuseExit {
+    static constexpr bool kIsSpecular = false, kTransmits = false;
+    StoredRgb r;
+    float eta;  // index of the solid
+
+    BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
+        return {Rgb(r) * ((1 - FresnelDielectric(wi.z(), eta)) * kInvPi),
+                SameHemisphere(wo, wi) ? std::abs(wi.z()) * kInvPi : 0};
+    }
+    bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
+        *wi = SampleCosine(wo, u, false);
+        return true;
+    }
+};
+
+// Lists measured media by name.
+
+// Finds absorption and reduced scattering, 1/mm, of a material of Jensen et al. 2001 or Narasimhan
+// et al. 2006 by its name in pbrt-v3. Returns false, and leaves both unchanged, for other names.
+bool FindMediumPreset(const std::string& name, Rgb* sigmaA, Rgb* sigmaS);
+
+}  // namespace lull
