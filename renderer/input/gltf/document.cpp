@@ -170,6 +170,24 @@ bool ReadWhole(std::vector<unsigned char>* out, std::string* error, const std::s
     return false;
 }
 
+// Returns the functions above as the library takes them: from 2.9 on it refuses fewer than all.
+template <typename Callbacks = tinygltf::FsCallbacks>
+Callbacks FileCallbacks() {
+    Callbacks callbacks{};
+    callbacks.FileExists = FileExists;
+    callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+    callbacks.ReadWholeFile = ReadWhole;
+    callbacks.WriteWholeFile = [](std::string*, const std::string&,
+                                  const std::vector<unsigned char>&, void*) { return false; };
+    // The library compares the size with a limit of its own; ReadWhole has none.
+    if constexpr (requires { callbacks.GetFileSizeInBytes; })
+        callbacks.GetFileSizeInBytes = [](size_t* size, std::string*, const std::string&, void*) {
+            *size = 0;
+            return true;
+        };
+    return callbacks;
+}
+
 // Keeps images as they are encoded.
 bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int,
                const unsigned char* bytes, int size, void*) {
@@ -223,8 +241,7 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
 
     GltfDocument document{file, {}};
     tinygltf::TinyGLTF reader;
-    reader.SetFsCallbacks({FileExists, [](const std::string& path, void*) { return path; },
-                           ReadWhole, nullptr, nullptr});
+    reader.SetFsCallbacks(FileCallbacks());
     reader.SetImageLoader(KeepImage, nullptr);
     std::string error, warning;
     bool isRead = false;
