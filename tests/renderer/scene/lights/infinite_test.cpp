@@ -133,9 +133,10 @@ TEST(EnvironmentMap, FormsOfTexelsAgree) {
         b({kWidth, kHeight, 4, halves}, Rgb::Ones()), c({kWidth, kHeight, 4, floats}, Rgb::Ones());
     const Vec2f st(0.3f, 0.99f);
     EXPECT_NEAR(a.Pdf(st), b.Pdf(st), 1e-3);
-    EXPECT_EQ(b.Pdf(st), c.Pdf(st));
+    EXPECT_FLOAT_EQ(b.Pdf(st), c.Pdf(st));
     EXPECT_LT((a.MeanTexel() - b.MeanTexel()).abs().maxCoeff(), 1e-3f);
-    EXPECT_TRUE((b.Radiance(st) == c.Radiance(st)).all());
+    // Up to the rounding of what a compiler fuses of the interpolation, of texels up to 1.
+    EXPECT_LT((b.Radiance(st) - c.Radiance(st)).abs().maxCoeff(), 1e-6f);
 }
 
 TEST(EnvironmentMap, HoldsExtremes) {
