@@ -186,9 +186,9 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
 TEST_F(RanksTest, GoOnWithoutOneThatIsStoppedWhileItLoadsTheScene) {
     const std::string render = std::string(kRender) + "--stop fixed:100000 --time 9s -o parts.exr ";
     const Outcome stopped = ExpectSuccess(
-        Run(fmt::format("timeout -s KILL 120 {}{}: -n 1 env LD_PRELOAD='{}' OPENED_FILE=scene.pbrt "
-                        "OPENED_SIGNAL={} {}",
-                        Ranks(2), render, SIGNAL_AT_OPEN, SIGSTOP, render)));
+        Run(fmt::format("timeout -s KILL 120 {} sh -c '[ $OMPI_COMM_WORLD_RANK != 2 ] || export "
+                        "LD_PRELOAD={} OPENED_FILE=scene.pbrt OPENED_SIGNAL={}; exec {}'",
+                        Ranks(3), SIGNAL_AT_OPEN, SIGSTOP, render)));
     const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
     EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
     ExpectSuccess(Run(std::string(kRender) +
