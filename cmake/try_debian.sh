@@ -45,6 +45,7 @@ inside() {
         set -e
         mount -t proc proc "$root/proc"
         mount --rbind /dev "$root/dev"
+        mount --rbind /sys "$root/sys"
         [[ ! -d $shared ]] || mount --bind -o ro "$shared" "$root/srv/lull/shared"
         exec chroot "$root" su "$user" -s /bin/bash -c "export LC_ALL=C.UTF-8; cd /srv/lull/clone && $command"
     ' </dev/null >"$log" 2>&1 || rc=$?
