@@ -146,14 +146,16 @@ TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
         "for child in $(cat /proc/$p/task/$p/children); do last=$child; done; kill -KILL $last; "
         "wait $p");
     EXPECT_NE(killed.exitCode, 0) << killed.err;
-    // Of rank 2, or of rank 0 where mpirun was the first to end that.
+    // Of rank 2, or of rank 0 where mpirun was the first to end that. Open MPI 5 leaves the others
+    // a quarter of a second, whatever is set, and names the rank itself.
     const auto names = [&](int rank) {
         return Contains(killed.err,
                         fmt::format("lull: warning: rank {} does not respond; if it has "
                                     "died, --resume",
                                     rank));
     };
-    EXPECT_TRUE(names(2) || names(0)) << killed.err;
+    EXPECT_TRUE(names(2) || names(0) || Contains(killed.err, "prterun noticed that process rank 2"))
+        << killed.err;
     ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
     std::filesystem::copy(directory.File("c.h5"), directory.File("before.h5"));
 
