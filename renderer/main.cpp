@@ -211,7 +211,7 @@ ExitCode Main(int argc, char** argv) {
     try {
         job = std::make_unique<MpiJob>();
     } catch (const Error& e) {
-        Say("lull: error: {}\n", e.what());
+        PrintToStderr("lull: error: {}\n", e.what());
         return kFailed;
     }
     const ExitCode code = Main(job.get(), argc, argv);

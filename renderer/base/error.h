@@ -135,7 +135,7 @@ class Warnings {
 // Prints to the stream. Where that cannot be written any more, as its terminal is closed or its
 // disk is full, nothing is printed, and the work continues.
 template <typename... Args>
-void SayTo(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
+void PrintTo(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
     try {
         fmt::print(stream, format, std::forward<Args>(args)...);
     } catch (const std::system_error&) {
@@ -144,8 +144,8 @@ void SayTo(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args
 
 // Prints to stderr.
 template <typename... Args>
-void Say(fmt::format_string<Args...> format, Args&&... args) {
-    SayTo(stderr, format, std::forward<Args>(args)...);
+void PrintToStderr(fmt::format_string<Args...> format, Args&&... args) {
+    PrintTo(stderr, format, std::forward<Args>(args)...);
 }
 
 // Reads text in UTF-8 (RFC 3629), of which not all bytes need be that.

@@ -35,24 +35,24 @@ std::string JsonEvent(const std::string& event, const std::string& text, const s
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-void Talk::Note(const std::string& message) const { Say("note", message); }
+void Messages::Note(const std::string& message) const { Print("note", message); }
 
 // On a terminal there may be a line of progress.
-void Talk::Warn(const std::string& message) const {
+void Messages::Warn(const std::string& message) const {
     if (isJson)
-        Say("warning", message);
+        Print("warning", message);
     else
-        lull::Say("\nlull: warning: {}\n", OneLine(message, kLongestMessage));
+        lull::PrintToStderr("\nlull: warning: {}\n", OneLine(message, kLongestMessage));
 }
 
-void Talk::Say(const std::string& event, const std::string& message) const {
+void Messages::Print(const std::string& event, const std::string& message) const {
     if (isJson)
-        lull::Say("{}", JsonEvent(event, message));
+        lull::PrintToStderr("{}", JsonEvent(event, message));
     else
-        PrintTalk(message);
+        PrintMessage(message);
 }
 
-void PrintTalk(const std::string& message) { Say("lull: {}\n", OneLine(message)); }
+void PrintMessage(const std::string& message) { PrintToStderr("lull: {}\n", OneLine(message)); }
 
 void WriteBytes(const std::string& path, std::span<const std::byte> bytes) {
     WriteFileAtomically(path, bytes);

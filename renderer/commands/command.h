@@ -86,17 +86,17 @@ void FinishResults();
 bool HasLostResults();
 
 // Prints a message as a line of its own on stderr, after the program's name.
-void PrintTalk(const std::string& message);
+void PrintMessage(const std::string& message);
 
 // Messages on stderr, separate from the results: as text or, for programs, as JSON
 // objects, one a line, of which each has an "event".
-struct Talk {
+struct Messages {
     bool isJson = false;
 
     void Note(const std::string& message) const;
     void Warn(const std::string& message) const;
     // Prints a message of whoever has put the program's name or a place before it.
-    void Say(const std::string& event, const std::string& message) const;
+    void Print(const std::string& event, const std::string& message) const;
 };
 
 // Returns a line of JSON: an event with a text under that key.

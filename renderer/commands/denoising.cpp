@@ -37,14 +37,15 @@ int RemoveUnknownErrors(const RenderResult& result, const PixelRect& region,
     return count;
 }
 
-void PrintDenoised(const DenoisedImage& image, double seconds, bool quiet, const Talk& talk) {
+void PrintDenoised(const DenoisedImage& image, double seconds, bool quiet,
+                   const Messages& messages) {
     if (quiet) return;
     const std::string text =
         fmt::format("denoised in {}; {}", FormatDuration(seconds), TextOf(image.blocks));
-    if (talk.isJson)
-        talk.Note(text);
+    if (messages.isJson)
+        messages.Note(text);
     else
-        Say("{}\n", text);
+        PrintToStderr("{}\n", text);
 }
 
 std::vector<Grading> GradingsOf(const std::vector<Grade>& grades) {

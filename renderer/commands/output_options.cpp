@@ -64,15 +64,16 @@ void LoadView(PictureOptions* options) {
 }
 
 std::unique_ptr<Display> MakeDisplay(const PictureOptions& options, const std::string& name,
-                                     const PixelRect& region, int ranks, const Talk& talk) {
+                                     const PixelRect& region, int ranks, const Messages& messages) {
     if (options.display.empty()) return nullptr;
     if (ranks > 1)
         throw Error("--display: needs one process, as no rank has the whole image before the end");
     CheckMemory(region.Area() * int64_t(5 * sizeof(float) + 1),
                 fmt::format("--display of {}x{} pixels", region.Width(), region.Height()),
                 "leave it out");
-    return std::make_unique<Display>(ParseDisplayAddress(options.display), name, region,
-                                     [talk](const std::string& message) { talk.Warn(message); });
+    return std::make_unique<Display>(
+        ParseDisplayAddress(options.display), name, region,
+        [messages](const std::string& message) { messages.Warn(message); });
 }
 
 void AddAovOptions(CLI::App& app, AovSet* wanted) {

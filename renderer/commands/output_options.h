@@ -32,7 +32,7 @@ void LoadView(PictureOptions*);
 // Begins to show a render whose image is called `name`; null where that is not wanted. Throws Error
 // on several ranks.
 std::unique_ptr<Display> MakeDisplay(const PictureOptions&, const std::string& name,
-                                     const PixelRect& region, int ranks, const Talk&);
+                                     const PixelRect& region, int ranks, const Messages&);
 
 // Options of layers: AOVs and groups of lights.
 

@@ -86,7 +86,7 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     if (provenance->sampler != p.render.scene->sampler &&
         p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
         !p.request.render.quiet && p.render.Leads())
-        TalkOf(p.request.render)
+        MessagesOf(p.request.render)
             .Note(
                 "the samples are those of \"sobol-halves\", which has less noise than the scene's "
                 "Sampler \"random\"; --sampler random keeps that");
@@ -129,7 +129,7 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
     render.LockResults(p->files.exr);
     p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
-                             region, ranks->Count(), TalkOf(render.settings));
+                             region, ranks->Count(), MessagesOf(render.settings));
     render.Compile();
     p->film.layers.groups =
         ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);

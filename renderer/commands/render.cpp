@@ -6,7 +6,7 @@
 #include "renderer/base/clocks.h"
 #include "renderer/commands/denoising.h"
 #include "renderer/commands/prepared_render.h"
-#include "renderer/commands/render_talk.h"
+#include "renderer/commands/render_messages.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
@@ -32,16 +32,16 @@ CriterionMaker MakeCriterionMaker(const Rule& rule, const std::vector<Grade>& gr
 
 // Adds who hears of the render beside those that every command has.
 void AddListeners(const PreparedRender& p, RenderEvents* events) {
-    const Talk talk = TalkOf(p.render.settings);
+    const Messages messages = MessagesOf(p.render.settings);
     if (p.clock)
-        events->onProgress =
-            WarnOfFirstSamples(p.render.input.region.Area(), talk, std::move(events->onProgress));
+        events->onProgress = WarnOfFirstSamples(p.render.input.region.Area(), messages,
+                                                std::move(events->onProgress));
     const RenderRequest& request = p.request;
     const bool isDefault = !p.clock && !request.denoise && !request.stop && request.spp == 0;
     if (isDefault && !p.render.settings.quiet)
         events->onProgress =
-            AdviseDenoising(p.render.input.region.Area(), talk, std::move(events->onProgress));
-    if (talk.isJson) events->onStop = StopEvents(p.rule.trend.kind);
+            AdviseDenoising(p.render.input.region.Area(), messages, std::move(events->onProgress));
+    if (messages.isJson) events->onStop = StopEvents(p.rule.trend.kind);
 }
 
 SessionOptions MakeOptions(PreparedRender* p) {
@@ -78,7 +78,7 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
                &written);
     written.Check();
 } catch (const Error& e) {
-    TalkOf(p.render.settings).Warn(fmt::format("no preview: {}", e.what()));
+    MessagesOf(p.render.settings).Warn(fmt::format("no preview: {}", e.what()));
 }
 
 // Renders, and shows pictures on the way where they are asked for.
@@ -119,7 +119,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     film.layers.ForgetFeatures();  // what follows needs the memory
     film.DropHalf();
     if (!p.request.denoise) return made;
-    const Talk talk = TalkOf(settings);
+    const Messages messages = MessagesOf(settings);
     const auto start = std::chrono::steady_clock::now();
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
     const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
@@ -127,11 +127,11 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
                            : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int unknown = RemoveUnknownErrors(result, region, &*made.image); unknown > 0)
-        talk.Warn(fmt::format(
+        messages.Warn(fmt::format(
             "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
             "the true image is unknown",
             unknown, result.blocks.size(), kLeastDenoisedSpp));
-    PrintDenoised(*made.image, SecondsSince(start), settings.quiet, talk);
+    PrintDenoised(*made.image, SecondsSince(start), settings.quiet, messages);
     if (p.display) p.display->ShowDenoised(region, made.image->image.values);
     return made;
 }
@@ -139,7 +139,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
 // Prints how the render ended, writes all files, and prints how it continues.
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
     const RenderSettings& settings = p.render.settings;
-    const Talk talk = TalkOf(settings);
+    const Messages messages = MessagesOf(settings);
     const int64_t rejected = session->GetFilm().RejectedCount();
     PrintResult(settings, p.render.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
@@ -160,8 +160,8 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     if (p.display) p.display->Finish();
     const CheckpointOptions& checkpoint = settings.checkpoint;
     const bool goesOn = result.cancelled || (result.timeUp && !checkpoint.file.empty());
-    if (goesOn && !settings.quiet) talk.Note(HowToGoOn(checkpoint));
-    if (talk.isJson) SayEnd(written, result, rejected);
+    if (goesOn && !settings.quiet) messages.Note(HowToGoOn(checkpoint));
+    if (messages.isJson) SayEnd(written, result, rejected);
     written.Check();
     if (!result.cancelled && !result.timeUp) p.render.RemoveCheckpoint();
     return result.cancelled ? kInterrupted : kDone;
@@ -181,7 +181,7 @@ ExitCode RunImage(const RenderRequest& request, MpiJob* ranks, const std::string
     const CheckpointOptions& checkpoint = request.render.checkpoint;
     if (request.frameNumber > 0 && checkpoint.resume && !IsThere(checkpoint.file) && IsFinished(*p))
         return kDone;
-    if (!note.empty()) TalkOf(request.render).Note(note);
+    if (!note.empty()) MessagesOf(request.render).Note(note);
     Session session(*p->render.scene, p->render.input.region, MakeOptions(p.get()));
     const RenderResult result = RenderPrepared(p.get(), &session);
     ranks->End();

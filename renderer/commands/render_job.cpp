@@ -40,7 +40,7 @@ RenderJob::RenderJob(const RenderSettings& given, MpiJob* ranks, bool withHalf)
     : settings(given),
       ranks(ranks),
       input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = withHalf},
-            TalkOf(settings)) {}
+            MessagesOf(settings)) {}
 
 bool RenderJob::Leads() const { return !ranks || ranks->Rank() == 0; }
 
@@ -73,7 +73,7 @@ void RenderJob::DenoiseBlocks() {
 
 void RenderJob::CheckSampler() const {
     if (!denoiser || settings.sampler != SamplerKind::Sobol || !Leads()) return;
-    TalkOf(settings).Warn(
+    MessagesOf(settings).Warn(
         "the halves of one Sobol sequence complement each other, so that the error of the denoised "
         "image is underestimated; --sampler sobol-halves has a sequence for each half");
 }
@@ -117,7 +117,7 @@ std::optional<ExitCode> RenderJob::End(bool isInterrupted) const {
     if (ranks) ranks->End();
     if (!Leads()) return kDone;
     if (!isInterrupted) return {};
-    TalkOf(settings).Note("interrupted; " + HowToGoOn(settings.checkpoint));
+    MessagesOf(settings).Note("interrupted; " + HowToGoOn(settings.checkpoint));
     return kInterrupted;
 }
 
@@ -144,9 +144,9 @@ SessionOptions MakeSessionOptions(const RenderSettings& settings, bool adaptive,
     const auto printer = std::make_shared<ProgressPrinter>(MakePrinter(settings, adaptive));
     events.onProgress = [printer](const RenderProgress& p) { printer->Print(p); };
     events.onFinish = [printer](const RenderProgress& p) { printer->Finish(p); };
-    const Talk talk = TalkOf(settings);
-    events.onResume = [talk](const std::string& message) { talk.Note(message); };
-    events.onWarning = [talk](const std::string& message) { talk.Warn(message); };
+    const Messages messages = MessagesOf(settings);
+    events.onResume = [messages](const std::string& message) { messages.Note(message); };
+    events.onWarning = [messages](const std::string& message) { messages.Warn(message); };
     options.estimator = settings.estimator;
     options.film.grid = GridOf(settings.schedule);
     if (ranks) ShareAmongRanks(ranks, &options);

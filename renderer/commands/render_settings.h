@@ -61,7 +61,9 @@ Rule ReadRuleOption(const std::string& option, const std::string& rule,
 Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
 // Returns the format of messages.
-inline Talk TalkOf(const RenderSettings& settings) { return {.isJson = settings.jsonProgress}; }
+inline Messages MessagesOf(const RenderSettings& settings) {
+    return {.isJson = settings.jsonProgress};
+}
 
 // Creates the printer of progress on stderr; `adaptive` says whether blocks stop by themselves.
 ProgressPrinter MakePrinter(const RenderSettings&, bool adaptive);

@@ -189,8 +189,8 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
     AddGltfOptions(app, &options->view);
 }
 
-Warnings MakePrintedWarnings(const SceneOptions& options, const Talk& talk) {
-    return Warnings([talk](const std::string& message) { talk.Say("warning", message); },
+Warnings MakePrintedWarnings(const SceneOptions& options, const Messages& messages) {
+    return Warnings([messages](const std::string& message) { messages.Print("warning", message); },
                     options.substitute, options.isVerbose);
 }
 
@@ -212,8 +212,8 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
 }
 
 SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptions,
-                       const Talk& talk)
-    : warnings(MakePrintedWarnings(options, talk)),
+                       const Messages& messages)
+    : warnings(MakePrintedWarnings(options, messages)),
       description(LoadDescription(options, warnings)),
       film(SilentFilmSettings(description, options)),
       region{film.cropMin, film.cropMax} {

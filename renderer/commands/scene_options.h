@@ -28,7 +28,7 @@ struct SceneOptions {
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
 // Prints warnings on stderr as they occur.
-Warnings MakePrintedWarnings(const SceneOptions&, const Talk& = {});
+Warnings MakePrintedWarnings(const SceneOptions&, const Messages& = {});
 
 // Reads the scene's file. Throws Error, and leaves others in the warnings, as ParsePbrt() does.
 Description LoadDescription(const SceneOptions&, Warnings&);
@@ -37,7 +37,7 @@ Description LoadDescription(const SceneOptions&, Warnings&);
 // which will give the film's warnings.
 struct SceneInput {
     // Throws Error, also if the memory cannot hold such a film.
-    explicit SceneInput(const SceneOptions&, const FilmOptions& = {}, const Talk& = {});
+    explicit SceneInput(const SceneOptions&, const FilmOptions& = {}, const Messages& = {});
 
     Warnings warnings;  // printed as they occur
     Description description;

@@ -64,7 +64,8 @@ std::function<double()> StartClock(const ClockOptions& options) {
     return [end] { return std::chrono::duration<double>(end - Clock::now()).count(); };
 }
 
-ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk& talk, ProgressListener listener) {
+ProgressListener WarnOfFirstSamples(int64_t pixels, const Messages& messages,
+                                    ProgressListener listener) {
     return [=, hasWarned = false](const RenderProgress& p) mutable {
         listener(p);
         constexpr int64_t kShare = 20;  // of the samples, from which their speed is taken
@@ -74,7 +75,7 @@ ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk& talk, ProgressLi
         const double left = std::max(*p.secondsLeft, 0.);
         if (needed < 1.1 * left || needed < left + 1) return;
         hasWarned = true;
-        talk.Warn(fmt::format(
+        messages.Warn(fmt::format(
             "the first sample of every pixel ends in about {}, but {} are left; a smaller "
             "--resolution takes less",
             FormatDuration(needed), FormatDuration(left)));

@@ -30,7 +30,7 @@ using ProgressListener = std::function<void(const RenderProgress&)>;
 
 // Returns a listener that forwards all progress and warns, once and as early as possible, where the
 // first sample of all `pixels` will take longer than the time that is left.
-ProgressListener WarnOfFirstSamples(int64_t pixels, const Talk&, ProgressListener listener);
+ProgressListener WarnOfFirstSamples(int64_t pixels, const Messages&, ProgressListener listener);
 
 // Lets a render make a sequence of images: a frame of an animation after the other.
 

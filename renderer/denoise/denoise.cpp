@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "renderer/denoise/patch_weights.h"
-#include "renderer/denoise/structure.h"
+#include "renderer/denoise/residual_structure.h"
 
 namespace lull {
 

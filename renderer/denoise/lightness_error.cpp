@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "renderer/denoise/structure.h"
+#include "renderer/denoise/residual_structure.h"
 #include "stopping/base/parallel.h"
 #include "stopping/signals/svd_entropy.h"
 

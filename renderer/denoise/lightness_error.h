@@ -18,7 +18,8 @@ struct EstimatedError {
     Planes squared;    // an estimate of it without bias (see regression.h), and very noisy
     Planes deviation;  // the standard deviation of that noise
     Planes least;      // half the difference of the denoised halves: the part that still changes
-    Planes structure;  // structure of the samples that the picture lacks (structure.h); not squared
+    Planes structure;  // structure of the samples that the picture lacks (residual_structure.h);
+                       // not squared
     Halves noisy;      // luminances of the halves of the samples
 };
 // Measures it as it is seen (AsSeen). A crop has the same bits, but for structure, where it has a

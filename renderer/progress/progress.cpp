@@ -151,9 +151,9 @@ void PrintReport(const std::string& text, ProgressStyle style, std::FILE* stream
     if (style == ProgressStyle::Silent) return;
     // Returns to the start of the line and, at its end, erases the earlier text.
     if (style == ProgressStyle::Line)
-        SayTo(stream, "\r{}\x1b[K", text);
+        PrintTo(stream, "\r{}\x1b[K", text);
     else
-        SayTo(stream, "{}\n", text);
+        PrintTo(stream, "{}\n", text);
     std::fflush(stream);
 }
 
@@ -174,7 +174,7 @@ void ProgressPrinter::Print(const RenderProgress& p) {
 void ProgressPrinter::Finish(const RenderProgress& p) {
     nextPlainLine = 0;
     if (last != p) Print(p);
-    if (style == ProgressStyle::Line) SayTo(stream, "\n");
+    if (style == ProgressStyle::Line) PrintTo(stream, "\n");
     std::fflush(stream);
 }
 

@@ -18,7 +18,7 @@ namespace {
 // the light of light paths, if there is any. Returns how many were taken.
 template <typename Take>
 int64_t RenderTile(const Take& take, const Tile& tile, Film* film, SampleSpread* spread,
-                   RoundLight* light) {
+                   SplatAdder* light) {
     int64_t samples = 0;
     FilmTile pixels = film->Tile(tile.pixels);
     for (int y = tile.pixels.min.y(); y < tile.pixels.max.y(); ++y)
@@ -54,7 +54,8 @@ int64_t RenderTile(const Take& take, const Tile& tile, Film* film, SampleSpread*
 
 }  // namespace
 
-bool Fits(const RenderState& state, const PixelRect& region, const ScheduleOptions& options) {
+bool HasBlocksOf(const RenderState& state, const PixelRect& region,
+                 const ScheduleOptions& options) {
     const size_t count = MakeBlocks(region, options).size();
     return state.blocks.size() == count &&
            (state.criteria.empty() || state.criteria.size() == count);
@@ -109,7 +110,7 @@ void Executor::BeginLightRound(const std::function<void()>& writeCheckpoint) {
 
 void Executor::BeginLight() {
     BeginLightRound([this] { WriteCheckpoint(); });
-    schedule.BeginRound(RoundEndOf(context));
+    schedule.BeginRound(LightRoundEnd(context));
     isLightTraced = context.lightRounds->Trace([this] { return IsCancelled(); });
 }
 
@@ -151,7 +152,7 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     SampleSpread* spread = film->SpreadOf(tile.pixels);
     const auto render = [&](const auto& take) {
         if (!context.lightRounds) return RenderTile(take, tile, film, spread, nullptr);
-        RoundLight light(*context.lightRounds, film);
+        SplatAdder light(*context.lightRounds, film);
         return RenderTile(take, tile, film, spread, &light);
     };
     const auto alone = [&](const Vec2i& pixel, uint32_t index) -> const PathSample& {

@@ -80,6 +80,6 @@ class Executor {
 };
 
 // Returns whether the state has the blocks that the schedule will make of the region.
-bool Fits(const RenderState&, const PixelRect& region, const ScheduleOptions&);
+bool HasBlocksOf(const RenderState&, const PixelRect& region, const ScheduleOptions&);
 
 }  // namespace lull

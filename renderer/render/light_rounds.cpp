@@ -188,13 +188,13 @@ SplatLight LightRounds::LightOf(const SplatPlane& light, const Vec2i& p, uint32_
     return part;
 }
 
-void RoundLight::Begin(const Vec2i& p) {
+void SplatAdder::Begin(const Vec2i& p) {
     if (const auto* groups = film->layers.Find<LightGroupLayer>())
         for (int i = 0; i < groups->Count(); ++i)
             before[size_t(i)] = Luminance(groups->At(i, p, 0).sum);
 }
 
-void RoundLight::End(const Vec2i& p, uint32_t first, FilmPixel* sums) const {
+void SplatAdder::End(const Vec2i& p, uint32_t first, FilmPixel* sums) const {
     PixelSplats splats{rounds.LightOf(rounds.planes[0], p, first)};
     splats.all.camera = Luminance(sums->sum) - Luminance(film->At(p).sum);
     std::array<SplatLight, kMostLightGroups + 1> ofGroups;

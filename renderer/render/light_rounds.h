@@ -68,7 +68,7 @@ class LightRounds {
     void Learn(Film*);
 
   private:
-    friend class RoundLight;
+    friend class SplatAdder;
     double FindUnit() const;
     // Returns light of a plane that belongs to a pixel's samples from `from` on.
     SplatLight LightOf(const SplatPlane&, const Vec2i& p, uint32_t from) const;
@@ -87,9 +87,9 @@ class LightRounds {
 };
 
 // Adds the light of a round to the pixels of a film, for one thread.
-class RoundLight {
+class SplatAdder {
   public:
-    RoundLight(const LightRounds& rounds, Film* film) : rounds(rounds), film(film) {}
+    SplatAdder(const LightRounds& rounds, Film* film) : rounds(rounds), film(film) {}
 
     // To be called before the first and after the last sample of a pixel in the round. These are
     // the samples from `first` on, and in the layers; the film has the pixel without them.

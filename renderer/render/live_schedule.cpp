@@ -11,13 +11,13 @@ namespace {
 ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
     schedule.worstFirst = bool(context.secondsLeft);
-    schedule.roundEnd = RoundEndOf(context);
+    schedule.roundEnd = LightRoundEnd(context);
     return schedule;
 }
 
 }  // namespace
 
-int RoundEndOf(const RenderContext& context) {
+int LightRoundEnd(const RenderContext& context) {
     return context.lightRounds ? context.lightRounds->End() : kNoRoundEnd;
 }
 

@@ -36,7 +36,7 @@ struct BlockAnswer {
 };
 
 // Returns the spp at which the round of light paths ends; kNoRoundEnd: there are no rounds.
-int RoundEndOf(const RenderContext&);
+int LightRoundEnd(const RenderContext&);
 
 // Costs a lock a call, a few for each tile.
 class LiveSchedule {

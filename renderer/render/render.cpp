@@ -29,7 +29,7 @@ RenderResult RenderWithPeers(const RenderContext& context, const RenderOptions& 
 
 RenderResult Render(const RenderContext& context, const RenderOptions& options) {
     const PixelRect& region = context.film->Region();
-    if (context.interrupted && !Fits(*context.interrupted, region, options.schedule))
+    if (context.interrupted && !HasBlocksOf(*context.interrupted, region, options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = ThreadCount(options.threads);
     const bool alone = !options.peers || options.peers->Count() == 1;

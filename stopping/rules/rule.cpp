@@ -83,7 +83,7 @@ double PeakOverLimit(const Rule& rule, double peakNoise, int spp) {
     return peakNoise * NearnessFactor(spp, rule.peak.visibility) / rule.peak.most;
 }
 
-double WithPeak(const Rule& rule, double number, double peakOverLimit) {
+double RaisedByPeak(const Rule& rule, double number, double peakOverLimit) {
     if (peakOverLimit < 1) return number;
     // A probability p as its odds, of which 1 is the threshold 1/2.
     const double least = rule.trend.kind == RuleTrend::Probability
@@ -107,7 +107,7 @@ Decision RuleCriterion::Decide(int spp, Signals signals, double peakOverLimit) {
     }
     if (number) {
         peak = peakOverLimit;
-        value = WithPeak(*rule, *number, peak);
+        value = RaisedByPeak(*rule, *number, peak);
         votes = value < rule->threshold ? votes + 1 : 0;
     }
     return {.stop = number && votes >= std::max(1, rule->votes),

@@ -219,7 +219,7 @@ double PeakOverLimit(const Rule& rule, double peakNoise, int spp);
 // Returns the number of a check: unchanged where the peak noise is below the limit; else at least
 // the threshold times `peakOverLimit` (odds of a probability), so that reports and forecasts
 // follow it.
-double WithPeak(const Rule& rule, double number, double peakOverLimit);
+double RaisedByPeak(const Rule& rule, double number, double peakOverLimit);
 
 // Limit of peak noise / threshold, for rules that are not trained: the mean ratio of viewpoints at
 // human thresholds (docs/entropy.md).

@@ -184,7 +184,7 @@ Verification Verify(const Compared& compared, int threads, const ComparedImage& 
     how.render.schedule.smallestSide = compared.rules.front().smallestSide;
     how.render.threads = threads;
     how.render.makeCriterion = compared.rules.front().make;
-    if (!render.settings.quiet) TalkOf(render.settings).Note("the automatic image by itself");
+    if (!render.settings.quiet) MessagesOf(render.settings).Note("the automatic image by itself");
     Session session(*render.scene, render.input.region, how);
     const RenderResult result = session.Run();
     return VerificationOf(result, session.GetFilm(), expected);
@@ -232,7 +232,7 @@ void AddImages(const MonitoredRender& monitored, Compared* compared) {
     if (options.snapshots)
         report->estimates = CompareEstimates(comparison.images.front(), comparison.images.back());
     if (!options.curves) return;
-    if (!options.render.quiet) TalkOf(options.render).Note("measuring the curves");
+    if (!options.render.quiet) MessagesOf(options.render).Note("measuring the curves");
     report->curvePoints =
         MeasureCurves(monitored, compared->rules, compared->imageCount, comparison);
     report->curvesShareReference = options.snapshots;
@@ -292,7 +292,7 @@ ExitCode CompareRenders(CompareOptions options, MpiJob* ranks) {
 
 void WriteComparison(const CompareOptions& options, ComparisonReport report, ResultFiles results) {
     if (const std::string note = DisplayNote(report.comparison); !note.empty()) {
-        TalkOf(options.render).Note(note);
+        MessagesOf(options.render).Note(note);
         report.notes.push_back(note);
     }
     results.WriteText(options.output + ".compare.json", Dump(ComparisonJson(report)));

@@ -96,7 +96,7 @@ ExitCode CompareFolder(CompareOptions options) {
         report.comparison.display = options.display;
         Measure(&report.comparison);
     });
-    for (const std::string& note : report.notes) TalkOf(options.render).Warn(note);
+    for (const std::string& note : report.notes) MessagesOf(options.render).Warn(note);
     ResultFiles results = WritePictures(options, folder, report.comparison);
     WriteComparison(options, std::move(report), std::move(results));
     return kDone;

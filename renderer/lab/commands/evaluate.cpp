@@ -180,7 +180,7 @@ std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
     std::vector<EvaluatedRule> rules;
     for (const std::string& path : options.predicted)
         rules.push_back(
-            EvaluateThresholds(path, options.human, people, options.scoring.grid, PrintTalk));
+            EvaluateThresholds(path, options.human, people, options.scoring.grid, PrintMessage));
     return rules;
 }
 
@@ -196,7 +196,7 @@ std::vector<ViewpointRecording> ReadViewpoints(const Options& options) {
 std::vector<LabelledBlock> BlocksToJudge(const std::vector<ViewpointRecording>& viewpoints,
                                          const Options& options) {
     std::vector<LabelledBlock> blocks =
-        ReadLabelledBlocks(viewpoints, options.human, options.without, PrintTalk);
+        ReadLabelledBlocks(viewpoints, options.human, options.without, PrintMessage);
     if (options.split.empty()) return blocks;
     const std::vector<ThresholdsRow> rows = ReadThresholds(options.split);
     try {
@@ -204,7 +204,7 @@ std::vector<LabelledBlock> BlocksToJudge(const std::vector<ViewpointRecording>& 
     } catch (const std::invalid_argument& error) {
         throw Error(fmt::format("{}: {}", options.split, error.what()));
     }
-    PrintTalk(fmt::format("{} blocks that {} does not list", blocks.size(), options.split));
+    PrintMessage(fmt::format("{} blocks that {} does not list", blocks.size(), options.split));
     return blocks;
 }
 
@@ -270,7 +270,7 @@ ExitCode RunEvaluate(const Options& options) {
             EvaluateConstants(rules.at(0).viewpoints, options.chooseBy, options.scoring.grid),
             std::back_inserter(rules));
     if (rules.at(0).viewpoints.size() == 1)
-        PrintTalk("one viewpoint: nothing follows for other pictures");
+        PrintMessage("one viewpoint: nothing follows for other pictures");
     PrintEvaluation(stdout, rules, options.scoring, !options.brief);
     if (!options.csv.empty())
         WriteFileAtomically(options.csv, EvaluationCsv(rules, options.scoring));

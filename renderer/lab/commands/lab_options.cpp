@@ -77,19 +77,19 @@ std::vector<NamedFile> InputsOf(const PictureFolder& folder) {
 }
 
 ViewpointRecording RecordAndTell(const PictureFolder& folder, PictureRecordingOptions options,
-                                 const Talk& talk) {
+                                 const Messages& messages) {
     using Clock = std::chrono::steady_clock;
     auto told = Clock::now();
     options.onPicture = [&](int read, int count) {
         if (Clock::now() - told < std::chrono::seconds(10)) return;
         told = Clock::now();
-        talk.Note(fmt::format("{}: {} of {} pictures", folder.name, read, count));
+        messages.Note(fmt::format("{}: {} of {} pictures", folder.name, read, count));
     };
     ViewpointRecording viewpoint = RecordPictures(folder, options);
-    talk.Note(fmt::format("{}: {} pictures of {} to {} spp, {} of {} blocks", folder.name,
-                          folder.files.size(), folder.files.begin()->first,
-                          folder.files.rbegin()->first, viewpoint.blocks.size(),
-                          viewpoint.blockCount));
+    messages.Note(fmt::format("{}: {} pictures of {} to {} spp, {} of {} blocks", folder.name,
+                              folder.files.size(), folder.files.begin()->first,
+                              folder.files.rbegin()->first, viewpoint.blocks.size(),
+                              viewpoint.blockCount));
     return viewpoint;
 }
 

@@ -36,6 +36,6 @@ std::vector<NamedFile> InputsOf(const PictureFolder& folder);
 
 // Records pictures and tells every ten seconds how far it is, and at last how many there were.
 ViewpointRecording RecordAndTell(const PictureFolder& folder, PictureRecordingOptions options,
-                                 const Talk& talk);
+                                 const Messages& messages);
 
 }  // namespace lull

@@ -112,18 +112,19 @@ std::vector<int> LimitsOf(const Options& options, size_t blocks,
 ExitCode SayAllIsThere(const Options& options, MpiJob* ranks) {
     ranks->Begin("nothing");
     ranks->End();
-    TalkOf(options.render)
+    MessagesOf(options.render)
         .Note(fmt::format("{} has all blocks of '{}' already", options.output, options.name));
     return kDone;
 }
 
 // Adds the recording to the data set, or to a new one where that cannot be written. Throws Error
 // then.
-void Write(const ViewpointRecording& viewpoint, const std::string& output, const Talk& talk) {
+void Write(const ViewpointRecording& viewpoint, const std::string& output,
+           const Messages& messages) {
     ResultFiles results;
     results.Write(output, [&](const std::string& file) {
         AddToDatasetFile(viewpoint, file,
-                         [&] { talk.Note("waiting for another process to write " + file); });
+                         [&] { messages.Note("waiting for another process to write " + file); });
     });
     for (const std::string& name : results.Names()) fmt::print("{}\n", name);
     results.Check();
@@ -140,16 +141,17 @@ ExitCode RecordFolder(const Options& options) {
     wanted.name = folder.name;
     wanted.render.schedule.cap = described.cap;
     const std::vector<int> limits = LimitsOf(wanted, size_t(described.blockCount), dataset);
-    const Talk talk = TalkOf(options.render);
+    const Messages messages = MessagesOf(options.render);
     if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
-        talk.Note(fmt::format("{} has all blocks of '{}' already", options.output, folder.name));
+        messages.Note(
+            fmt::format("{} has all blocks of '{}' already", options.output, folder.name));
         return kDone;
     }
     ViewpointRecording viewpoint;
     RunWithThreads(options.render.scene.compile.threads, [&] {
-        viewpoint = RecordAndTell(folder, {.blockSize = blockSize, .limits = limits}, talk);
+        viewpoint = RecordAndTell(folder, {.blockSize = blockSize, .limits = limits}, messages);
     });
-    Write(viewpoint, options.output, talk);
+    Write(viewpoint, options.output, messages);
     return kDone;
 }
 
@@ -181,7 +183,7 @@ ExitCode Run(Options options, MpiJob* ranks) {
         &session, [&](const auto&... how) { return RecordBlocks(how..., limits, &viewpoint); });
     if (const auto code = render.End(result.cancelled)) return *code;
 
-    Write(viewpoint, options.output, TalkOf(options.render));
+    Write(viewpoint, options.output, MessagesOf(options.render));
     render.RemoveCheckpoint();
     return kDone;
 }

@@ -23,8 +23,8 @@ void WriteStudy(const Options& settings, const Study& study, ResultFiles* result
         results->WriteText(settings.output, MakeStudyPage(study, settings.study));
     });
     if (!settings.render.quiet)
-        Say("lull: {} blocks at {} levels: {} spp\n", study.blocks.size(), study.levels.size(),
-            fmt::join(study.levels, ", "));
+        PrintToStderr("lull: {} blocks at {} levels: {} spp\n", study.blocks.size(),
+                      study.levels.size(), fmt::join(study.levels, ", "));
 }
 
 // Prints the names of the files. Throws Error where one is not where it should be.
@@ -84,11 +84,11 @@ struct Recording {
         viewpoint = std::move(begun);
         if (!file.empty()) AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
     }
-    void Write(const Talk& talk, ResultFiles* results) const {
+    void Write(const Messages& messages, ResultFiles* results) const {
         if (file.empty()) return;
         results->Write(file, [&](const std::string& to) {
             AddToDatasetFile(viewpoint, to,
-                             [&] { talk.Note("waiting for another process to write " + to); });
+                             [&] { messages.Note("waiting for another process to write " + to); });
         });
     }
 };
@@ -123,7 +123,7 @@ ExitCode MakeStudyOfScene(Options options) {
 
     ResultFiles results;
     WriteStudy(options, study, &results);
-    recording.Write(TalkOf(settings), &results);
+    recording.Write(MessagesOf(settings), &results);
     PrintFiles(results);
     render.RemoveCheckpoint();
     return kDone;

@@ -17,22 +17,23 @@ namespace {
 
 void Tell(const Collected& collected) {
     for (const RefusedAnswers& refused : collected.refused)
-        Say("lull: {}: {}; left out\n", refused.file, refused.reason);
+        PrintToStderr("lull: {}: {}; left out\n", refused.file, refused.reason);
     for (const CheckedObserver& observer : collected.observers)
         if (!observer.leftOut.empty())
-            Say("lull: {}: {} {}; left out\n", observer.answers.file, observer.answers.observer,
-                observer.leftOut);
+            PrintToStderr("lull: {}: {} {}; left out\n", observer.answers.file,
+                          observer.answers.observer, observer.leftOut);
         else if (!observer.doubts.empty())
-            Say("lull: {}: {} counts, but {}\n", observer.answers.file, observer.answers.observer,
-                observer.doubts);
+            PrintToStderr("lull: {}: {} counts, but {}\n", observer.answers.file,
+                          observer.answers.observer, observer.doubts);
 }
 
 // Prints how far the thresholds of a viewpoint can be relied on.
 void SayCertainty(const CollectedViewpoint& viewpoint) {
-    Say("lull: {}: {} observer{}\n", viewpoint.name, viewpoint.observers,
-        viewpoint.observers == 1 ? "" : "s");
+    PrintToStderr("lull: {}: {} observer{}\n", viewpoint.name, viewpoint.observers,
+                  viewpoint.observers == 1 ? "" : "s");
     if (const int fewest = FewestAnswers(viewpoint); fewest < kEnoughAnswers)
-        Say("lull: {}: thresholds of blocks rest on as few as {} answer{}; they are rough with "
+        PrintToStderr(
+            "lull: {}: thresholds of blocks rest on as few as {} answer{}; they are rough with "
             "fewer than {}\n",
             viewpoint.name, fewest, fewest == 1 ? "" : "s", kEnoughAnswers);
 }

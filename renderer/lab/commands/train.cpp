@@ -20,17 +20,17 @@ namespace lull::train {
 namespace {
 
 // Shows a training.
-TrainingEvents PrintTo(TrainingPrinter* printer, const Talk& talk, const BlockSplit& split,
+TrainingEvents PrintTo(TrainingPrinter* printer, const Messages& messages, const BlockSplit& split,
                        bool quiet) {
     return {
         .begin =
             [=, &split](const TrainingSamples& samples, const TrainingProgress& progress) {
                 const auto noisy = std::ranges::count(samples.noisy, char(1));
                 if (!quiet)
-                    talk.Note(fmt::format("{}{} windows of {} blocks to train on, {:.1f}% noisy",
-                                          split.name.empty() ? "" : split.name + ": ",
-                                          samples.Count(), split.training.size(),
-                                          100.0 * double(noisy) / double(samples.Count())));
+                    messages.Note(fmt::format(
+                        "{}{} windows of {} blocks to train on, {:.1f}% noisy",
+                        split.name.empty() ? "" : split.name + ": ", samples.Count(),
+                        split.training.size(), 100.0 * double(noisy) / double(samples.Count())));
                 printer->Begin(split.name, progress);
             },
         .step =
@@ -50,8 +50,8 @@ ExitCode RunTrain(const TrainOptions& options) {
         InputsOf(plan));
     std::optional<FileLock> lock;
     if (!checkpointName.empty()) lock.emplace(LockCheckpointFile(checkpointName));
-    const Talk talk{.isJson = options.jsonProgress};
-    const auto note = [&](const std::string& message) { talk.Note(message); };
+    const Messages messages{.isJson = options.jsonProgress};
+    const auto note = [&](const std::string& message) { messages.Note(message); };
     const std::vector<ViewpointRecording> viewpoints = ReadDatasets(plan.datasets);
     const std::vector<LabelledBlock> blocks = KeepRecorded(
         ReadLabelledBlocks(viewpoints, plan.human, plan.without, note), plan.settings, note);
@@ -64,10 +64,10 @@ ExitCode RunTrain(const TrainOptions& options) {
 
     const std::optional<TrainingResult> result = TrainAll(
         plan, splits, &checkpoint,
-        [&](const BlockSplit& split) { return PrintTo(&printer, talk, split, options.quiet); });
+        [&](const BlockSplit& split) { return PrintTo(&printer, messages, split, options.quiet); });
     if (!result) {
         if (!options.quiet && !checkpoint.Path().empty())
-            talk.Note("interrupted; --resume continues from " + checkpoint.Path());
+            messages.Note("interrupted; --resume continues from " + checkpoint.Path());
         return kInterrupted;
     }
     const ScoreOptions scoring{.grid = plan.settings.n};

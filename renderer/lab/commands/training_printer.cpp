@@ -41,7 +41,7 @@ void TrainingPrinter::Print(const TrainingProgress& p) {
 
 void TrainingPrinter::Finish(const TrainingProgress& progress) {
     Print(progress);
-    if (style == ProgressStyle::Line) SayTo(stream, "\n");
+    if (style == ProgressStyle::Line) PrintTo(stream, "\n");
     std::fflush(stream);
 }
 

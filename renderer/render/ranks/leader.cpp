@@ -105,7 +105,7 @@ class Leader {
         for (size_t i = 0; i < rounds.Planes().size(); ++i)
             channel.PostToAll(PackSplats(int(i), rounds.Planes()[i]));
         channel.PostToAll(Pack(RankWord::Lit));
-        schedule.BeginRound(RoundEndOf(context));
+        schedule.BeginRound(LightRoundEnd(context));
     }
 
     // Learns from the samples of all ranks, which are here, once a round: whoever goes on from the

@@ -171,11 +171,11 @@ TEST(LengthOf, IsRightAlsoWhereSquaresAreNot) {
     EXPECT_EQ(UnitOf(Vec3f::Zero()), Vec3f::Zero());
 }
 
-TEST(Say, GoesOnWhereNothingCanBeWritten) {
+TEST(PrintToStderr, GoesOnWhereNothingCanBeWritten) {
     std::FILE* full = std::fopen("/dev/full", "w");
     if (!full) GTEST_SKIP() << "there is no /dev/full";
     std::setbuf(full, nullptr);
-    EXPECT_NO_THROW(SayTo(full, "{} of {}\n", 1, 2));
+    EXPECT_NO_THROW(PrintTo(full, "{} of {}\n", 1, 2));
     EXPECT_TRUE(std::ferror(full));
     std::fclose(full);
 }

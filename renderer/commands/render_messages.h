@@ -15,7 +15,7 @@ void PrintResult(const RenderSettings&, const Provenance&, const RenderResult&, 
 
 // Returns a listener that forwards progress. Once a render without denoising is predicted to take
 // more than ten minutes, it prints a note on --denoise, one time.
-ProgressListener AdviseDenoising(int64_t pixels, const Talk&, ProgressListener listener);
+ProgressListener AdviseDenoising(int64_t pixels, const Messages&, ProgressListener listener);
 
 // Returns a callback that prints the stop of a block, as JSON.
 std::function<void(int index, const Block&)> StopEvents(RuleTrend::Kind);

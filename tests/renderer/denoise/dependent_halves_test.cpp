@@ -1,4 +1,4 @@
-#include "renderer/denoise/dependence.h"
+#include "renderer/denoise/dependent_halves.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/commands/render_talk.h"
+#include "renderer/commands/render_messages.h"
 
 #include <fmt/format.h>
 
@@ -49,9 +49,9 @@ std::string SummaryOf(const RenderResult& result, int cap, RuleTrend::Kind kind)
                        result.cancelled || result.timeUp ? "" : SavingsOf(savings, cap));
 }
 
-void WarnOfRejected(int64_t rejected, const Talk& talk) {
+void WarnOfRejected(int64_t rejected, const Messages& messages) {
     if (rejected > 0)
-        talk.Warn(
+        messages.Warn(
             fmt::format("{} samples were not finite or negative; they count as black", rejected));
 }
 
@@ -123,14 +123,15 @@ std::string ShortfallOf(const Provenance& provenance, const RenderResult& result
 void PrintResult(const RenderSettings& settings, const Provenance& provenance,
                  const RenderResult& result, int64_t rejected) {
     if (settings.quiet) return;
-    WarnOfRejected(rejected, TalkOf(settings));
+    WarnOfRejected(rejected, MessagesOf(settings));
     if (settings.jsonProgress) return;
-    Say("{}{}{}{}", SummaryOf(result, settings.schedule.cap, result.trend.kind),
-        SharesOf(result.shares), result.timeUp ? ShortfallOf(provenance, result) : "",
-        CappedOf(provenance, result));
+    PrintToStderr("{}{}{}{}", SummaryOf(result, settings.schedule.cap, result.trend.kind),
+                  SharesOf(result.shares), result.timeUp ? ShortfallOf(provenance, result) : "",
+                  CappedOf(provenance, result));
 }
 
-ProgressListener AdviseDenoising(int64_t pixels, const Talk& talk, ProgressListener listener) {
+ProgressListener AdviseDenoising(int64_t pixels, const Messages& messages,
+                                 ProgressListener listener) {
     return [=, hasAdvised = false](const RenderProgress& p) mutable {
         listener(p);
         constexpr double kLong = 600, kFirstSeconds = 5;
@@ -140,8 +141,8 @@ ProgressListener AdviseDenoising(int64_t pixels, const Talk& talk, ProgressListe
         const double left = p.predictedSeconds.value_or(p.seconds / double(p.samples) * missing);
         if (left < kLong) return;
         hasAdvised = true;
-        if (!talk.isJson) Say("\n");  // on a terminal there is a line of progress
-        talk.Note(
+        if (!messages.isJson) PrintToStderr("\n");  // on a terminal there is a line of progress
+        messages.Note(
             fmt::format("{} {} left; with --denoise, blocks stop once the denoised image is "
                         "clean, after a fraction of the samples",
                         p.predictedSeconds ? "about" : "at least", FormatDuration(left)));
@@ -151,24 +152,25 @@ ProgressListener AdviseDenoising(int64_t pixels, const Talk& talk, ProgressListe
 std::function<void(int, const Block&)> StopEvents(RuleTrend::Kind kind) {
     return [kind](int index, const Block& block) {
         const bool atCap = kind != RuleTrend::Samples && block.IsAtCap();
-        Say(R"({{"event":"stop","block":{},"x":{},"y":{},"spp":{},"end":"{}"}})"
-            "\n",
-            index, block.pixels.min.x(), block.pixels.min.y(), block.spp,
-            atCap ? "cap" : "stopped");
+        PrintToStderr(R"({{"event":"stop","block":{},"x":{},"y":{},"spp":{},"end":"{}"}})"
+                      "\n",
+                      index, block.pixels.min.x(), block.pixels.min.y(), block.spp,
+                      atCap ? "cap" : "stopped");
     };
 }
 
 void SayEnd(const ResultFiles& files, const RenderResult& result, int64_t rejected) {
-    for (const std::string& name : files.Names()) Say("{}", JsonEvent("file", name, "path"));
+    for (const std::string& name : files.Names())
+        PrintToStderr("{}", JsonEvent("file", name, "path"));
     const RenderProgress& p = result.progress;
-    Say(R"({{"event":"end","end":"{}","blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
-        R"("medianSpp":{},"samples":{},"rejectedSamples":{},"seconds":{:.3f}}})"
-        "\n",
-        result.cancelled ? "interrupted"
-        : result.timeUp  ? "time"
-                         : "done",
-        p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp, p.samples, rejected,
-        p.seconds);
+    PrintToStderr(R"({{"event":"end","end":"{}","blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
+                  R"("medianSpp":{},"samples":{},"rejectedSamples":{},"seconds":{:.3f}}})"
+                  "\n",
+                  result.cancelled ? "interrupted"
+                  : result.timeUp  ? "time"
+                                   : "done",
+                  p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp, p.samples,
+                  rejected, p.seconds);
 }
 
 }  // namespace lull

@@ -1,4 +1,4 @@
-#include "renderer/denoise/structure.h"
+#include "renderer/denoise/residual_structure.h"
 
 #include <gtest/gtest.h>
 
