@@ -130,6 +130,10 @@ struct MicrofacetReflection {
     }
 };
 
+// Returns the index of a rough interface, away from 1, where light passes straight on and half
+// vectors would be rounding errors.
+inline float ResolvableIndex(float eta) { return std::abs(eta - 1) < 1e-4f ? 1.0001f : eta; }
+
 // Refracts at microfacets (Walter et al. 2007, eq. 21). The index is 1 on the normal's side. As in
 // pbrt-v3, f and the density do not vanish for microfacets that wo sees from behind, though these
 // are never sampled: light sampling finds them, and the density integrates to more than 1.

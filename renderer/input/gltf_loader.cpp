@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/SVD>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <tuple>
@@ -100,6 +102,22 @@ bool HasExtent(const Mat4d& m) {
     return m.inverse().allFinite() && m.topLeftCorner<3, 3>().determinant() != 0;
 }
 
+// Returns a transform that flattens the mesh with a millionth of its extent left across, which has
+// an inverse: what is flat before stays as it is. Those onto a line or a point are returned as they
+// are.
+Mat4d Thickened(const Mat4d& m) {
+    if (HasExtent(m) || !m.allFinite()) return m;
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.topLeftCorner<3, 3>(),
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d extents = svd.singularValues();
+    if (!(extents[1] > 1e-12 * extents[0])) return m;
+    const double side = svd.matrixU().determinant() * svd.matrixV().determinant();
+    extents[2] = std::copysign(1e-6 * extents[1], side);
+    Mat4d thick = m;
+    thick.topLeftCorner<3, 3>() = svd.matrixU() * extents.asDiagonal() * svd.matrixV().transpose();
+    return thick;
+}
+
 bool AnyJointMoves(const GltfDocument& document, const std::vector<GltfNode>& nodes, int skin) {
     const std::vector<int>& joints = document.model.skins[size_t(skin)].joints;
     return std::any_of(nodes.begin(), nodes.end(), [&](const GltfNode& node) {
@@ -127,8 +145,8 @@ std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& d
             continue;
         }
         for (const Mat4d& copy : ReadCopies(document, node.index)) {
-            Placement placement{node.index, node.worldFromNode * copy};
-            if (node.atClose) placement.atClose = *node.atClose * copy;
+            Placement placement{node.index, Thickened(node.worldFromNode * copy)};
+            if (node.atClose) placement.atClose = Thickened(*node.atClose * copy);
             if (HasExtent(placement.worldFromMesh) &&
                 (!placement.atClose || HasExtent(*placement.atClose)))
                 placements[mesh].push_back(placement);

@@ -108,6 +108,13 @@ void ForEachSparse(const GltfDocument& document, const FileLoc& loc,
 
 }  // namespace
 
+bool Normalizes(const tinygltf::Model& model, const std::string& attribute) {
+    if (attribute.starts_with("COLOR_")) return true;
+    const std::vector<std::string>& used = model.extensionsUsed;
+    return attribute.starts_with("TEXCOORD_") &&
+           std::find(used.begin(), used.end(), "KHR_mesh_quantization") == used.end();
+}
+
 GltfArray ReadFloats(const GltfDocument& document, int index, int least, int most,
                      bool normalizes) {
     const tinygltf::Accessor& accessor = document.model.accessors[size_t(index)];

@@ -9,6 +9,10 @@
 
 namespace lull {
 
+// Returns whether integers of an attribute are normalised whatever their accessors say, as others
+// are no valid ones (3.7.2.1): some exporters leave the property out.
+bool Normalizes(const tinygltf::Model&, const std::string& attribute);
+
 // Values of an accessor, `components` numbers each.
 struct GltfArray {
     int components = 0;

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "renderer/base/memory.h"
+#include "renderer/input/gltf/accessors.h"
 
 namespace lull {
 namespace {
@@ -55,12 +56,13 @@ int AddAccessor(const std::vector<T>& values, int componentType, int type, size_
 // Returns an attribute as floats; integers that the file calls normalised become 0 to 1 or -1 to 1.
 std::vector<float> ValuesOf(const FileLoc& loc, const draco::Mesh& mesh,
                             const draco::PointAttribute& attribute,
-                            const tinygltf::Accessor& accessor) {
+                            const tinygltf::Accessor& accessor, bool normalizes) {
     const int components = attribute.num_components();
     if (components != tinygltf::GetNumComponentsInType(uint32_t(accessor.type)))
         throw Error(loc, "an attribute has another number of components than its accessor");
     float scale = 1;
-    if (accessor.normalized && !attribute.normalized()) switch (attribute.data_type()) {
+    if ((accessor.normalized || normalizes) && !attribute.normalized())
+        switch (attribute.data_type()) {
             // clang-format off
             case draco::DT_INT8: scale = 1 / 127.f; break;
             case draco::DT_UINT8: scale = 1 / 255.f; break;
@@ -109,8 +111,8 @@ void DecodePrimitive(const FileLoc& loc, const tinygltf::Value& extension,
             throw Error(loc, "its data have no attribute for one that it names");
         const tinygltf::Accessor accessor = model->accessors[size_t(found->second)];
         found->second =
-            AddAccessor(ValuesOf(loc, *mesh, *attribute, accessor), TINYGLTF_COMPONENT_TYPE_FLOAT,
-                        accessor.type, mesh->num_points(), model);
+            AddAccessor(ValuesOf(loc, *mesh, *attribute, accessor, Normalizes(*model, name)),
+                        TINYGLTF_COMPONENT_TYPE_FLOAT, accessor.type, mesh->num_points(), model);
     }
 }
 
@@ -218,8 +220,17 @@ bool HideCompressed(nlohmann::json* root) {
         if (owner->contains(name))
             for (nlohmann::json& one : owner->at(name)) f(one);
     };
+    // What stands in for compressed data is not read, unless a view without them lies in it.
+    const auto isRead = [&](const nlohmann::json* buffer) {
+        bool is = false;
+        each(root, "bufferViews", [&](const nlohmann::json& view) {
+            is |= &root->at("buffers").at(view.at("buffer").get<size_t>()) == buffer &&
+                  !has(view, kMeshoptExtension);
+        });
+        return is;
+    };
     each(root, "buffers", [&](nlohmann::json& buffer) {
-        if (buffer.contains("uri") || !has(buffer, kMeshoptExtension)) return;
+        if (!has(buffer, kMeshoptExtension) || (buffer.contains("uri") && isRead(&buffer))) return;
         buffer["uri"] = "data:application/octet-stream;base64,AA==";
         buffer["byteLength"] = 1;
         hasChanged = true;

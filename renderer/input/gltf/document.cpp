@@ -12,6 +12,7 @@
 #include "renderer/files/file_io.h"
 #include "renderer/input/gltf/decompression.h"
 #include "renderer/input/gltf/json_at.h"
+#include "renderer/input/gltf/repair.h"
 #include "renderer/input/gltf/uri.h"
 #include "renderer/input/gltf/validation.h"
 
@@ -84,9 +85,9 @@ std::string WithJson(std::string_view bytes, std::string json) {
     };
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const size_t start = kGlbHeader + kChunkHeader;
-    const std::string_view rest = bytes.substr(start + LittleEndian(bytes.data() + 12));
+    const std::string rest = RepairedChunks(bytes.substr(start + LittleEndian(bytes.data() + 12)));
     return "glTF" + number(2) + number(start + json.size() + rest.size()) + number(json.size()) +
-           "JSON" + json + std::string(rest);
+           "JSON" + json + rest;
 }
 
 std::string ProblemOf(const std::string& extension) {
@@ -227,7 +228,10 @@ GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
         const std::string_view text =
             CleanText(raw, {std::make_shared<const std::string>(file), 0});
         nlohmann::json root = ParseGltfJson(file, text);
-        bool hasChanged = CheckGltfJson(file, &root, warnings);
+        bool hasChanged = RepairGltfJson(file, &root, warnings);
+        hasChanged |=
+            IsBinary(bytes) && HasOddChunk(bytes.substr(kGlbHeader + kChunkHeader + raw.size()));
+        hasChanged |= CheckGltfJson(file, &root, warnings);
         CheckExtensions(file, root, warnings);
         hasChanged |= UnifyDataUris(&root);
         hasChanged |= LengthenBuffers(folder, &root);

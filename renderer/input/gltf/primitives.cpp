@@ -13,15 +13,6 @@
 namespace lull {
 namespace {
 
-// Returns whether integers of an attribute are normalised whatever their accessors say, as others
-// are no valid ones (3.7.2.1): some exporters leave the property out.
-bool Normalizes(const GltfDocument& document, const std::string& attribute) {
-    if (attribute.starts_with("COLOR_")) return true;
-    const std::vector<std::string>& used = document.model.extensionsUsed;
-    return attribute.starts_with("TEXCOORD_") &&
-           std::find(used.begin(), used.end(), "KHR_mesh_quantization") == used.end();
-}
-
 // Adds the morph targets of an attribute, each by its weight (3.7.2.2). A tangent's sign, or an
 // alpha, that a target lacks stays.
 void AddTargets(const GltfDocument& document, const FileLoc& loc,
@@ -34,7 +25,7 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
         const auto found = primitive.targets[i].find(name);
         if (weights[i] == 0 || found == primitive.targets[i].end()) continue;
         const GltfArray target = ReadFloats(document, found->second, std::min(array->components, 3),
-                                            array->components, Normalizes(document, name));
+                                            array->components, Normalizes(document.model, name));
         if (target.Count() != array->Count())
             throw Error(loc, fmt::format("has {} {} in morph target {} for {} vertices",
                                          target.Count(), name, i, array->Count()));
@@ -56,7 +47,7 @@ GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
                         Warnings& warnings) {
     const auto found = primitive.attributes.find(name);
     if (found == primitive.attributes.end()) return {};
-    const bool normalizes = Normalizes(document, name);
+    const bool normalizes = Normalizes(document.model, name);
     GltfArray array = ReadFloats(document, found->second, least, most, normalizes);
     const tinygltf::Accessor& accessor = document.model.accessors[size_t(found->second)];
     if (normalizes && !accessor.normalized &&

@@ -52,11 +52,12 @@ std::string TypeOf(const tinygltf::Image& image) {
     return image.mimeType == "image/jpeg" ? "jpg" : "png";
 }
 
-// Returns the image of a texture, as WebP if need be (EXT_texture_webp); -1: none.
+// Returns the image of a texture, as WebP where there is one (EXT_texture_webp): what stands in for
+// it may be missing. -1: none.
 int ImageOf(const tinygltf::Texture& texture) {
     const auto webp = texture.extensions.find("EXT_texture_webp");
-    if (texture.source >= 0 || webp == texture.extensions.end()) return texture.source;
-    return webp->second.Has("source") ? webp->second.Get("source").GetNumberAsInt() : -1;
+    if (webp == texture.extensions.end() || !webp->second.Has("source")) return texture.source;
+    return webp->second.Get("source").GetNumberAsInt();
 }
 
 const char* WrapName(int wrap) {

@@ -7,7 +7,7 @@
 namespace lull {
 namespace {
 
-constexpr std::string_view kScheme = "data:", kEncoding = ";base64";
+constexpr std::string_view kScheme = "data:", kEncoding = "base64";
 constexpr std::string_view kData = "data:application/octet-stream;base64,";
 
 bool EqualsInLowerCase(std::string_view text, std::string_view lower) {
@@ -40,9 +40,11 @@ bool IsDataUri(std::string_view uri) {
 
 std::optional<std::string> Base64Of(std::string_view dataUri) {
     const size_t comma = dataUri.find(',');
-    if (comma == dataUri.npos || comma < kEncoding.size() ||
-        !EqualsInLowerCase(dataUri.substr(comma - kEncoding.size(), kEncoding.size()), kEncoding))
-        return {};
+    if (comma == dataUri.npos || comma < kScheme.size()) return {};
+    // Some leave out the semicolon along with the type.
+    std::string_view type = dataUri.substr(kScheme.size(), comma - kScheme.size());
+    if (const size_t start = type.rfind(';'); start != type.npos) type = type.substr(start + 1);
+    if (!EqualsInLowerCase(type, kEncoding)) return {};
     std::string data(dataUri.substr(comma + 1));
     if (data.find('%') != data.npos) data = DecodeUri(data);
     std::erase_if(data, [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); });

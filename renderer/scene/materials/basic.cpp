@@ -41,9 +41,9 @@ void AddDielectricLobes(const Rgb& r, const Rgb& t, float eta, const Roughness& 
         return;
     }
     if (!IsBlack(r))
-        bsdf->Add(
-            MicrofacetReflection<DielectricInterface>{r, distribution, DielectricInterface{eta}});
-    if (!IsBlack(t)) bsdf->Add(MicrofacetTransmission{t, distribution, eta});
+        bsdf->Add(MicrofacetReflection<DielectricInterface>{
+            r, distribution, DielectricInterface{ResolvableIndex(eta)}});
+    if (!IsBlack(t)) bsdf->Add(MicrofacetTransmission{t, distribution, ResolvableIndex(eta)});
 }
 
 namespace {

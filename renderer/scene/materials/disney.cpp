@@ -82,9 +82,9 @@ void Disney::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
         const Rgb t = through * c.sqrt();
         if (thin)
             bsdf->Add(MicrofacetTransmission{t, distribution((0.65f * index - 0.35f) * roughness),
-                                             index});
+                                             ResolvableIndex(index)});
         else
-            bsdf->Add(DisneyTransmission{t, distribution(roughness), index});
+            bsdf->Add(DisneyTransmission{t, distribution(roughness), ResolvableIndex(index)});
     }
     if (thin) bsdf->Add(LambertianTransmission{Rgb((transmitted * c).max(0.f))});
 }

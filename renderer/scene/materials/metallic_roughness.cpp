@@ -192,11 +192,12 @@ void MetallicRoughness::AddSolid(const Rgb& reflected, const Rgb& through, bool 
     if (isSmooth) {
         bsdf->Add(FresnelSpecular{reflected, through, index});
     } else {
+        const float resolvable = ResolvableIndex(index);
         const TrowbridgeReitz distribution(alphas.x(), alphas.y());
         if (!IsBlack(reflected))
             bsdf->Add(MicrofacetReflection<DielectricInterface>{reflected, distribution,
-                                                                DielectricInterface{index}});
-        if (!IsBlack(through)) bsdf->Add(MicrofacetTransmission{through, distribution, index});
+                                                                DielectricInterface{resolvable}});
+        if (!IsBlack(through)) bsdf->Add(MicrofacetTransmission{through, distribution, resolvable});
     }
 }
 

@@ -176,5 +176,22 @@ TEST(Lobes, KeepEnergy) {
     }
 }
 
+// Where the index is that of air, all light passes, but for microfacets that hide each other.
+TEST(MicrofacetTransmission, LetsAllPassAtAnIndexOf1) {
+    const MicrofacetTransmission air{kWhite, {0.09f, 0.09f}, ResolvableIndex(1)};
+    const Vec3f wo = Vec3f(0.3f, 0.1f, 0.9f).normalized();
+    double sum = 0;
+    constexpr int kSide = 64;
+    for (int i = 0; i < kSide * kSide; ++i) {
+        const Vec2f u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+        Vec3f wi;
+        if (!air.Sample(wo, u, &wi)) continue;
+        const BsdfValue value = air.Evaluate(wo, wi);
+        if (value.pdf > 0) sum += double(value.f[0] * std::abs(wi.z()) / value.pdf);
+    }
+    EXPECT_NEAR(sum / (kSide * kSide), 1, 0.01);
+    EXPECT_EQ(ResolvableIndex(1.5f), 1.5f);
+}
+
 }  // namespace
 }  // namespace lull::test

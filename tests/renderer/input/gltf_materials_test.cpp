@@ -197,8 +197,9 @@ TEST(GltfMaterials, CarrySheenAndAnisotropy) {
 // What is left out, or misplaced, is named: extensions that no list has, and uvs that meshes lack.
 TEST(GltfMaterials, WarnOfWhatIsMissing) {
     GltfFile file;
-    file.root["images"] = {{{"uri", "a.webp"}}};
-    file.root["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+    file.root["images"] = {{{"uri", "a.webp"}}, {{"uri", "missing.png"}}};
+    file.root["textures"] = {
+        {{"source", 1}, {"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
     file.root["extensionsUsed"] = {"EXT_texture_webp"};
     file.root["materials"] = {
         {{"extensions", {{"KHR_materials_iridescence", json::object()}}},

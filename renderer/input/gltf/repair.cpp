@@ -1,0 +1,218 @@
+#include "renderer/input/gltf/repair.h"
+
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "renderer/input/gltf/json_at.h"
+
+namespace lull {
+namespace {
+
+using nlohmann::json;
+
+constexpr size_t kHeaderBytes = 8;
+constexpr const char* kOneByte = "data:application/octet-stream;base64,AA==";
+
+// Returns a member of an object; null where there is none.
+json* Member(json* value, const char* name) {
+    if (!value->is_object()) return nullptr;
+    const auto found = value->find(name);
+    return found == value->end() ? nullptr : &*found;
+}
+
+// Calls f(element, index) for the objects in an array that is a member.
+template <typename F>
+void ForEachObject(json* owner, const char* name, const F& f) {
+    json* array = Member(owner, name);
+    if (!array || !array->is_array()) return;
+    for (size_t i = 0; i < array->size(); ++i)
+        if (array->at(i).is_object()) f(array->at(i), i);
+}
+
+bool IsZero(const json* value) { return value && value->is_number() && value->get<double>() == 0; }
+
+bool EraseNulls(const std::string& file, const std::string& path, json* value, Warnings& warnings) {
+    bool hasChanged = false;
+    if (value->is_array())
+        for (size_t i = 0; i < value->size(); ++i)
+            hasChanged |= EraseNulls(file, path + "/" + std::to_string(i), &value->at(i), warnings);
+    if (!value->is_object()) return hasChanged;
+    for (auto it = value->begin(); it != value->end();) {
+        if (it->is_null()) {
+            warnings.Add(PlaceIn(file, path), "null counts as absent", Printable(it.key()));
+            it = value->erase(it);
+            hasChanged = true;
+            continue;
+        }
+        if (it->is_structured() && it.key() != "extras")
+            hasChanged |= EraseNulls(file, path + "/" + Printable(it.key()), &*it, warnings);
+        ++it;
+    }
+    return hasChanged;
+}
+
+// Returns an index, which may be written as 4.0.
+std::optional<size_t> IndexOf(const json& value) {
+    if (!value.is_number()) return {};
+    const auto n = value.get<double>();
+    if (!(n >= 0 && n < 1e9)) return {};
+    return size_t(n);
+}
+
+// Collects the numbers that members of this name have or hold, at any depth.
+void Collect(const json& value, const std::string& name, std::set<size_t>* numbers,
+             bool isWithin = false) {
+    for (const auto& [key, member] : value.items()) {
+        const bool counts = isWithin || (value.is_object() && key == name);
+        if (const auto index = counts ? IndexOf(member) : std::nullopt) numbers->insert(*index);
+        if (member.is_structured()) Collect(member, name, numbers, counts);
+    }
+}
+
+uint32_t LengthOfChunk(std::string_view rest) {
+    uint32_t length;
+    std::memcpy(&length, rest.data(), sizeof length);
+    return length;
+}
+
+class Repair {
+  public:
+    Repair(const std::string& file, json* root, Warnings& warnings)
+        : file(file), root(root), warnings(warnings) {}
+
+    bool Run() {
+        hasChanged |= EraseNulls(file, "", root, warnings);
+        LeaveOutDistances();
+        LeaveOutPrimitives();
+        FillAccessors();
+        FillViews();
+        return hasChanged;
+    }
+
+  private:
+    // three.js wrote infinity as 0 before r145.
+    void LeaveOutDistances() {
+        ForEachObject(root, "materials", [&](json& material, size_t i) {
+            json* extensions = Member(&material, "extensions");
+            json* volume = extensions ? Member(extensions, "KHR_materials_volume") : nullptr;
+            if (!volume || !IsZero(Member(volume, "attenuationDistance"))) return;
+            volume->erase("attenuationDistance");
+            warnings.Add(PlaceIn(file, "/materials/" + std::to_string(i)),
+                         "an attenuationDistance of 0 counts as absent");
+            hasChanged = true;
+        });
+    }
+
+    json* At(const char* array, const json& index) {
+        json* all = Member(root, array);
+        const std::optional<size_t> i = IndexOf(index);
+        return all && all->is_array() && i && *i < all->size() ? &all->at(*i) : nullptr;
+    }
+    bool IsEmpty(const json& accessor) {
+        json* one = At("accessors", accessor);
+        if (!one) return false;
+        if (IsZero(Member(one, "count"))) return true;
+        const json* view = Member(one, "bufferView");
+        json* bytes = view ? At("bufferViews", *view) : nullptr;
+        return bytes && IsZero(Member(bytes, "byteLength"));
+    }
+    bool IsEmptyPrimitive(json* primitive) {
+        const json* indices = Member(primitive, "indices");
+        if (indices && IsEmpty(*indices)) return true;
+        json* attributes = Member(primitive, "attributes");
+        const json* positions = attributes ? Member(attributes, "POSITION") : nullptr;
+        return positions && IsEmpty(*positions);
+    }
+    void LeaveOutPrimitives() {
+        ForEachObject(root, "meshes", [&](json& mesh, size_t i) {
+            const FileLoc loc = PlaceIn(file, "/meshes/" + std::to_string(i));
+            json* primitives = Member(&mesh, "primitives");
+            if (!primitives) {
+                mesh["primitives"] = json::array();
+                warnings.Add(loc, "mesh without primitives is left out");
+                hasChanged = true;
+            } else if (primitives->is_array()) {
+                for (auto p = primitives->begin(); p != primitives->end();) {
+                    if (!IsEmptyPrimitive(&*p)) {
+                        ++p;
+                        continue;
+                    }
+                    p = primitives->erase(p);
+                    warnings.Add(loc, "primitive without vertices or indices is left out");
+                    hasChanged = true;
+                }
+            }
+        });
+    }
+    // Those that are read stay as they are, and are refused.
+    void FillAccessors() {
+        std::set<size_t> read;
+        for (const char* readers : {"meshes", "animations", "skins", "nodes"})
+            if (const json* array = Member(root, readers))
+                for (const char* name :
+                     {"attributes", "indices", "input", "inverseBindMatrices", "output", "targets"})
+                    Collect(*array, name, &read);
+        ForEachObject(root, "accessors", [&](json& accessor, size_t i) {
+            if (read.contains(i) || !IsEmpty(i)) return;
+            accessor.erase("bufferView");
+            accessor.erase("sparse");
+            accessor["count"] = 1u;
+            hasChanged = true;
+        });
+    }
+    void FillViews() {
+        std::set<size_t> views, buffers;
+        Collect(*root, "bufferView", &views);
+        ForEachObject(root, "bufferViews", [&](json& view, size_t i) {
+            if (views.contains(i)) Collect(json::array({view}), "buffer", &buffers);
+        });
+        std::set<size_t> filled;
+        ForEachObject(root, "buffers", [&](json& buffer, size_t i) {
+            const bool isUnread = Member(&buffer, "uri") && !buffers.contains(i);
+            if (!isUnread && !IsZero(Member(&buffer, "byteLength"))) return;
+            buffer = {{"uri", kOneByte}, {"byteLength", 1u}};
+            filled.insert(i);
+            hasChanged = true;
+        });
+        ForEachObject(root, "bufferViews", [&](json& view, size_t i) {
+            const json* buffer = Member(&view, "buffer");
+            const std::optional<size_t> of = buffer ? IndexOf(*buffer) : std::nullopt;
+            const bool isOfFilled = of && filled.contains(*of) && !views.contains(i);
+            if (!buffer || (!isOfFilled && !IsZero(Member(&view, "byteLength")))) return;
+            view = {{"buffer", *buffer}, {"byteLength", 1u}};
+            hasChanged = true;
+        });
+    }
+
+    const std::string& file;
+    json* root;
+    Warnings& warnings;
+    bool hasChanged = false;
+};
+
+}  // namespace
+
+bool RepairGltfJson(const std::string& file, json* root, Warnings& warnings) {
+    return Repair(file, root, warnings).Run();
+}
+
+bool HasOddChunk(std::string_view rest) {
+    if (rest.size() < kHeaderBytes) return false;
+    const uint32_t length = LengthOfChunk(rest);
+    return length == 0 || (length % 4 != 0 && length <= rest.size() - kHeaderBytes);
+}
+
+std::string RepairedChunks(std::string_view rest) {
+    if (!HasOddChunk(rest)) return std::string(rest);
+    const uint32_t length = LengthOfChunk(rest), padded = (length + 3) / 4 * 4;
+    if (length == 0) return std::string(rest.substr(kHeaderBytes));
+    std::string repaired(rest.substr(0, kHeaderBytes + length));
+    std::memcpy(repaired.data(), &padded, sizeof padded);
+    repaired.resize(kHeaderBytes + padded, '\0');
+    return repaired;
+}
+
+}  // namespace lull

@@ -1,0 +1,27 @@
+// Lets files be read that break the specification where that does no harm, as exporters do.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "renderer/base/error.h"
+
+namespace lull {
+
+// Changes JSON of which nothing has been checked but its depth, and returns whether it has. With a
+// warning of each kind:
+//   - members that are null, outside of extras, are absent, as is an attenuationDistance of 0;
+//   - meshes without primitives have none, and primitives without vertices, or without indices
+//     where they have an accessor of them, are left out.
+// Silently: accessors, views and buffers without a byte, and buffers that nothing reads, whose
+// files may be missing, stand for a byte of 0.
+bool RepairGltfJson(const std::string& file, nlohmann::json* root, Warnings& warnings);
+
+// Returns whether the second chunk of a .glb, the first of its `rest`, is empty, or not padded to
+// the alignment of 4 bytes.
+bool HasOddChunk(std::string_view rest);
+// Returns the rest without it, or with it padded.
+std::string RepairedChunks(std::string_view rest);
+
+}  // namespace lull
