@@ -15,6 +15,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/help.h"
 #include "renderer/mpi/job.h"
 
 namespace lull {
@@ -23,40 +24,6 @@ namespace {
 
 // The subcommands that several ranks can share.
 constexpr std::array kSharedCommands = {"render", "compare", "record"};
-
-// Lists the options of a command that has common ones: by --help these, and those that no other
-// command has, by --help-all all of them by subject.
-class BriefHelp : public CLI::Formatter {
-  public:
-    std::string make_help(const CLI::App* app, std::string name,
-                          CLI::AppFormatMode mode) const override {
-        const auto optionsOf = [&](const std::string& group) {
-            return app->get_options([group](const CLI::Option* option) {
-                return option->nonpositional() && option->get_group() == group;
-            });
-        };
-        const auto common = optionsOf(kCommonOptions), own = optionsOf("Options");
-        if (common.empty() || mode != CLI::AppFormatMode::Normal)
-            return Formatter::make_help(app, name, mode);
-        std::string text = make_description(app) + make_usage(app, name) + make_positionals(app);
-        if (!own.empty()) text += make_group("Options", false, own);
-        return text + make_group(kCommonOptions, false, common) +
-               fmt::format("\nlull {} --help-all lists all options.\n\n", app->get_name()) +
-               make_footer(app);
-    }
-};
-
-void SetHelp(CLI::App* command) {
-    const bool hasGroups = !command
-                                ->get_options([](const CLI::Option* option) {
-                                    return option->get_group() == kCommonOptions;
-                                })
-                                .empty();
-    const char* group = hasGroups ? "Advanced" : "Options";
-    command->set_help_flag("-h,--help", "Print the common options and exit")->group(group);
-    command->set_help_all_flag("--help-all", "Print all options and exit")->group(group);
-    command->formatter(std::make_shared<BriefHelp>());
-}
 
 ExitCode Run(MpiJob* job, const Command& command) {
     std::string message;
@@ -165,6 +132,7 @@ ExitCode Main(MpiJob* job, int argc, char** argv) {
         "Path tracer for pbrt-v3 and glTF 2.0 that stops each block of the image once no noise is "
         "visible.",
         "lull");
+    SetProgramHelp(&app);
     app.set_version_flag("--version", "lull " LULL_VERSION);
     app.require_subcommand(1);
     app.footer(
