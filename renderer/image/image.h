@@ -19,7 +19,8 @@ struct Half {
     uint16_t bits = 0;
 
     Half() = default;
-    explicit Half(float v) : bits(Eigen::half(v).x) {}
+    // Eigen::half's own member is a number since Eigen 5, no longer the bits.
+    explicit Half(float v) : bits(Eigen::numext::bit_cast<uint16_t>(Eigen::half(v))) {}
     explicit operator float() const {
 #ifdef __F16C__
         return _cvtsh_ss(bits);
