@@ -52,7 +52,8 @@ TEST(LensBundle, KeepsThoseThatGetThrough) {
     const LensBundle all = Traced(rear);
     EXPECT_EQ(std::vector(all.rear.begin(), all.rear.begin() + long(all.count)), alone);
     for (size_t i = 0; i < all.count; ++i) {
-        EXPECT_EQ(all.ox[i], Traced({alone[i]}).ox[0]);
+        // Up to the rounding of what a compiler fuses, of vectors of rays or of the one left over.
+        EXPECT_NEAR(all.ox[i], Traced({alone[i]}).ox[0], 1e-12);
         EXPECT_LE(std::hypot(all.ox[i], all.oy[i]), 0.4);
     }
 }
