@@ -261,7 +261,10 @@ TEST(ReadImage, SaysWhatIsWrong) {
     EXPECT_TRUE(Contains(cut, "cut.png\": it is cut short")) << cut;
     const std::string cutPfm =
         read(directory.Write("cut.pfm", "PF\n2 2\n-1.0\n" + std::string(8, 0)));
-    EXPECT_TRUE(Contains(cutPfm, "cut.pfm\": it is cut short")) << cutPfm;
+    // OpenImageIO has a word of its own for it since 3.1.
+    EXPECT_TRUE(Contains(cutPfm, "cut.pfm\": it is cut short") ||
+                Contains(cutPfm, "cut.pfm\": Premature end of file"))
+        << cutPfm;
     EXPECT_TRUE(Contains(read(directory.Write("huge.png", FromHex(kHugePng))), "60000x60000x3"));
 }
 
