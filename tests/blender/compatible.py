@@ -1,4 +1,4 @@
-"""What the scenes of tests call by Blender 3's names, in later versions. For Blender's Python."""
+"""Differences between versions of Blender for the cases of features/, which use the names of Blender 3. For Blender's Python."""
 import bpy
 
 IS_FOUR = bpy.app.version >= (4, 0)

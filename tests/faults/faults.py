@@ -83,8 +83,6 @@ end_header
 
 LENS = "29.475 3.76 1.67 25.2\n84.83 0.12 1 25.2\n0 4.025 0 22.8\n-20 2 1.6 20\n-25 30 1 20\n"
 
-TEXTS = "Who takes part *agrees*.\n\n- one\n- **two**\n\n[agree]\nI agree\n\n[title]\n# A title\n"
-
 
 def gltf():
     points = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0)
@@ -227,7 +225,7 @@ def make_files(lull, folder):
     """Returns the good files by their names, those of them that lull writes made by it."""
     lens = 'Camera "realistic" "string lensfile" "lens.dat" "float focusdistance" [3]'
     files = {"scene.pbrt": SCENE, "m.ply": PLY, "lens.dat": LENS, "m.gltf": gltf(),
-             "v.csv": "v;30\n", "t.md": TEXTS, "h.csv": "a;20;40;60;80\nb;100;200;300;400\n", "p.csv": "a;20;20;20;20\nb;9;9;9;9\n",
+             "v.csv": "v;30\n", "h.csv": "a;20;40;60;80\nb;100;200;300;400\n", "p.csv": "a;20;20;20;20\nb;9;9;9;9\n",
              "lens.pbrt": re.sub(r"Camera .*", lens, SCENE),
              "exr.pbrt": SCENE.replace("t.png", "t.exr")}
     for name, text in files.items():
@@ -250,7 +248,7 @@ def make_files(lull, folder):
         time.sleep(0.01)
     process.terminate()
     process.wait()
-    kept = ["plain.pbrt", "v.csv", "d.h5", "t.md", "scene.pbrt", "exr.pbrt", "lens.pbrt", "m.ply", "lens.dat", "m.gltf", "h.csv", "p.csv",
+    kept = ["plain.pbrt", "v.csv", "d.h5", "scene.pbrt", "exr.pbrt", "lens.pbrt", "m.ply", "lens.dat", "m.gltf", "h.csv", "p.csv",
             "t.png", "t.exr", "model.h5", "c.h5"]
     return {name: (folder / name).read_bytes() for name in kept if (folder / name).exists()}
 

@@ -20,7 +20,7 @@ MATTE = {'KHR_materials_specular': {'specularFactor': 0}}
 
 
 class Glb(make.Glb):
-    """Collects a scene: a matte floor and wall, a lamp above, a camera, and what is added."""
+    """Collects a scene: a matte floor and wall, a lamp above, a camera, and further objects."""
 
     def __init__(self):
         super().__init__()
@@ -166,7 +166,7 @@ def pose():
             weights.append((1 - bend, bend, 0, 0))
             joints.append((0, 1, 0, 0))
     triangles = [t for i in range(0, 2 * steps, 2) for t in ((i, i + 1, i + 3), (i, i + 3, i + 2))]
-    # Without normals: Blender makes new ones of what has been posed, others pose those of the file.
+    # Without normals: Blender makes new ones of posed meshes, others pose those of the file.
     strip = glb.mesh(points, None, [(p[0], p[1]) for p in points], triangles, blue,
                      {'JOINTS_0': glb.accessor(joints, 'VEC4', 'B'),
                       'WEIGHTS_0': glb.accessor(weights, 'VEC4')})

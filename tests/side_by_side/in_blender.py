@@ -1,16 +1,13 @@
 """Renders a glTF file with Cycles. Runs inside Blender, for side_by_side.py, which says how it is
-called: its last argument is a JSON object of model, environment (or null), width, height, bounces,
-frame and shutter (seconds; the latter 0 for none), folder and runs. A run has a name, spp, seed, adaptive (Cycles' threshold, or 0) and materials:
-"imported" as Blender's importer makes them, or "specification" as appendix B of glTF 2.0 has them.
-
-Writes FOLDER/NAME.exr, multi-layer, and prints "RESULT {name, seconds}" with the processor seconds.
+called: its last argument is a JSON object of model, width, height, bounces, frame and shutter (seconds; the latter 0 for none),
+folder and runs. A run has a name, spp, seed and materials: "imported" as Blender's importer makes them, or "specification" as
+appendix B of glTF 2.0 has them. Writes FOLDER/NAME.exr, multi-layer.
 """
 
 import json
 import math
 import struct
 import sys
-import time
 
 import bpy
 import numpy
@@ -115,9 +112,8 @@ def brushed(tree, described):
 
 
 def follow_specification(material, described):
-    """Rebuilds what Blender 3.4's Principled BSDF does otherwise than the specification: its base is
-    Disney's diffuse and is not darkened by what the interface above it reflects, and it emits on
-    both sides."""
+    """Rebuilds differences of Blender 3.4's Principled BSDF from the specification: its base is Disney's
+    diffuse and is not attenuated by the interface above it, and it emits on both sides."""
     nodes, links = material.node_tree.nodes, material.node_tree.links
     principled = next((n for n in nodes if n.type == 'BSDF_PRINCIPLED'), None)
     if principled is None:
@@ -211,22 +207,8 @@ def load(o):
             for node in [n for n in material.node_tree.nodes if n.type == 'VOLUME_ABSORPTION']:
                 if node.inputs['Density'].default_value == 0:
                     material.node_tree.nodes.remove(node)
-    surround(scene, o['environment'])
+    scene.world = None
     return scene
-
-
-def surround(scene, environment):
-    scene.world = scene.world or bpy.data.worlds.new('world')
-    scene.world.use_nodes = True
-    nodes, links = scene.world.node_tree.nodes, scene.world.node_tree.links
-    background = next(n for n in nodes if n.type == 'BACKGROUND')
-    background.inputs['Color'].default_value = (0, 0, 0, 1)
-    background.inputs['Strength'].default_value = 1
-    if environment:
-        image = nodes.new('ShaderNodeTexEnvironment')
-        image.image = bpy.data.images.load(environment)
-        image.image.colorspace_settings.name = 'Linear'
-        links.new(image.outputs['Color'], background.inputs['Color'])
 
 
 def set_up(scene, o):
@@ -237,13 +219,12 @@ def set_up(scene, o):
     r.image_settings.file_format = 'OPEN_EXR_MULTILAYER'
     r.image_settings.color_depth = '32'
     r.film_transparent = False
-    c.device, c.use_denoising, c.film_exposure = 'CPU', False, 1
+    c.device, c.use_denoising, c.use_adaptive_sampling, c.film_exposure = 'CPU', False, False, 1
     c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = o['bounces']
     c.transparent_max_bounces = 64
     c.sample_clamp_direct = c.sample_clamp_indirect = c.light_sampling_threshold = c.blur_glossy = 0
     c.caustics_reflective = c.caustics_refractive = True
     c.pixel_filter_type, c.filter_width = 'BOX', 1
-    scene.view_layers[0].cycles.pass_debug_sample_count = True
     if o['frame'] is not None:
         frame = o['frame'] * r.fps / r.fps_base
         scene.frame_set(int(frame), subframe=frame - int(frame))
@@ -264,16 +245,9 @@ def main():
                 for material in bpy.data.materials:
                     if material.name in described and material.use_nodes:
                         follow_specification(material, described[material.name])
-        c = scene.cycles
-        c.samples, c.seed = run['spp'], run['seed']
-        c.use_adaptive_sampling = run['adaptive'] > 0
-        if run['adaptive'] > 0:
-            c.adaptive_threshold, c.adaptive_min_samples = run['adaptive'], 0
+        scene.cycles.samples, scene.cycles.seed = run['spp'], run['seed']
         scene.render.filepath = '%s/%s.exr' % (o['folder'], run['name'])
-        start = time.process_time()
         bpy.ops.render.render(write_still=True)
-        seconds = time.process_time() - start
-        print('RESULT ' + json.dumps({'name': run['name'], 'seconds': seconds}), flush=True)
 
 
 main()

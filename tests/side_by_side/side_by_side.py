@@ -5,8 +5,8 @@
     tests/side_by_side/side_by_side.py OUT MODEL.glb...
 
 Both render the same file: same camera, light, bounces and filter, without denoising, clamping, thresholds of
-light or a limit of caustics. Images stay in the folder OUT; what is there already is not rendered again. Not part
-of CI. It needs what measure.py needs.
+light or a limit of caustics. Images stay in the folder OUT; existing ones are not rendered again. Not part
+of CI. Requirements: those of measure.py.
 """
 
 import argparse
@@ -28,11 +28,11 @@ def render_by_cycles(renders, o):
     """Renders in one Blender: as glTF's specification has surfaces, and as Blender imports them."""
     width, height = map(int, o.size.split('x'))
     runs = [(f'cycles-{seed}', seed, 'specification') for seed in SEEDS] + [('imported', 2, 'imported')]
-    runs = [dict(name=name, spp=o.spp, seed=seed, adaptive=0, materials=materials) for name, seed, materials in runs
+    runs = [dict(name=name, spp=o.spp, seed=seed, materials=materials) for name, seed, materials in runs
             if not renders.file(name).exists()]
     if not runs:
         return
-    options = {'model': str(renders.scene), 'environment': None, 'width': width, 'height': height, 'bounces': o.bounces,
+    options = {'model': str(renders.scene), 'width': width, 'height': height, 'bounces': o.bounces,
                'frame': o.frame, 'shutter': o.shutter, 'folder': str(renders.folder), 'runs': runs}
     done = subprocess.run(['blender', '-b', '-noaudio', '-t', '2', '--python-exit-code', '1', '--python',
                            HERE / 'in_blender.py', '--', json.dumps(options)], capture_output=True, text=True)

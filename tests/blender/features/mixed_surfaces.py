@@ -6,18 +6,14 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
-from compatible import add_input, add_output, displace, new_node, use_own_normals
-from cases import ball, case, checks, cover, cube, dressed, folder, image, node, principled, surface, textured, the, wall, without
+from compatible import displace, new_node, use_own_normals
+from cases import (
+    add, ball, case, checks, cube, dress, dressed, empty, first, folder, geometry_nodes, image, link, matte, mix, node, principled, surface,
+    textured, the, wall, without)
 from lamps import only
 from objects import lawn, particles
-from scenes import dress, matte
 from surfaces import half, leaf, sheet
 from textures import normal_map, waves
-
-
-def link(tree, *pairs):
-    for a, b in pairs:
-        tree.links.new(a, b)
 
 
 @case("image texture over the UV map that is chosen for renders")
@@ -55,12 +51,12 @@ def attributes(scene):
 
 @case("transparent image whose alpha is not linked")
 def alpha_unused(scene):
-    wall(textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))[0])
+    wall(textured(half())[0])
 
 
 @case("transparent image with an alpha that is linked, on instances")
 def leaves(scene):
-    made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+    made, shown, bsdf, tree = textured(half())
     link(tree, (shown.outputs[1], bsdf.inputs['Alpha']))
     one = wall(made, 0.3, z=0.6)
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=3, location=(0, 0, 0.1))
@@ -107,23 +103,24 @@ def mirrored(scene):
     wall(made)
 
 
-@case("mapping in the node of an image")
-def own_mapping(scene):
-    made, shown, _, _ = textured()
-    shown.texture_mapping.scale, shown.texture_mapping.translation = (0.3, 0.2, 1), (0.1, 0.3, 0)
-    wall(made)
+@case("image of few pixels that differ much")
+def coarse_image(scene):
+    wall(textured(np.stack([np.indices((4, 4)).sum(0) % 2 * 0.9] * 3, -1))[0])
 
 
-@case("Mapping of the kinds Texture, Vector and Normal, with a location")
+@case("Mapping of the kinds Texture, Vector and Normal, with a location; mapping in the node of an image")
 def mappings(scene):
-    for x, kind in (-1.2, 'TEXTURE'), (0, 'VECTOR'), (1.2, 'NORMAL'):
+    for x, kind in (-1.5, 'TEXTURE'), (-0.5, 'VECTOR'), (0.5, 'NORMAL'):
         made, shown, _, tree = textured(checks()[:, ::-1] * np.linspace(0.2, 1, 64)[:, None, None])
         turn = node(tree, 'ShaderNodeMapping', vector_type=kind, Rotation=(0, 0, 0.3), Scale=(0.5, 0.3, 1))
         where = tree.nodes.new('ShaderNodeTexCoord')
         if 'Location' in turn.inputs and turn.inputs['Location'].enabled:
             turn.inputs['Location'].default_value = (0.2, 0.1, 0)
         link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]))
-        wall(made, 0.5).location.x = x
+        wall(made, 0.45).location.x = x
+    made, shown, _, _ = textured()
+    shown.texture_mapping.scale, shown.texture_mapping.translation = (0.3, 0.2, 1), (0.1, 0.3, 0)
+    wall(made, 0.45).location.x = 1.5
 
 
 @case("image texture over Generated coordinates, Extend, and Cubic")
@@ -149,9 +146,7 @@ def gradient(scene):
 def other_coordinates(scene):
     made, shown, _, tree = textured()
     where = tree.nodes.new('ShaderNodeTexCoord')
-    where.object = bpy.data.objects.new("place", None)
-    scene.collection.objects.link(where.object)
-    where.object.matrix_world = Matrix.LocRotScale((0.3, 0, 0), Euler((0.4, 0, 0.5)), (2, 2, 2))
+    where.object = empty(matrix_world=Matrix.LocRotScale((0.3, 0, 0), Euler((0.4, 0, 0.5)), (2, 2, 2)))
     link(tree, (where.outputs['Object'], shown.inputs[0]))
     shown.projection = 'BOX'
     dressed(made)
@@ -177,9 +172,9 @@ def tiles(scene):
 def normal_strength(scene):
     normal_map(scene)
     tree = the("ball").data.materials[0].node_tree
-    next(n for n in tree.nodes if n.type == 'NORMAL_MAP').inputs['Strength'].default_value = 2
+    first(tree, 'NORMAL_MAP').inputs['Strength'].default_value = 2
     made = the("ball").data.materials[0].copy()
-    next(n for n in made.node_tree.nodes if n.type == 'NORMAL_MAP').space = 'OBJECT'
+    first(made.node_tree, 'NORMAL_MAP').space = 'OBJECT'
     dressed(made, "floor")
 
 
@@ -197,7 +192,7 @@ def leaning(scene):
 def chained(scene):
     normal_map(scene)
     tree = the("ball").data.materials[0].node_tree
-    bsdf, mapped = (next(n for n in tree.nodes if n.type == k) for k in ('BSDF_PRINCIPLED', 'NORMAL_MAP'))
+    bsdf, mapped = first(tree, 'BSDF_PRINCIPLED'), first(tree, 'NORMAL_MAP')
     bumped = node(tree, 'ShaderNodeBump', Strength=0.3)
     link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=6).outputs[0], bumped.inputs['Height']), (mapped.outputs[0], bumped.inputs['Normal']),
          (bumped.outputs[0], bsdf.inputs['Normal']))
@@ -240,11 +235,10 @@ def hair_by_group(scene):
 @case("two-sided material by Backfacing")
 def two_sided(scene):
     made, front, tree = surface('BsdfDiffuse', Color=(0.8, 0.1, 0.1, 1))
-    behind = node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.8, 1))
-    mix, where = tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeNewGeometry')
-    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (front.outputs[0], mix.inputs[1]), (behind.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
-    wall(made).rotation_euler.z = math.pi
+    mix(tree, tree.nodes.new('ShaderNodeNewGeometry').outputs['Backfacing'], front, node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.8, 1)))
+    for x, turn in (-0.8, 0), (0.8, math.pi):
+        o = wall(made, 0.6)
+        o.location.x, o.rotation_euler.z = x, turn
 
 
 @case("colour by the facing of Layer Weight")
@@ -255,21 +249,19 @@ def by_facing(scene):
     dressed(made)
 
 
-@case("emission by a property of the object")
-def emission_property(scene):
+@case("colour and emission by properties, the index and the colour of objects")
+def by_object(scene):
     made, bsdf, tree = surface('Emission')
-    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_type='OBJECT', attribute_name="power").outputs['Fac'], bsdf.inputs[1]))
-    the("ball")["power"] = 3.0
+    for name, output, into in ("power", 'Fac', 1), ("paint", 'Color', 0):
+        link(tree, (node(tree, 'ShaderNodeAttribute', attribute_type='OBJECT', attribute_name=name).outputs[output], bsdf.inputs[into]))
+    the("ball")["power"], the("ball")["paint"] = 3.0, [0.2, 0.5, 0.7]
     dressed(made)
-
-
-@case("emission by the index and the colour of the object")
-def emission_index(scene):
-    made, bsdf, tree = surface('Emission')
-    info = tree.nodes.new('ShaderNodeObjectInfo')
-    link(tree, (info.outputs['Object Index'], bsdf.inputs[1]), (info.outputs['Color'], bsdf.inputs[0]))
-    the("ball").pass_index, the("ball").color = 3, (0.3, 0.6, 1, 1)
-    dressed(made)
+    for x, kind in (-1.6, 'Emission'), (1.6, 'BsdfDiffuse'):
+        made, bsdf, tree = surface(kind)
+        info = tree.nodes.new('ShaderNodeObjectInfo')
+        link(tree, (info.outputs['Color'], bsdf.inputs[0]), *[(info.outputs['Object Index'], bsdf.inputs[1])] * (x < 0))
+        o = ball(made, x)
+        o.pass_index, o.color = 3 * (x < 0), (0.3, 0.6, 0.9, 1)
 
 
 @case("emission that the camera sees weaker")
@@ -283,42 +275,32 @@ def emission_by_rays(scene):
 
 @case("Add of Transparent and Emission, and their Mix")
 def glow(scene):
-    for x, kind in (-0.8, 'AddShader'), (0.8, 'MixShader'):
+    for x, covered in (-0.8, add), (0.8, mix):
         made, bsdf, tree = surface('Emission', Strength=0.5, Color=(1, 0.3, 0.1, 1))
-        both, clear = tree.nodes.new('ShaderNode' + kind), tree.nodes.new('ShaderNodeBsdfTransparent')
-        inputs = [s for s in both.inputs if s.type == 'SHADER']
-        link(tree, (clear.outputs[0], inputs[0]), (bsdf.outputs[0], inputs[1]))
-        cover(both, tree)
+        covered(tree, *[0.5] * (covered == mix), tree.nodes.new('ShaderNodeBsdfTransparent'), bsdf)
         wall(made, 0.6).location.x = x
 
 
 @case("Add of Diffuse and Glossy")
 def added_shine(scene):
     made, base, tree = surface('BsdfDiffuse', Color=(0.1, 0.3, 0.6, 1))
-    add = tree.nodes.new('ShaderNodeAddShader')
-    link(tree, (base.outputs[0], add.inputs[0]), (node(tree, 'ShaderNodeBsdfGlossy', Color=(0.2, 0.2, 0.2, 1)).outputs[0], add.inputs[1]))
-    cover(add, tree)
+    add(tree, base, node(tree, 'ShaderNodeBsdfGlossy', Color=(0.2, 0.2, 0.2, 1)))
     dressed(made)
 
 
 @case("glass that is clear to shadows and diffuse light, by a Math node")
 def glass_by_math(scene):
     made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
-    rays, clear, mix, most = (new_node(tree, 'ShaderNode' + k) for k in ('LightPath', 'BsdfTransparent', 'MixShader', 'Math'))
-    most.operation = 'MAXIMUM'
-    link(tree, (rays.outputs['Is Shadow Ray'], most.inputs[0]), (rays.outputs['Is Diffuse Ray'], most.inputs[1]), (most.outputs[0], mix.inputs[0]),
-         (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    rays, most = tree.nodes.new('ShaderNodeLightPath'), node(tree, 'ShaderNodeMath', operation='MAXIMUM')
+    link(tree, (rays.outputs['Is Shadow Ray'], most.inputs[0]), (rays.outputs['Is Diffuse Ray'], most.inputs[1]))
+    mix(tree, most.outputs[0], bsdf, tree.nodes.new('ShaderNodeBsdfTransparent'))
     sheet(made)
 
 
 @case("Mix of Refraction and Glossy by Fresnel")
 def built_glass(scene):
     made, base, tree = surface('BsdfRefraction', Roughness=0, IOR=1.45)
-    shine, fresnel = node(tree, 'ShaderNodeBsdfGlossy', Roughness=0), node(tree, 'ShaderNodeFresnel', IOR=1.45)
-    mix = tree.nodes.new('ShaderNodeMixShader')
-    link(tree, (fresnel.outputs[0], mix.inputs[0]), (base.outputs[0], mix.inputs[1]), (shine.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    mix(tree, node(tree, 'ShaderNodeFresnel', IOR=1.45).outputs[0], base, node(tree, 'ShaderNodeBsdfGlossy', Roughness=0))
     dressed(made)
 
 
@@ -326,11 +308,8 @@ def built_glass(scene):
 def leaf_cut(scene):
     leaf(scene)
     tree = the("wall").data.materials[0].node_tree
-    inner = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
-    shown = node(tree, 'ShaderNodeTexImage', image=image(np.repeat(np.repeat(half(), 8, 0), 8, 1)))
-    clear, mix = tree.nodes.new('ShaderNodeBsdfTransparent'), tree.nodes.new('ShaderNodeMixShader')
-    link(tree, (shown.outputs[1], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]), (inner.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    inner, shown = first(tree, 'MIX_SHADER'), node(tree, 'ShaderNodeTexImage', image=image(half()))
+    mix(tree, shown.outputs[1], tree.nodes.new('ShaderNodeBsdfTransparent'), inner)
 
 
 @case("surface Holdout")
@@ -369,37 +348,28 @@ def packed(scene):
 @case("points and volumes of geometry nodes")
 def points(scene):
     without("ball")
-    group = bpy.data.node_groups.new("points", 'GeometryNodeTree')
-    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
-    inlet, outlet, made = (group.nodes.new(k) for k in ('NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeMeshToPoints'))
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3, location=(0, 0, 0.4))
+    group, inlet, outlet, made = geometry_nodes(dress(matte("red", (0.6, 0.2, 0.1, 1))), 'GeometryNodeMeshToPoints')
     made.inputs['Radius'].default_value = 0.3
     link(group, (inlet.outputs[0], made.inputs[0]), (made.outputs[0], outlet.inputs[0]))
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3, location=(0, 0, 0.4))
-    dress(matte("red", (0.6, 0.2, 0.1, 1))).modifiers.new("points", 'NODES').node_group = group
 
 
 @case("geometry nodes: a material that they set, and an attribute that they name")
 def node_attribute(scene):
     made, bsdf, tree = principled()
     link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="height").outputs['Fac'], bsdf.inputs['Base Color']))
-    group = bpy.data.node_groups.new("paint", 'GeometryNodeTree')
-    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
-    inlet, outlet, store, dressing, place, parts = (group.nodes.new(k) for k in (
-        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeSetMaterial', 'GeometryNodeInputPosition',
-        'ShaderNodeSeparateXYZ'))
+    group, inlet, outlet, store, dressing, place, parts = geometry_nodes(
+        the("ball"), 'GeometryNodeStoreNamedAttribute', 'GeometryNodeSetMaterial', 'GeometryNodeInputPosition', 'ShaderNodeSeparateXYZ')
     store.inputs['Name'].default_value, dressing.inputs['Material'].default_value = "height", made
     value = next(s for s in store.inputs if s.type == 'VALUE' and s.enabled)
     link(group, (inlet.outputs[0], store.inputs[0]), (place.outputs[0], parts.inputs[0]), (parts.outputs[2], value),
          (store.outputs[0], dressing.inputs[0]), (dressing.outputs[0], outlet.inputs[0]))
-    the("ball").modifiers.new("paint", 'NODES').node_group = group
 
 
 @case("image on the front and light on the back, by Backfacing")
 def sides_apart(scene):
     made, shown, bsdf, tree = textured(checks() * (1, 0.5, 0.2))
-    light, mix, where = node(tree, 'ShaderNodeEmission', Strength=3), tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeNewGeometry')
-    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (light.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    mix(tree, tree.nodes.new('ShaderNodeNewGeometry').outputs['Backfacing'], bsdf, node(tree, 'ShaderNodeEmission', Strength=3))
     wall(made, 0.9).location.x = -1
     o = wall(made, 0.9, z=1.8)
     o.location.x, o.rotation_euler.z = 1, math.pi - 0.4
@@ -410,7 +380,7 @@ def bumped_mirrors(scene):
     for x, (made, bsdf, tree) in (-0.9, surface('BsdfGlass', Roughness=0.05, IOR=1.45)), (0.9, principled(Metallic=1, Roughness=0.05)):
         bumped = node(tree, 'ShaderNodeBump', Strength=0.5, Distance=0.1)
         link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=8).outputs[0], bumped.inputs['Height']), (bumped.outputs[0], bsdf.inputs['Normal']))
-        ball(made).location.x = x
+        ball(made, x)
     without("ball")
 
 
@@ -418,7 +388,7 @@ def bumped_mirrors(scene):
 def alphas(scene):
     dressed(principled(Metallic=1, Roughness=0.2, Alpha=0.4)[0])
     for x, values in (-1.6, dict(Transmission=1, Roughness=0)), (1.6, dict(Emission=(1, 0.8, 0.3, 1), Emission_Strength=2)):
-        ball(principled(Alpha=0.4, **values)[0]).location.x = x
+        ball(principled(Alpha=0.4, **values)[0], x)
 
 
 @case("vector displacement of a grid, displacement of a cube")

@@ -5,8 +5,7 @@ import bpy
 import numpy as np
 
 from camera import keyed
-from cases import case, checks, cover, cube, dressed, folder, image, node, principled, textured, wall, without
-from mixed_surfaces import link
+from cases import case, checks, cube, dressed, folder, image, link, mix, node, principled, textured, wall, without
 from surfaces import half
 
 
@@ -16,7 +15,7 @@ def channels_as_colours(scene):
     parts = tree.nodes.new('ShaderNodeSeparateColor')
     link(tree, (shown.outputs[0], parts.inputs[0]), (parts.outputs[1], bsdf.inputs['Base Color']))
     wall(made, 0.6).location.x = -1.4
-    made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+    made, shown, bsdf, tree = textured(half())
     link(tree, (shown.outputs[1], bsdf.inputs['Base Color']))
     wall(made, 0.6)
     made, bsdf, tree = principled()
@@ -52,10 +51,9 @@ def numbers_of_nodes(scene):
     link(tree, (colour.outputs[0], bsdf.inputs['Roughness']))
     dressed(made)
     made, bsdf, tree = principled(Base_Color=(0.9, 0.1, 0.1, 1))
-    other, mix, value = node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.9, 1)), tree.nodes.new('ShaderNodeMixShader'), tree.nodes.new('ShaderNodeValue')
+    value = tree.nodes.new('ShaderNodeValue')
     value.outputs[0].default_value = 1.7
-    link(tree, (value.outputs[0], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (other.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    mix(tree, value.outputs[0], bsdf, node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.9, 1)))
     cube(made, 1, (1.5, 0, 0.5))
 
 

@@ -1,11 +1,9 @@
 """Rooms."""
 import math
 
-from cases import case, cube, principled, the, without
-from scenes import matte
+from cases import case, cube, matte, principled, the, without
 
 
-@case("room of diffuse surfaces, lit by an area lamp")
 def interior(scene):
     room(scene, matte("white", (0.8, 0.8, 0.8, 1)))
 

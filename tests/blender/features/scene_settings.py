@@ -1,17 +1,14 @@
 """Further features of lamps, cameras, view layers and worlds."""
-import os
-
 import bpy
 import numpy as np
 
-from compatible import LINEAR, RAW, displace, new_node, offset_shadow, socket
+from compatible import LINEAR, RAW, displace, offset_shadow, socket
 from cases import (
-    case, checks, cover, cube, dressed, folder, image, node, principled, set_apart, surface, textured, the, wall, without)
+    case, checks, cube, dress, dressed, empty, first, floats, image, lamp, link, matte, mix, node, parts_of, principled, set_apart, surface,
+    textured, the, wall, without)
 from camera import border, keyed, orthographic, shift
 from lamps import noded, only
-from mixed_surfaces import link
 from objects import lawn, particles
-from scenes import dress, lamp, matte
 from surfaces import coated, half, leaf, pane
 from textures import displacement, normal_map, waves
 from world import world_image
@@ -20,15 +17,10 @@ from world import world_image
 @case("instanced collection with lamps in it, scaled and mirrored")
 def lamps_in_collection(scene):
     without("key")
-    parts = bpy.data.collections.new("parts")
-    for made in (lamp('AREA', 100, (1, 0, 2), (0.4, 0, 0), size=0.5, shape='ELLIPSE', size_y=1),
-                 lamp('SPOT', 200, (-1, -1, 2), (0.5, 0, 0), shadow_soft_size=0.1, spot_size=1)):
-        parts.objects.link(made)
-        scene.collection.objects.unlink(made)
+    parts = parts_of(lamp('AREA', 100, (1, 0, 2), (0.4, 0, 0), size=0.5, shape='ELLIPSE', size_y=1),
+                     lamp('SPOT', 200, (-1, -1, 2), (0.5, 0, 0), shadow_soft_size=0.1, spot_size=1))
     for x, scale in (-1.5, (1, 1, 1)), (1.5, (-1.5, 1, 1.2)):
-        copy = bpy.data.objects.new("copy", None)
-        copy.instance_type, copy.instance_collection, copy.location, copy.scale = 'COLLECTION', parts, (x, 0, 0.5), scale
-        scene.collection.objects.link(copy)
+        empty(parts, location=(x, 0, 0.5), scale=scale)
 
 
 @case("lamps whose size, colour and energy are animated, and a driver")
@@ -48,14 +40,6 @@ def sun_nodes(scene):
     emission.inputs[1].default_value = 2.5
 
 
-@case("strength of a lamp by a Math node")
-def lamp_math(scene):
-    tree, emission = noded(the("key").data)
-    times = node(tree, 'ShaderNodeMath', operation='MULTIPLY')
-    times.inputs[0].default_value, times.inputs[1].default_value = 0.5, 4
-    link(tree, (times.outputs[0], emission.inputs[1]))
-
-
 @case("spot lamp that is scaled")
 def spot_scaled(scene):
     o = only('SPOT', 800, (1, -2, 3), (0.4, 0, 0.3), shadow_soft_size=0, spot_size=1, spot_blend=0.2)
@@ -65,11 +49,7 @@ def spot_scaled(scene):
 @case("point lamp with a radius that is scaled, and a sheared area lamp")
 def lamps_scaled(scene):
     only('POINT', 100, (1, -2, 3), shadow_soft_size=0.2).scale = (2, 2, 2)
-    parent = bpy.data.objects.new("parent", None)
-    scene.collection.objects.link(parent)
-    parent.scale = (2, 1, 1)
-    o = lamp('AREA', 100, (-1, 0, 3), (0.3, 0, 0.6), size=1)
-    o.parent = parent
+    lamp('AREA', 100, (-1, 0, 3), (0.3, 0, 0.6), size=1).parent = empty(scale=(2, 1, 1))
 
 
 @case("scaled camera that tracks an object, focus on an object")
@@ -122,7 +102,7 @@ def layers(scene):
 def world_ball(scene):
     world_image(scene)
     tree = scene.world.node_tree
-    made, hue = next(n for n in tree.nodes if n.type == 'TEX_ENVIRONMENT'), node(tree, 'ShaderNodeHueSaturation', Hue=0.7, Saturation=1.5)
+    made, hue = first(tree, 'TEX_ENVIRONMENT'), node(tree, 'ShaderNodeHueSaturation', Hue=0.7, Saturation=1.5)
     made.projection = 'MIRROR_BALL'
     link(tree, (made.outputs[0], hue.inputs['Color']), (hue.outputs[0], tree.nodes["Background"].inputs[0]))
     tree.nodes["Background"].inputs[1].default_value = 1.5
@@ -166,12 +146,6 @@ def text_uvs(scene):
     o.data.materials.append(textured()[0])
 
 
-@case("smooth shading of few faces, under a low sun")
-def coarse(scene):
-    terminator(scene)
-    offset_shadow(next(o for o in scene.objects if o.type == 'MESH' and o.name != "floor"), 0)
-
-
 @case("two outputs, for Cycles and for Eevee")
 def outputs(scene):
     made, bsdf, tree = surface('BsdfDiffuse', Color=(0.1, 0.6, 0.1, 1))
@@ -186,19 +160,15 @@ def outputs(scene):
 @case("two Principled surfaces mixed by an image")
 def mixed_by_image(scene):
     made, metal, tree = principled(Metallic=1, Roughness=0.2, Base_Color=(0.9, 0.6, 0.3, 1))
-    other, mix = node(tree, 'ShaderNodeBsdfPrincipled', Roughness=0.7, Base_Color=(0.1, 0.2, 0.5, 1)), tree.nodes.new('ShaderNodeMixShader')
     mask = node(tree, 'ShaderNodeTexImage', image=image(np.round(waves()), "mask", 'Non-Color'))
-    link(tree, (mask.outputs[0], mix.inputs[0]), (metal.outputs[0], mix.inputs[1]), (other.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    mix(tree, mask.outputs[0], metal, node(tree, 'ShaderNodeBsdfPrincipled', Roughness=0.7, Base_Color=(0.1, 0.2, 0.5, 1)))
     dressed(made)
 
 
 @case("Mix of Glass and Transparent by a number")
 def weak_glass(scene):
     made, bsdf, tree = surface('BsdfGlass', Roughness=0, IOR=1.45)
-    mix = node(tree, 'ShaderNodeMixShader', Fac=0.6)
-    link(tree, (bsdf.outputs[0], mix.inputs[1]), (tree.nodes.new('ShaderNodeBsdfTransparent').outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    mix(tree, 0.6, bsdf, tree.nodes.new('ShaderNodeBsdfTransparent'))
     dressed(made)
 
 
@@ -222,19 +192,15 @@ def more_spaces(scene):
 @case("image of 16 bits, and one of floats")
 def deep(scene):
     for x, kind in (-0.8, 'PNG'), (0.8, 'OPEN_EXR'):
-        shown = bpy.data.images.new("deep", 64, 64, float_buffer=True)
-        shown.pixels.foreach_set(np.concatenate([checks() * (1, 0.7, 0.4), np.ones((64, 64, 1))], 2).astype(np.float32).ravel())
-        shown.filepath_raw, shown.file_format = os.path.join(folder(), "deep." + ("png" if kind == 'PNG' else "exr")), kind
-        shown.save()
-        made, texture, _, _ = textured()
-        texture.image = bpy.data.images.load(shown.filepath_raw)
+        made, shown, _, _ = textured()
+        shown.image = bpy.data.images.load(floats(checks() * (1, 0.7, 0.4), "deep", kind).filepath_raw)
         wall(made, 0.7).location.x = x
 
 
 @case("image whose alpha is another channel, and one whose alpha is ignored")
 def alpha_modes(scene):
     for x, mode in (-0.8, 'CHANNEL_PACKED'), (0.8, 'NONE'):
-        made, shown, bsdf, tree = textured(np.repeat(np.repeat(half(), 8, 0), 8, 1))
+        made, shown, bsdf, tree = textured(half())
         shown.image.alpha_mode = mode
         link(tree, (shown.outputs[1], bsdf.inputs['Roughness']))
         wall(made, 0.7).location.x = x
@@ -244,9 +210,7 @@ def alpha_modes(scene):
 def one_sided_light(scene):
     without("key")
     made, bsdf, tree = surface('Emission', Strength=6)
-    clear, mix, where = (new_node(tree, 'ShaderNode' + k) for k in ('BsdfTransparent', 'MixShader', 'NewGeometry'))
-    link(tree, (where.outputs['Backfacing'], mix.inputs[0]), (bsdf.outputs[0], mix.inputs[1]), (clear.outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    mix(tree, tree.nodes.new('ShaderNodeNewGeometry').outputs['Backfacing'], bsdf, tree.nodes.new('ShaderNodeBsdfTransparent'))
     bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0.5, 2.6))
     dress(made).rotation_euler.x = 2.6
 
@@ -288,25 +252,16 @@ def hidden_in_viewport(scene):
 @case("instanced collection within an instanced collection, with a lamp and textures by place")
 def nested(scene):
     without("ball")
-    inner, outer = bpy.data.collections.new("inner"), bpy.data.collections.new("outer")
     made, bsdf, tree = principled()
     link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], bsdf.inputs['Base Color']))
-    for o in cube(made, 0.6, (0, 0, 0.3)), lamp('POINT', 10, (0, -0.6, 0.8)):
-        inner.objects.link(o)
-        scene.collection.objects.unlink(o)
-    for x, y, into, of in (-0.6, 0, outer, inner), (0.6, 0.3, outer, inner), (-1, 0, scene.collection, outer), (1.3, 0.5, scene.collection, outer):
-        copy = bpy.data.objects.new("copy", None)
-        copy.instance_type, copy.instance_collection, copy.location = 'COLLECTION', of, (x, y, 0)
-        copy.rotation_euler.z, copy.scale = x, (1, 1.3, 1)
-        into.objects.link(copy)
+    inner, outer = parts_of(cube(made, 0.6, (0, 0, 0.3)), lamp('POINT', 10, (0, -0.6, 0.8))), bpy.data.collections.new("outer")
+    for x, y, within, of in (-0.6, 0, outer, inner), (0.6, 0.3, outer, inner), (-1, 0, None, outer), (1.3, 0.5, None, outer):
+        empty(of, within, location=(x, y, 0), rotation_euler=(0, 0, x), scale=(1, 1.3, 1))
 
 
 @case("particles of a collection, turned and scaled at random")
 def particle_collection(scene):
-    parts = bpy.data.collections.new("parts")
-    for o in cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.3, (0, 50, 0)), cube(matte("two", (0.6, 0.1, 0.1, 1)), 0.2, (3, 50, 0)):
-        parts.objects.link(o)
-        scene.collection.objects.unlink(o)
+    parts = parts_of(cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.3, (0, 50, 0)), cube(matte("two", (0.6, 0.1, 0.1, 1)), 0.2, (3, 50, 0)))
     particles(lawn(), count=60, render_type='COLLECTION', instance_collection=parts, particle_size=0.8, size_random=0.7, use_advanced_hair=True,
               use_rotations=True, rotation_factor_random=0.8, phase_factor_random=2)
 
@@ -361,33 +316,25 @@ def water(scene):
     dress(surface('BsdfGlass', Roughness=0, IOR=1.33, Color=(0.5, 0.7, 1, 1))[0], smooth=True)
 
 
-@case("Mix by Fresnel of an index of 2.5: Diffuse and Glossy")
-def coats(scene):
-    coated(scene)
-    next(n for n in the("ball").data.materials[0].node_tree.nodes if n.type == 'FRESNEL').inputs[0].default_value = 2.5
-
-
 @case("Mix by Facing: Diffuse and Glossy")
 def coat_by_facing(scene):
     coated(scene)
     tree = the("ball").data.materials[0].node_tree
-    link(tree, (node(tree, 'ShaderNodeLayerWeight', Blend=0.5).outputs['Facing'], next(n for n in tree.nodes if n.type == 'MIX_SHADER').inputs[0]))
+    link(tree, (node(tree, 'ShaderNodeLayerWeight', Blend=0.5).outputs['Facing'], first(tree, 'MIX_SHADER').inputs[0]))
 
 
-@case("Mix by Fresnel: Diffuse and tinted Glossy")
+@case("Mix by Fresnel of an index of 2.5: Diffuse and tinted Glossy")
 def coat_tinted(scene):
-    coats(scene)
-    next(n for n in the("ball").data.materials[0].node_tree.nodes if n.type == 'BSDF_GLOSSY').inputs[0].default_value = (0.8, 0.2, 0.1, 1)
+    coated(scene)
+    tree = the("ball").data.materials[0].node_tree
+    first(tree, 'FRESNEL').inputs[0].default_value, first(tree, 'BSDF_GLOSSY').inputs[0].default_value = 2.5, (0.8, 0.2, 0.1, 1)
 
 
 @case("Diffuse, Translucent and Glossy mixed")
 def three_mixed(scene):
     leaf(scene)
     tree = the("wall").data.materials[0].node_tree
-    inner = next(n for n in tree.nodes if n.type == 'MIX_SHADER')
-    mix = node(tree, 'ShaderNodeMixShader', Fac=0.2)
-    link(tree, (inner.outputs[0], mix.inputs[1]), (node(tree, 'ShaderNodeBsdfGlossy', Roughness=0.3).outputs[0], mix.inputs[2]))
-    cover(mix, tree)
+    mix(tree, 0.2, first(tree, 'MIX_SHADER'), node(tree, 'ShaderNodeBsdfGlossy', Roughness=0.3))
 
 
 @case("Principled: emission of an image times a number")
@@ -426,3 +373,26 @@ def orthographic_focus(scene):
     orthographic(scene)
     dof = scene.camera.data.dof
     dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 6, 2
+
+
+@case("passes of a view layer, and light groups")
+def passes(scene):
+    scene.render.image_settings.file_format, layer = 'OPEN_EXR_MULTILAYER', scene.view_layers[0]
+    the("ball").data.materials[0].pass_index = 5
+    cube(matte("blue", (0.1, 0.1, 0.7, 1)), 1, (1.6, 0, 0.5)).pass_index = 3
+    bpy.ops.mesh.primitive_plane_add(size=1, location=(2.5, 0, 3), rotation=(3.14, 0, 0))
+    shining = dress(surface('Emission', Strength=5)[0]), lamp('POINT', 100, (-3, -2, 3), shadow_soft_size=0.2)
+    for o, name in zip((*shining, the("key"), scene.world), ("warm", "warm", "cold", "sky")):
+        o.lightgroup = name
+    for name in "warm", "cold", "sky", "none":
+        layer.lightgroups.add().name = name
+    scene.world.mist_settings.start, scene.world.mist_settings.depth, layer.pass_cryptomatte_depth = 2, 10, 8
+    for name in "z", "normal", "mist", "position", "object_index", "material_index", "cryptomatte_object", "cryptomatte_material", "uv":
+        setattr(layer, "use_pass_" + name, True)
+
+
+@case("more light groups than lull has")
+def light_groups(scene):
+    for i in range(17):
+        scene.view_layers[0].lightgroups.add().name = f"group {i}"
+        lamp('POINT', 10, (i - 8, 0, 3)).lightgroup = f"group {i}"

@@ -5,8 +5,7 @@ import bpy
 from mathutils import Euler, Matrix
 
 from compatible import add_input, add_output
-from cases import case, dressed, node, surface, the, wall, without
-from scenes import camera, lamp, matte
+from cases import camera, case, dressed, lamp, matte, node, surface, the, wall, without
 
 
 def only(kind, energy, at, turned=(0, 0, 0), **more):
@@ -16,11 +15,12 @@ def only(kind, energy, at, turned=(0, 0, 0), **more):
     return made
 
 
-@case("area lamp: square, rectangle, disk, ellipse")
+@case("area lamp: square, rectangle, disk, ellipse; scaled and coloured, without a world")
 def area_shapes(scene):
     without("key")
+    scene.world = None
     for x, shape in zip((-3, -1, 1, 3), ('SQUARE', 'RECTANGLE', 'DISK', 'ELLIPSE')):
-        lamp('AREA', 100, (x, -1, 3), (0.3, 0, 0), shape=shape, size=1, size_y=0.4)
+        lamp('AREA', 100, (x, -1, 3), (0.3, 0, 0), shape=shape, size=1, size_y=0.4, color=(1, 0.6, 0.5 + x / 6)).scale = (1.5, 1, 1)
 
 
 @case("area lamp before a sun, from behind and from the front")
@@ -33,11 +33,6 @@ def area_shadow(scene):
 @case("spread of an area lamp")
 def area_spread(scene):
     the("key").data.spread = 0.6
-
-
-@case("area lamp that the camera does not see")
-def area_unseen(scene):
-    lamp('AREA', 50, (-1.5, 1, 1.5), (math.pi / 2, 0, 0), size=1).visible_camera = False
 
 
 @case("edge of an area lamp that the camera does not see")
@@ -55,24 +50,9 @@ def reflected(scene):
     dressed(surface('BsdfGlossy', Roughness=0)[0])
 
 
-@case("sun without an angle")
-def sun(scene):
-    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=0)
-
-
-@case("sun of 0.5 degrees")
-def sun_small(scene):
-    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=math.radians(0.5))
-
-
 @case("sun of 10 degrees")
 def sun_large(scene):
     only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=math.radians(10))
-
-
-@case("point lamp without a radius")
-def point(scene):
-    only('POINT', 300, (1, -2, 3), shadow_soft_size=0)
 
 
 @case("point lamp with a radius")
@@ -91,11 +71,6 @@ def spot(scene):
     only('SPOT', 800, (2, -3, 4), (0.65, 0, 0.6), shadow_soft_size=0, spot_size=0.8, spot_blend=0.5)
 
 
-@case("spot lamp with a radius")
-def spot_radius(scene):
-    only('SPOT', 800, (2, -3, 4), (0.65, 0, 0.6), shadow_soft_size=0.5, spot_size=0.8)
-
-
 @case("penumbra of a spot lamp of radius 0.25, under the edge of a card")
 def spot_penumbra(scene):
     without("ball")
@@ -105,9 +80,13 @@ def spot_penumbra(scene):
     camera((0, 0, 1.5), (0, 0, 0), type='ORTHO', ortho_scale=3)
 
 
-@case("lamp of negative strength")
+@case("lamps of negative strength, one by a Math node")
 def negative_lamp(scene):
     lamp('POINT', -20, (0, -2, 2))
+    tree, emission = noded(lamp('POINT', 20, (0, -2, 2)).data)
+    less = node(tree, 'ShaderNodeMath', operation='SUBTRACT')
+    less.inputs[0].default_value, less.inputs[1].default_value = 0, 1
+    through(tree, emission.inputs[1], less)
 
 
 @case("lamp without shadows")
@@ -118,6 +97,11 @@ def no_shadow(scene):
 @case("lamp by rays: no diffuse light")
 def lamp_rays(scene):
     the("key").visible_diffuse = False
+
+
+@case("light linking of a lamp")
+def light_linking(scene):
+    the("key").light_linking.receiver_collection = bpy.data.collections.new("some")
 
 
 @case("max bounces of a lamp")
@@ -146,14 +130,6 @@ def falloff(scene):
 def falloff_quadratic(scene):
     tree, emission = noded(only('POINT', 50, (1, -2, 3), shadow_soft_size=0).data)
     tree.links.new(node(tree, 'ShaderNodeLightFalloff', Strength=3).outputs['Quadratic'], emission.inputs[1])
-
-
-@case("IES profile")
-def ies(scene):
-    tree, emission = noded(only('POINT', 30, (0, -1, 3), shadow_soft_size=0).data)
-    profile = bpy.data.texts.new("lamp.ies")
-    profile.write("IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 30 90\n0\n1000 100 0\n")
-    tree.links.new(node(tree, 'ShaderNodeTexIES', ies=profile).outputs[0], emission.inputs[1])
 
 
 @case("IES profile, of a lamp that is turned")
@@ -223,14 +199,6 @@ def ies_times(scene):
     times = node(tree, 'ShaderNodeMath', operation='MULTIPLY')
     times.inputs[1].default_value = 4
     through(tree, emission.inputs[1], node(tree, 'ShaderNodeTexIES', ies=profile, Strength=0.7), times)
-
-
-@case("lamp of a negative strength by a Math node")
-def lamp_negative_math(scene):
-    tree, emission = noded(lamp('POINT', 20, (0, -2, 2)).data)
-    less = node(tree, 'ShaderNodeMath', operation='SUBTRACT')
-    less.inputs[0].default_value, less.inputs[1].default_value = 0, 1
-    through(tree, emission.inputs[1], less)
 
 
 @case("lamp whose colour is that of its place")

@@ -6,14 +6,6 @@ from compatible import displace, set_input
 from cases import case, checks, cube, dressed, image, node, principled, textured, the, wall, without
 
 
-@case("image texture, repeated and turned")
-def repeated(scene):
-    made, shown, _, tree = textured()
-    turn, where = node(tree, 'ShaderNodeMapping', Scale=(2, 3, 1), Rotation=(0, 0, 0.4)), tree.nodes.new('ShaderNodeTexCoord')
-    tree.links.new(where.outputs['UV'], turn.inputs[0]), tree.links.new(turn.outputs[0], shown.inputs[0])
-    dressed(made)
-
-
 @case("image texture: data read as colours, and colours as data")
 def colour_spaces(scene):
     made, shown, bsdf, tree = textured()
@@ -35,13 +27,6 @@ def clip(scene):
 @case("image texture: Closest")
 def closest(scene):
     wall(textured(checks()[::8, ::8], interpolation='Closest')[0])
-
-
-@case("image texture: box projection")
-def box(scene):
-    made, shown, _, tree = textured(projection='BOX')
-    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Object'], shown.inputs[0])
-    dressed(made)
 
 
 @case("image texture over object coordinates")
@@ -109,14 +94,15 @@ def missing(scene):
     dressed(made)
 
 
-@case("movie or sequence of images")
-def movie(scene):
-    made, shown, _, _ = textured()
-    shown.image.source = 'SEQUENCE'
-    dressed(made)
+@case("texture that is finer than its baked image")
+def fine(scene):
+    made, bsdf, tree = principled()
+    tree.links.new(node(tree, 'ShaderNodeTexNoise', Scale=500).outputs[1], bsdf.inputs['Base Color'])
+    dressed(made, "floor")
+    scene.lull.texture = 64
 
 
-@case("procedural textures: noise, Voronoi, bricks")
+@case("procedural textures: Voronoi, bricks")
 def noise(scene):
     made, bsdf, tree = principled()
     tree.links.new(node(tree, 'ShaderNodeTexVoronoi', Scale=4).outputs['Color'], bsdf.inputs['Base Color'])
@@ -143,14 +129,6 @@ def unused_colours(scene):
         one.color = (1, 0, 0, 1)
 
 
-@case("colour of the object")
-def object_colour(scene):
-    made, bsdf, tree = principled()
-    tree.links.new(tree.nodes.new('ShaderNodeObjectInfo').outputs['Color'], bsdf.inputs['Base Color'])
-    the("ball").color = (0.2, 0.7, 0.3, 1)
-    dressed(made)
-
-
 def waves():
     y, x = np.mgrid[0:256, 0:256] / 256
     return np.repeat((0.5 + 0.5 * np.sin(x * 50) * np.sin(y * 50))[..., None], 3, -1)
@@ -164,7 +142,6 @@ def bump(scene):
     dressed(made)
 
 
-@case("normal map")
 def normal_map(scene):
     made, bsdf, tree = principled(Base_Color=(0.6, 0.4, 0.2, 1))
     tilted = np.ones((8, 8, 3)) * (0.5, 0.5, 1)

@@ -2,10 +2,9 @@
 import bpy
 import numpy as np
 
-from compatible import UV_WARP, add_input, add_output
-from cases import ball, case, checks, cube, dressed, image, node, principled, textured, the, wall, without
-from mixed_surfaces import link
-from scenes import dress, matte
+from compatible import UV_WARP
+from cases import (
+    ball, case, checks, cube, dress, dressed, empty, geometry_nodes, image, link, matte, node, principled, textured, the, wall, without)
 
 
 def uneven():
@@ -38,10 +37,11 @@ def by_place():
     return made
 
 
-@case("Generated coordinates of an array and of a deformed mesh")
+@case("Generated coordinates of an array, of a deformed mesh and of a sheared object")
 def generated_of_modifiers(scene):
     without("ball")
     cube(by_place(), 0.6, (-1.2, 0, 0.5)).modifiers.new("copies", 'ARRAY').count = 4
+    cube(by_place(), 0.8, (0, 0.7, 0.6), rotation=(0, 0, 0.7)).parent = empty(scale=(3, 1, 1))
     taper = cube(by_place(), 0.6, (0, -1.5, 0.5)).modifiers.new("taper", 'SIMPLE_DEFORM')
     taper.deform_method, taper.factor, taper.deform_axis = 'TAPER', 2, 'Z'
 
@@ -59,9 +59,7 @@ def generated_of_keys(scene):
     parts = bpy.data.collections.new("parts")
     parts.instance_offset = (-1, 0, -0.5)
     parts.objects.link(o)
-    copy = bpy.data.objects.new("copy", None)
-    copy.instance_type, copy.instance_collection, copy.location = 'COLLECTION', parts, (0.3, 0, 0)
-    scene.collection.objects.link(copy)
+    empty(parts, location=(0.3, 0, 0))
 
 
 @case("image over a UV map that the mesh lacks")
@@ -87,16 +85,12 @@ def stored_uvs(scene):
     link(tree, (node(tree, 'ShaderNodeUVMap', uv_map="stored").outputs[0], shown.inputs[0]))
     o = wall(made)
     o.data.uv_layers.remove(o.data.uv_layers[0])
-    group = bpy.data.node_groups.new("store", 'GeometryNodeTree')
-    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
-    inlet, outlet, store, where, parts, back = (group.nodes.new(k) for k in (
-        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeStoreNamedAttribute', 'GeometryNodeInputPosition', 'ShaderNodeSeparateXYZ',
-        'ShaderNodeCombineXYZ'))
+    group, inlet, outlet, store, where, parts, back = geometry_nodes(
+        o, 'GeometryNodeStoreNamedAttribute', 'GeometryNodeInputPosition', 'ShaderNodeSeparateXYZ', 'ShaderNodeCombineXYZ')
     store.data_type, store.domain = 'FLOAT_VECTOR', 'CORNER'
     store.inputs['Name'].default_value = "stored"
     link(group, (inlet.outputs[0], store.inputs[0]), (where.outputs[0], parts.inputs[0]), (parts.outputs[0], back.inputs[0]),
          (parts.outputs[2], back.inputs[1]), (back.outputs[0], next(s for s in store.inputs if s.type == 'VECTOR')), (store.outputs[0], outlet.inputs[0]))
-    o.modifiers.new("store", 'NODES').node_group = group
 
 
 @case("images over two UV maps, mixed")
@@ -138,7 +132,7 @@ def projections(scene):
     for x, kind in (-0.8, 'SPHERE'), (0.8, 'TUBE'):
         made, shown, _, tree = textured(checks() * (1, 0.7, 0.4), projection=kind)
         link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], shown.inputs[0]))
-        ball(made).location.x = x
+        ball(made, x)
     without("ball")
 
 

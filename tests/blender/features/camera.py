@@ -1,10 +1,7 @@
 """Features of cameras and films."""
-import bpy
-
 from compatible import open_shutter
-from cases import ball, case, cube, dressed, surface, the, wall, without
+from cases import ball, camera, case, cube, dressed, empty, matte, surface, the, wall, without
 from rooms import interior
-from scenes import camera, matte
 from world import world_image
 
 
@@ -19,7 +16,6 @@ def sensor(scene):
     scene.camera.data.sensor_fit, scene.camera.data.shift_y = 'VERTICAL', 0.2
 
 
-@case("orthographic camera")
 def orthographic(scene):
     scene.camera.data.type, scene.camera.data.ortho_scale = 'ORTHO', 6
 
@@ -80,8 +76,7 @@ def motion_of_camera(scene):
 def motion_of_copies(scene):
     motion_blur(scene)
     without("ball")
-    parent = bpy.data.objects.new("parent", None)
-    scene.collection.objects.link(parent)
+    parent = empty()
     keyed(parent, "rotation_euler", (0, 0, 0), (0, 0, 0.4), (0, 0, 0.8))
     first = cube(matte("box", (0.6, 0.2, 0.1, 1)), at=(0, 0, 0.7))
     copies = [first, first.copy(), first.copy()]
@@ -121,9 +116,9 @@ def border(scene):
     r.border_min_x, r.border_max_x, r.border_min_y, r.border_max_y = 0.21, 0.83, 0.3, 0.9
 
 
-@case("exposure of the film")
+@case("exposure of the film and of the view")
 def exposure(scene):
-    scene.cycles.film_exposure = 2.5
+    scene.cycles.film_exposure, scene.view_settings.exposure = 2.5, 1
 
 
 @case("transparent film")
@@ -138,19 +133,16 @@ def transparent_glass(scene):
     dressed(surface('BsdfGlass', Roughness=0, IOR=1.05)[0])
 
 
-@case("Cycles' own limits: 4 diffuse bounces, indirect light clamped at 10")
+@case("Cycles' own limits: 4 diffuse bounces, indirect light clamped at 10, fast approximation")
 def limits(scene):
     interior(scene)
     c = scene.cycles
-    c.diffuse_bounces, c.glossy_bounces, c.sample_clamp_indirect = 4, 4, 10
+    c.diffuse_bounces, c.glossy_bounces, c.sample_clamp_indirect, c.use_fast_gi = 4, 4, 10, True
 
 
 @case("camera under a parent of uneven and negative scale")
 def sheared_camera(scene):
-    parent = bpy.data.objects.new("parent", None)
-    scene.collection.objects.link(parent)
-    scene.camera.parent = parent
-    parent.scale, parent.rotation_euler = (1, 1.5, 0.8), (0.1, 0, 0.3)
+    scene.camera.parent = empty(scale=(1, 1.5, 0.8), rotation_euler=(0.1, 0, 0.3))
 
 
 @case("camera of a marker")

@@ -4,9 +4,10 @@ import os
 import bpy
 
 from camera import keyed
-from compatible import add_grease_pencil, add_input, add_output, shade_smooth_to
-from cases import ball, case, cube, dressed, folder, node, principled, set_apart, surface, textured, the, wall, without
-from scenes import dress, lamp, matte
+from compatible import add_grease_pencil, shade_smooth_to
+from cases import (
+    ball, case, cube, dress, dressed, empty, first, folder, geometry_nodes, lamp, link, matte, node, parts_of, principled, set_apart,
+    surface, textured, the, wall, without)
 
 
 @case("object that the camera does not see")
@@ -30,14 +31,9 @@ def shadowless(scene):
 @case("copies that the camera does not see, or without a shadow")
 def unseen_copies(scene):
     without("ball")
-    parts = bpy.data.collections.new("parts")
-    source = cube(matte("part", (0.6, 0.2, 0.1, 1)))
-    parts.objects.link(source)
-    scene.collection.objects.unlink(source)
+    parts = parts_of(cube(matte("part", (0.6, 0.2, 0.1, 1))))
     for x, name in (-2, "visible_camera"), (0, "visible_shadow"), (2, None):
-        copy = bpy.data.objects.new("copy", None)
-        copy.instance_type, copy.instance_collection, copy.location.x = 'COLLECTION', parts, x
-        scene.collection.objects.link(copy)
+        copy = empty(parts, location=(x, 0, 0))
         if name:
             setattr(copy, name, False)
 
@@ -96,16 +92,6 @@ def layer_of_strands(scene):
     scene.view_layers[0].use_solid = False
 
 
-@case("sheared object")
-def sheared(scene):
-    without("ball")
-    parent = bpy.data.objects.new("parent", None)
-    scene.collection.objects.link(parent)
-    parent.scale = (3, 1, 1)
-    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), rotation=(0, 0, 0.7))
-    o.parent = parent
-
-
 @case("empty slot of a material")
 def empty_slot(scene):
     the("ball").data.materials.append(None)
@@ -119,7 +105,6 @@ def empty_slot(scene):
 @case("instanced collection outside the scene, with an object hidden from renders")
 def instanced_collection(scene):
     without("ball")
-    parts = bpy.data.collections.new("parts")
     shown = cube(matte("shown", (0.6, 0.2, 0.1, 1)))
     shown.modifiers.new("round", 'SUBSURF').render_levels = 3
     cutter = cube(matte("cutter", (0.1, 0.8, 0.1, 1)), 0.6, (0.4, -0.4, 0.8))
@@ -128,12 +113,7 @@ def instanced_collection(scene):
     cut.object = cutter
     unseen = cube(matte("unseen", (0.1, 0.8, 0.1, 1)), 0.6, (1.5, 0, 0.3))
     unseen.hide_viewport = True
-    for o in shown, cutter, unseen:
-        parts.objects.link(o)
-        scene.collection.objects.unlink(o)
-    copy = bpy.data.objects.new("copy", None)
-    copy.instance_type, copy.instance_collection = 'COLLECTION', parts
-    scene.collection.objects.link(copy)
+    empty(parts_of(shown, cutter, unseen))
 
 
 @case("other values in the viewport: particles, curves, Screw, metaballs, geometry nodes")
@@ -148,16 +128,12 @@ def viewport_values(scene):
     rod = cube(matte("rod", (0.6, 0.2, 0.1, 1)), 0.3, (0, -1.5, 1))
     screw = rod.modifiers.new("screw", 'SCREW')
     screw.angle, screw.screw_offset, screw.steps, screw.render_steps = 0.1, 1, 2, 16
-    group = bpy.data.node_groups.new("late", 'GeometryNodeTree')
-    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
-    inlet, outlet, switch, asks = (group.nodes.new(k) for k in (
-        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeSwitch', 'GeometryNodeIsViewport'))
+    late = cube(matte("late", (0.1, 0.2, 0.6, 1)), 0.6, (-1, -1.5, 0.4))
+    group, inlet, outlet, switch, asks = geometry_nodes(late, 'GeometryNodeSwitch', 'GeometryNodeIsViewport')
     switch.input_type = 'GEOMETRY'
     geometry = [s for s in switch.inputs if s.type == 'GEOMETRY']
-    group.links.new(inlet.outputs[0], geometry[0])
-    group.links.new(next(s for s in switch.outputs if s.type == 'GEOMETRY'), outlet.inputs[0])
-    group.links.new(asks.outputs[0], switch.inputs[1])
-    cube(matte("late", (0.1, 0.2, 0.6, 1)), 0.6, (-1, -1.5, 0.4)).modifiers.new("late", 'NODES').node_group = group
+    link(group, (inlet.outputs[0], geometry[0]), (next(s for s in switch.outputs if s.type == 'GEOMETRY'), outlet.inputs[0]),
+         (asks.outputs[0], switch.inputs[1]))
 
 
 @case("override of an object of a library, beside a local one of its name")
@@ -171,10 +147,7 @@ def library(scene):
     bpy.data.collections.remove(parts)
     with bpy.data.libraries.load(path, link=True) as (_, wanted):
         wanted.collections = ["parts"]
-    copy = bpy.data.objects.new("copy", None)
-    copy.instance_type, copy.instance_collection, copy.scale = 'COLLECTION', wanted.collections[0], (-1, 1, 1.2)
-    scene.collection.objects.link(copy)
-    source = copy.instance_collection.objects[0]
+    source = empty(wanted.collections[0], scale=(-1, 1, 1.2)).instance_collection.objects[0]
     scene.collection.objects.link(source)
     moved = source.override_create(remap_local_usages=True)
     moved.location.x = -1.5
@@ -185,17 +158,6 @@ def negative(scene):
     without("ball")
     bpy.ops.mesh.primitive_monkey_add(size=1.6, location=(0, 0, 0.8))
     dress(matte("red", (0.6, 0.2, 0.1, 1))).scale = (-1, 1, 1)
-
-
-@case("text, curves and metaballs")
-def text(scene):
-    without("ball")
-    bpy.ops.object.text_add(location=(-1, 0, 0.2), rotation=(1.2, 0, 0))
-    bpy.context.object.data.body, bpy.context.object.data.extrude = "lull", 0.1
-    bpy.context.object.data.materials.append(matte("ink", (0.6, 0.2, 0.1, 1)))
-    bpy.ops.curve.primitive_bezier_circle_add(location=(1.5, 0, 0.8))
-    bpy.context.object.data.bevel_depth = 0.2
-    bpy.ops.object.metaball_add(location=(-2, 0, 0.8), radius=1)
 
 
 @case("instances on faces")
@@ -216,19 +178,13 @@ def lamps_on_faces(scene):
 
 
 @case("instances of geometry nodes")
-def geometry_nodes(scene):
+def scattered(scene):
     without("ball")
     one = cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4, (0, 50, 0))
-    group = bpy.data.node_groups.new("scatter", 'GeometryNodeTree')
-    add_input(group, 'NodeSocketGeometry', "in"), add_output(group, 'NodeSocketGeometry', "out")
-    inlet, outlet, put, info = (group.nodes.new(k) for k in (
-        'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeInstanceOnPoints', 'GeometryNodeObjectInfo'))
-    info.inputs[0].default_value = one
-    for a, b in ((inlet.outputs[0], put.inputs['Points']), (info.outputs['Geometry'], put.inputs['Instance']),
-                 (put.outputs[0], outlet.inputs[0])):
-        group.links.new(a, b)
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3, location=(0, 0, 0.4))
-    dress(None).modifiers.new("scatter", 'NODES').node_group = group
+    group, inlet, outlet, put, info = geometry_nodes(dress(None), 'GeometryNodeInstanceOnPoints', 'GeometryNodeObjectInfo')
+    info.inputs[0].default_value = one
+    link(group, (inlet.outputs[0], put.inputs['Points']), (info.outputs['Geometry'], put.inputs['Instance']), (put.outputs[0], outlet.inputs[0]))
 
 
 def particles(o, **values):
@@ -245,14 +201,12 @@ def lawn():
     return dress(matte("lawn", (0.1, 0.3, 0.1, 1)))
 
 
-@case("particles that are objects")
 def particle_objects(scene):
     bpy.ops.mesh.primitive_ico_sphere_add(radius=0.3, location=(0, 50, 0))
     one = dress(matte("copy", (0.6, 0.2, 0.1, 1)))
     particles(lawn(), count=40, render_type='OBJECT', instance_object=one, particle_size=0.5)
 
 
-@case("hair of particles")
 def hair(scene):
     particles(lawn(), count=1000, hair_length=0.6, root_radius=5)
 
@@ -264,15 +218,6 @@ def hair_curves(scene):
     bpy.context.object.data.materials.append(matte("strands", (0.3, 0.2, 0.1, 1)))
 
 
-@case("modifiers: subdivision, boolean")
-def modifiers(scene):
-    the("ball").hide_render = True
-    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 1.4, (0, 0, 0.7))
-    o.modifiers.new("round", 'SUBSURF').render_levels = 3
-    cut = o.modifiers.new("cut", 'BOOLEAN')
-    cut.object = the("ball")
-
-
 @case("adaptive subdivision")
 def dicing(scene):
     o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 1.4, (0, 0, 0.7))
@@ -282,8 +227,29 @@ def dicing(scene):
     o.cycles.use_adaptive_subdivision = True
 
 
-@case("simplify")
+@case("bar that an armature bends, at a frame; a floor without a material")
+def pose(scene):
+    without("ball")
+    the("floor").data.materials.clear()
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.4, depth=3, location=(0, 0, 1.5))
+    bar = dress(matte("bar", (0.2, 0.4, 0.7, 1)))
+    bar.modifiers.new("fine", 'SUBSURF').subdivision_type = 'SIMPLE'
+    bpy.ops.object.armature_add(enter_editmode=True)
+    rig = bpy.context.object
+    lower, upper = rig.data.edit_bones[0], rig.data.edit_bones.new("upper")
+    lower.tail, upper.head, upper.tail, upper.parent = (0, 0, 1.5), (0, 0, 1.5), (0, 0, 3), lower
+    bpy.ops.object.mode_set(mode='OBJECT')
+    for number, bone in enumerate(rig.data.bones):
+        bar.vertex_groups.new(name=bone.name).add([v.index for v in bar.data.vertices if (v.co.z > 0) == number], 1, 'REPLACE')
+    bar.modifiers.new("skin", 'ARMATURE').object = rig
+    rig.pose.bones["upper"].rotation_mode = 'XYZ'
+    keyed(rig.pose.bones["upper"], "rotation_euler", (0, 0, 0), (0, 0, 0), (0.6, 0, 0.6))
+    scene.frame_set(2)
+
+
+@case("simplify, and culling by the camera")
 def simplify(scene):
+    scene.cycles.use_camera_cull = the("ball").cycles.use_camera_cull = True
     scene.render.use_simplify, scene.render.simplify_subdivision_render = True, 0
     the("ball").modifiers.new("round", 'SUBSURF').render_levels = 3
 
@@ -299,7 +265,7 @@ def auto_smooth(scene):
 @case("volume of an object without a surface")
 def volume(scene):
     made, _, tree = principled()
-    tree.nodes.remove(next(n for n in tree.nodes if n.type == 'BSDF_PRINCIPLED'))
+    tree.nodes.remove(first(tree, 'BSDF_PRINCIPLED'))
     tree.links.new(node(tree, 'ShaderNodeVolumePrincipled').outputs[0], tree.get_output_node('ALL').inputs['Volume'])
     cube(made, 1.5, (0, 0, 0.8))
     without("ball")
@@ -316,9 +282,8 @@ def hair_info(scene):
     made, bsdf, tree = principled()
     info, ramp, random = tree.nodes.new('ShaderNodeHairInfo'), node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeMixRGB', blend_type='MULTIPLY', Fac=0.25)
     ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.8, 0.02, 0.02, 1), (0.02, 0.8, 0.02, 1)
-    for a, b in ((info.outputs['Intercept'], ramp.inputs[0]), (ramp.outputs[0], random.inputs[1]), (info.outputs['Random'], random.inputs[2]),
-                 (random.outputs[0], bsdf.inputs['Base Color'])):
-        tree.links.new(a, b)
+    link(tree, (info.outputs['Intercept'], ramp.inputs[0]), (ramp.outputs[0], random.inputs[1]), (info.outputs['Random'], random.inputs[2]),
+         (random.outputs[0], bsdf.inputs['Base Color']))
     o.data.materials[0] = made
     particles(o, count=1000, hair_length=0.6, root_radius=5)
 

@@ -2,14 +2,14 @@
 """Renders scenes of one feature of Blender each with Cycles and with the add-on, and writes the table of features.
 
     cmake --build --preset release --target lull blender_addon
-    tests/side_by_side/features.py blender build/release/share/lull/lull-blender.zip build/release/renderer/lull OUT [NAME...]
+    tests/blender/features.py blender build/release/share/lull/lull-blender.zip build/release/renderer/lull OUT [NAME...]
 
 A feature is right if means of R, G, B and alpha are within 2 % of Cycles', blocks of 10x10 pixels within 5 % of the mean, on average,
 and each block of 5x5 pixels within 15 % of the mean of the block and the picture, or within four standard errors; refused if there is
-no picture; else warned. One that differs without a warning is silent, and the exit code is 1. Pictures stay
-in the folder OUT, `NAME.png` with Cycles on the left; what is there already is not rendered again, but lull's picture if it is named, or
-with `--again`. `--write` writes features-VERSION.csv, all features in a version of Blender, and replaces the table in
-renderer/docs/blender.md, those that are not right in any of these files. Not part of CI.
+no picture; else warned. One that differs without a warning is silent, and the exit code is 1. Pictures stay in the folder OUT,
+`NAME.png` with Cycles on the left; existing ones are not rendered again, but lull's if it is named, or with `--again`. `--write`
+writes features-VERSION.csv, all features in a version of Blender, and replaces the table in renderer/docs/blender.md, those that are
+not right in any of these files. blender_test.py judges some of the features, for CI.
 """
 import argparse
 import csv
@@ -32,42 +32,63 @@ BEGIN, END = "<!-- features.py writes this table -->\n", "<!-- end of the table 
 SIZE, MEANS, BLOCKS, WORST, ERRORS = (60, 40), 0.02, 0.05, 0.15, 4
 
 
-def blender(o, environment, *arguments):
-    return subprocess.Popen([o.blender, "-b", "-noaudio", "--factory-startup", *arguments], text=True, stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, env=environment)
+class Blender:
+    """A Blender with the add-on, whose settings are in a folder."""
+    version = None  # of the last render
+
+    def __init__(self, program, addon, lull, folder):
+        self.addon, self._program = pathlib.Path(folder, "scripts/addons/lull_engine"), program
+        self._environment = dict(os.environ, BLENDER_USER_SCRIPTS=f"{folder}/scripts", BLENDER_USER_CONFIG=f"{folder}/config",
+                                 PATH=f"{pathlib.Path(lull).resolve().parent}:{os.environ['PATH']}")
+        os.makedirs(self.addon.parent)
+        self.start("--factory-startup", "--python-expr",
+                   f"import bpy; bpy.ops.preferences.addon_install(filepath={str(addon)!r})").communicate()
+
+    def start(self, *arguments, **more):
+        return subprocess.Popen([self._program, "-b", "-noaudio", "--python-exit-code", "3", *arguments], text=True, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, env=self._environment, **more)
+
+    def render(self, runs, out, spp):
+        """Renders as features_in_blender.py has it. Yields each name, its title and the lines that were printed; nothing for features that
+        this Blender lacks."""
+        what = {"runs": runs, "size": SIZE, "spp": spp, "folder": str(out)}
+        lines = []
+        with self.start("--factory-startup", "--addons", "lull_engine", "--python", str(HERE / "features_in_blender.py"), "--",
+                        json.dumps(what)) as process, open(out / "log.txt", "w", encoding="utf-8") as log:
+            for line in process.stdout:
+                log.write(line)
+                if line.startswith("CASE "):
+                    (name, title), lines = line[5:].strip().split(" | "), []
+                elif line == "MADE\n":
+                    yield name, title, lines
+                elif line.startswith("VERSION "):
+                    self.version = line.split()[1]
+                else:
+                    lines.append(line.strip())
+        if process.returncode not in (0, 1):  # 1 after an error of a render
+            sys.exit(f"Blender ended early; see {out}/log.txt")
 
 
-def run(o, folder):
-    """Renders what is named, or missing in OUT. Returns the names of all features."""
-    environment = dict(os.environ, BLENDER_USER_SCRIPTS=f"{folder}/scripts", BLENDER_USER_CONFIG=f"{folder}/config",
-                       PATH=f"{pathlib.Path(o.lull).resolve().parent}:{os.environ['PATH']}")
-    os.makedirs(f"{folder}/scripts/addons")
-    blender(o, environment, "--python-expr",
-            f"import bpy; bpy.ops.preferences.addon_install(filepath={str(o.addon)!r})").communicate()
-    there = [] if o.names or o.again else [path.stem for path in o.out.glob("*.json")]
-    what = {"names": o.names, "there": there, "size": SIZE, "spp": o.spp, "folder": str(o.out),
-            "engines": ['CYCLES'] if o.cycles else ['CYCLES', 'LULL']}
-    process = blender(o, environment, "--addons", "lull_engine", "--python", str(HERE / "features_in_blender.py"), "--",
-                      json.dumps(what))
-    said, name, names = [], None, None
-    with open(o.out / "log.txt", "w", encoding="utf-8") as log:
-        for line in process.stdout:
-            log.write(line)
-            if line.startswith("CASE "):
-                name, title = line[5:].strip().split(" | ")
-                said = []
-            elif line == "MADE\n":
-                (o.out / f"{name}.json").write_text(json.dumps({"title": title, "said": said}), encoding="utf-8")
-                print(name, flush=True)
-            elif line.startswith("VERSION "):
-                (o.out / "version.txt").write_text(line.split()[1], encoding="utf-8")
-            elif line.startswith("ALL "):
-                names = line.split()[1:]
-            elif re.match("(Warning|Error|Info): ", line):
-                said.append(line.strip())
-    if names is None:
-        sys.exit(f"Blender ended early; see {o.out}/log.txt")
-    return names
+def all_names():
+    return [name for file in sorted((HERE / "features").glob("*.py"))
+            for name in re.findall(r"^@case.*\ndef (\w+)", file.read_text(encoding="utf-8"), re.M)]
+
+
+def run(o):
+    """Renders named features, or those missing in OUT."""
+    engines = ['CYCLES'] if o.cycles else ['CYCLES', 'LULL']
+    names = o.names or [name for name in all_names() if o.again or not (o.out / f"{name}.json").exists()]
+    with tempfile.TemporaryDirectory() as folder:
+        blender = Blender(o.blender, o.addon, o.lull, folder)
+        for name, title, lines in blender.render([(name, name, "", engines) for name in names], o.out, o.spp):
+            if not o.cycles:
+                (o.out / f"{name}.json").write_text(json.dumps({"title": title, "said": said(lines)}), encoding="utf-8")
+            print(name, flush=True)
+    (o.out / "version.txt").write_text(blender.version, encoding="utf-8")
+
+
+def said(lines):
+    return [line for line in lines if re.match("(Warning|Error|Info): ", line)]
 
 
 def picture(path):
@@ -75,7 +96,7 @@ def picture(path):
     if not path.exists():
         return None
     channels, _ = exr.read(path)
-    return np.stack([next(v for k, v in channels.items() if k.split(".")[-1] == c) for c in "RGBA"], -1)
+    return np.stack([next(v for k, v in channels.items() if re.fullmatch(rf"((.*\.)?Combined\.)?{c}", k)) for c in "RGBA"], -1)
 
 
 def blocks(values, n=10):
@@ -107,21 +128,19 @@ def clean(line):
     return line.removeprefix("The scene cannot be exported: ")
 
 
-def consequences(said, kinds="Warning|Error"):
-    """Returns what is said of a feature, once each, without the names."""
-    lines = [clean(line) for line in said if re.match(f"({kinds}): ", line)]
+def consequences(lines, kinds="Warning|Error"):
+    """Returns the warnings of a feature, once each, without the names."""
+    lines = [clean(line) for line in lines if re.match(f"({kinds}): ", line)]
     return list(dict.fromkeys(re.sub(r": '.*$", "", line) for line in lines))
 
 
-def judge(o, name, said):
+def judge(out, name, lines):
     """Returns the verdict, and the differences of means, of blocks and of the worst block; without a picture the verdict alone."""
-    a, b = (picture(o.out / f"{name}.{engine}.exr") for engine in ("cycles", "lull"))
-    warnings = consequences(said)
-    remarks = [line for line in consequences(said, "Info") if line.startswith("differs: ")]
-    warnings = [line for line in warnings if line not in remarks]
+    a, b = (picture(out / f"{name}.{engine}.exr") for engine in ("cycles", "lull"))
+    remarks = [line for line in consequences(lines, "Info") if line.startswith("differs: ")]
+    warnings = [line for line in consequences(lines) if line not in remarks]
     if b is None:
         return ("refused: " + "; ".join(warnings),)
-    beside(a, b, o.out / f"{name}.png")
     means = b.mean((0, 1)) / np.maximum(a.mean((0, 1)), 1e-9) - 1
     apart = means[np.argmax(abs(means))]
     apart_in_blocks = abs(blocks(a) - blocks(b))
@@ -144,9 +163,14 @@ def read(path):
         return list(csv.reader(file))[1:]
 
 
+def tables():
+    """Returns the rows of all features by version and title."""
+    return {path.stem.removeprefix("features-"): {row[0]: row for row in read(path)} for path in sorted(HERE.glob("features-*.csv"))}
+
+
 def table():
     """Returns the numbers of right features by version, and a table of the others."""
-    versions = {path.stem.removeprefix("features-"): {row[0]: row for row in read(path)} for path in sorted(HERE.glob("features-*.csv"))}
+    versions = tables()
     titles = dict.fromkeys(title for rows in versions.values() for title in rows)
     right = {title for title in titles if all(rows.get(title, ["", "right"])[1].startswith("right") for rows in versions.values())}
 
@@ -173,22 +197,20 @@ def main():
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--cycles", action="store_true", help="render Cycles' pictures alone, for later runs")
     parser.add_argument("--again", action="store_true", help="render all of lull's pictures again")
-    parser.add_argument("--table", action="store_true", help="render nothing, and judge what is in OUT")
+    parser.add_argument("--table", action="store_true", help="render nothing, and judge the pictures in OUT")
     parser.add_argument("--write", action="store_true", help="replace features-VERSION.csv and the table in renderer/docs/blender.md")
     o = parser.parse_args()
     os.makedirs(o.out, exist_ok=True)
-    if o.table:
-        names = dict.fromkeys(name for file in sorted((HERE / "features").glob("*.py"))
-                              for name in re.findall(r"^@case.*\ndef (\w+)", file.read_text(encoding="utf-8"), re.M))
-    else:
-        with tempfile.TemporaryDirectory() as folder:
-            names = run(o, folder)
+    if not o.table:
+        run(o)
     rows, silent = [], []
-    for name in names:
+    for name in all_names():
         if not (o.out / f"{name}.json").exists():
             continue
         feature = json.loads((o.out / f"{name}.json").read_text(encoding="utf-8"))
-        verdict, *apart = judge(o, name, feature["said"])
+        verdict, *apart = judge(o.out, name, feature["said"])
+        if apart:
+            beside(*(picture(o.out / f"{name}.{engine}.exr") for engine in ("cycles", "lull")), o.out / f"{name}.png")
         silent += [name] if "silent" in verdict else []
         figures = [f"{100 * value:{form}}" for value, form in zip(apart, ("+.1f", ".1f", ".0f"))] or [""] * 3
         rows.append([feature["title"], verdict, *figures])
@@ -203,4 +225,5 @@ def main():
         sys.exit("silent: " + ", ".join(silent))
 
 
-main()
+if __name__ == "__main__":
+    main()
