@@ -10,13 +10,9 @@ import sys
 import h5py
 import numpy as np
 
+from published import read
 
 NO_NOISE = 0.05  # L*; blocks with less, such as a plain sky, say nothing of what people accept
-
-
-def read_thresholds(path):
-    rows = (line.strip().strip(';').split(';') for line in open(path) if line.strip())
-    return {row[0]: [int(spp) for spp in row[1:]] for row in rows}
 
 
 def at(block, spp):
@@ -66,7 +62,7 @@ def print_kinds(blocks):
 
 
 def main():
-    human = read_thresholds(sys.argv[1])
+    human = read(sys.argv[1])
     views, blocks = {}, []
     for path in sys.argv[2:]:
         with h5py.File(path, 'r') as file:

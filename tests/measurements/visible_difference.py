@@ -23,6 +23,7 @@ import subprocess
 
 import numpy as np
 
+import published
 from measure import read
 
 CAP, PASS, SIDE = 10000, 20, 200
@@ -76,9 +77,7 @@ def noise(difference, random, count=32):
 
 def load_blocks(o):
     """Returns for each block its viewpoint, the threshold of people, the clean picture and the noise of one sample a pixel."""
-    with open(o.human) as f:
-        human = {line.split(';')[0]: [int(v) for v in line.strip().split(';')[1:] if v] for line in f}
-    blocks = []
+    human, blocks = published.read(o.human), []
     for path in sorted(glob.glob(os.path.join(glob.escape(o.folder), '*.exr'))):
         name, block = re.fullmatch(r'(.*-view\d+)(?:-(\d+))?', os.path.basename(path)[:-4]).groups()
         images = [read(path, *layer) for layer in ((), ('halfA.',), ('halfB.',), ('', ['spp']))]

@@ -19,9 +19,11 @@ import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, '..', '..', 'scenes'))
+from make import write_png  # noqa: E402
+
 SIZE = 32
 SAMPLES = 4096
 
@@ -324,18 +326,6 @@ AttributeEnd
 } | {f'shape-{name}': text for name, text in SHAPES.items()}
 
 
-def write_png(path, pixels):
-    """Writes rows of 8-bit RGB."""
-    height, width = len(pixels), len(pixels[0])
-
-    def chunk(kind, data):
-        return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
-    rows = b''.join(b'\0' + bytes(v for pixel in row for v in pixel) for row in pixels)
-    with open(path, 'wb') as file:
-        file.write(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, 8, 2, 0, 0, 0)) +
-                   chunk(b'IDAT', zlib.compress(rows, 9)) + chunk(b'IEND', b''))
-
-
 def write_bsdf(path, nodes):
     """Tabulates scattering to both sides: luminance, red and blue as two Fourier coefficients each."""
     mu = [-math.cos(math.pi * i / (nodes - 1)) for i in range(nodes)]
@@ -382,9 +372,8 @@ def write_scenes():
     with open(os.path.join(folder, 'lens.dat'), 'w') as file:
         file.write(LENS)
     # Sides are powers of two: others pbrt-v3 resamples.
-    write_png(os.path.join(folder, 'beam.png'),
-              [[(x * 8, 40 + y * 13, (x // 4 + y // 4) % 2 * 200 + 30) for x in range(32)]
-               for y in range(16)])
+    write_png(os.path.join(folder, 'beam.png'), 32, 16,
+              lambda x, y: [v / 255 for v in (x * 8, 40 + y * 13, (x // 4 + y // 4) % 2 * 200 + 30)])
 
 
 def write_exr(path, pixels, samples):
