@@ -26,7 +26,7 @@ MEANS, BLOCKS = 0.01, 0.02  # differences from the table
 
 # Rendered with Cycles and with lull.
 PICTURES = """plastic transparent exposure shift orthographic_focus depth_of_field clip_start area_shapes area_shadow lamp_groups sun_nodes
-point_radius spot portal world_image world_backdrop water emission alphas alpha leaf_cut shadowed glow mixed
+lamps_seen spot portal world_image world_backdrop water emission alphas alpha leaf_cut shadowed glow mixed
 added_shine coated two_sided nothing group by_object coarse_image mappings muted uvs_lacking alpha_unused colours_for_renders colours
 channels_as_colours generated_of_modifiers faces layers pose motion_of_copies unseen_copies hair_info displacement passes""".split()
 
@@ -69,7 +69,7 @@ class AddOn(unittest.TestCase):
             ("cropped", "plastic", LAYERS + "s.denoise = r.use_border = r.use_crop_to_border = True; r.border_min_x = 0.3; "
              "r.border_max_x, r.border_min_y, r.border_max_y = 0.7, 0.25, 0.9", lull),
             ("default", "plastic", LAYERS + "s.stop_by, s.denoise = 'DEFAULT', True", lull),
-            ("looks", "looks", "bpy.ops.lull.check()", none),
+            ("looks", "looks", "scene.cycles.use_fast_gi = True; bpy.ops.lull.check()", none),
             ("shapes", "area_shapes", EXPORT.format(paths["shapes.gltf"]), none),
             ("glb", "passes", EXPORT.format(paths["passes.glb"]), none),
             ("moving", "motion_blur", f"""
@@ -261,6 +261,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
         self.assertIn("TEXT 'Nothing will look different.", self.said("shapes"))
         self.assertNotIn("Warning", self.said("shapes"))
         self.assertIn("noise is judged without the look 'High Contrast', gamma", self.said("looks"))
+        self.assertIn("differs: all bounces are traced, without Cycles' fast approximation", self.said("looks"))
         self.assertLess(abs(self.render_exported("shapes") - rgb(self.read("area_shapes.lull"))).max(), 1e-5)
         self.assertLess(abs(self.render_exported("glb") - rgb(self.read("passes.lull"))).max(), 1e-5)
         self.assertEqual(sorted(f.name for f in self.exported.iterdir()), [

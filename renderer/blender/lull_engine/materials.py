@@ -8,7 +8,6 @@ from . import images, known, normals, values
 from .nodes import is_output, upstream
 from .strands import STRANDS
 from .surfaces import EVEN
-from .versions import BENDS_REFLECTIONS
 
 _FINE = 0.005  # difference of neighbouring pixels, on average, from which an image has details of their size
 _REPEAT, _CLAMP = 10497, 33071
@@ -31,7 +30,7 @@ def plain(name, colour):
 
 
 def shining(name, radiance, spread):
-    """Returns what shines on its front, and is nothing to other light: in Cycles nothing is shadowed by a lamp."""
+    """Returns a material that shines on its front, and lets other light pass: in Cycles, lamps cast no shadows."""
     made = _of_air({"name": name, "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0}})
     _emit(made, radiance)
     made["extras"] = {"lull": {"openBehind": True, **({"spread": spread} if spread < math.pi - 1e-4 else {})}}
@@ -57,8 +56,8 @@ def _emit(material, radiance, texture=None):
 
 
 def write(surface, baker, pictures, note, over):
-    """Returns a material. `over` is None, or a mesh, its place and the slots of the material, for what depends on it; `note` takes what
-    will look different."""
+    """Returns a material. `over` is None, or for materials that depend on it a mesh, its place and the slots of the material;
+    `note` takes visible differences from Cycles."""
     return _Writing(surface, baker, pictures, note, over).write()
 
 
@@ -260,8 +259,8 @@ class _Writing:
     def _note_leaning(self, pixels, strength=1):
         is_diffuse = all(is_output(self.p[n]) or self.p[n] < 1 for n in ('Metallic', 'Transmission'))
         step = max(1, len(pixels) // 512)
-        most = normals.MOST if is_diffuse else normals.MOST / 8 if BENDS_REFLECTIONS else 1
-        if normals.dimmed(pixels[::step, ::step], strength) > most:
+        # Cycles bends reflections that bumps would send below the surface.
+        if normals.dimmed(pixels[::step, ::step], strength) > (normals.MOST if is_diffuse else normals.MOST / 8):
             self.note("brighter where light falls flat, as normals lean far" if is_diffuse else
                       "reflecting in other directions where normals lean")
 

@@ -1,4 +1,4 @@
-"""What versions of Blender call differently, in one table. 3.4 and 4.3 are tested."""
+"""Names and behaviour that differ between versions of Blender, in one table. 3.4 and 4.3 are tested."""
 import bpy
 
 TESTED = (3, 4), (4, 3)
@@ -20,7 +20,6 @@ HAS_ADDED_INTERFACE = bpy.app.version < (4, 0)
 
 HAS_DIM_LAMPS = bpy.app.version < (4, 0)  # area lights by pi / 4, spot lights off their axis
 IS_PROFILE_OPEN = bpy.app.version >= (4, 0)  # the interpolation of IES profiles takes 0 behind the last angles, also around
-BENDS_REFLECTIONS = bpy.app.version >= (4, 0)  # otherwise than lull, where bumps would send them below the surface
 IS_RECT_FLAT = bpy.app.version >= (4, 0)  # the pixels of a pass
 
 

@@ -133,11 +133,11 @@ def transparent_glass(scene):
     dressed(surface('BsdfGlass', Roughness=0, IOR=1.05)[0])
 
 
-@case("Cycles' own limits: 4 diffuse bounces, indirect light clamped at 10, fast approximation")
+@case("Cycles' own limits: 4 diffuse bounces, indirect light clamped at 10")
 def limits(scene):
     interior(scene)
     c = scene.cycles
-    c.diffuse_bounces, c.glossy_bounces, c.sample_clamp_indirect, c.use_fast_gi = 4, 4, 10, True
+    c.diffuse_bounces, c.glossy_bounces, c.sample_clamp_indirect = 4, 4, 10
 
 
 @case("camera under a parent of uneven and negative scale")

@@ -31,25 +31,25 @@ def muted(scene):
     wall(made)
 
 
-def by_place():
+def by_place(kind='TexNoise', output='Color', **values):
     made, bsdf, tree = principled()
-    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=4).outputs[1], bsdf.inputs['Base Color']))
+    link(tree, (node(tree, 'ShaderNode' + kind, **values).outputs[output], bsdf.inputs['Base Color']))
     return made
 
 
 @case("Generated coordinates of an array, of a deformed mesh and of a sheared object")
 def generated_of_modifiers(scene):
     without("ball")
-    cube(by_place(), 0.6, (-1.2, 0, 0.5)).modifiers.new("copies", 'ARRAY').count = 4
-    cube(by_place(), 0.8, (0, 0.7, 0.6), rotation=(0, 0, 0.7)).parent = empty(scale=(3, 1, 1))
-    taper = cube(by_place(), 0.6, (0, -1.5, 0.5)).modifiers.new("taper", 'SIMPLE_DEFORM')
+    cube(by_place(Scale=4), 0.6, (-1.2, 0, 0.5)).modifiers.new("copies", 'ARRAY').count = 4
+    cube(by_place('TexCoord', 'Generated'), 0.8, (0, 0.7, 0.6), rotation=(0, 0, 0.7)).parent = empty(scale=(3, 1, 1))
+    taper = cube(by_place('TexCoord', 'Generated'), 0.6, (0, -1.5, 0.5)).modifiers.new("taper", 'SIMPLE_DEFORM')
     taper.deform_method, taper.factor, taper.deform_axis = 'TAPER', 2, 'Z'
 
 
 @case("Generated coordinates of shape keys, in an instanced collection with an offset")
 def generated_of_keys(scene):
     without("ball")
-    o = cube(by_place(), 0.8, (-0.8, 0, 0.4))
+    o = cube(by_place(Scale=4), 0.8, (-0.8, 0, 0.4))
     o.shape_key_add(name="Basis")
     key = o.shape_key_add(name="up")
     for i, point in enumerate(key.data):
@@ -129,11 +129,11 @@ def warped_uvs(scene):
 
 @case("image projected on a sphere and a tube")
 def projections(scene):
+    without("ball")
     for x, kind in (-0.8, 'SPHERE'), (0.8, 'TUBE'):
         made, shown, _, tree = textured(checks() * (1, 0.7, 0.4), projection=kind)
         link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], shown.inputs[0]))
         ball(made, x)
-    without("ball")
 
 
 @case("grain of wood: waves and a ramp over stretched coordinates, with bump")

@@ -112,7 +112,7 @@ def coarse_image(scene):
 def mappings(scene):
     for x, kind in (-1.5, 'TEXTURE'), (-0.5, 'VECTOR'), (0.5, 'NORMAL'):
         made, shown, _, tree = textured(checks()[:, ::-1] * np.linspace(0.2, 1, 64)[:, None, None])
-        turn = node(tree, 'ShaderNodeMapping', vector_type=kind, Rotation=(0, 0, 0.3), Scale=(0.5, 0.3, 1))
+        turn = node(tree, 'ShaderNodeMapping', vector_type=kind, Rotation=(0, 0, 0.3), Scale=(0.5, 0.5 if kind == 'TEXTURE' else 0.3, 1))
         where = tree.nodes.new('ShaderNodeTexCoord')
         if 'Location' in turn.inputs and turn.inputs['Location'].enabled:
             turn.inputs['Location'].default_value = (0.2, 0.1, 0)
@@ -377,11 +377,11 @@ def sides_apart(scene):
 
 @case("glass and a mirror with bump")
 def bumped_mirrors(scene):
+    without("ball")
     for x, (made, bsdf, tree) in (-0.9, surface('BsdfGlass', Roughness=0.05, IOR=1.45)), (0.9, principled(Metallic=1, Roughness=0.05)):
         bumped = node(tree, 'ShaderNodeBump', Strength=0.5, Distance=0.1)
         link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=8).outputs[0], bumped.inputs['Height']), (bumped.outputs[0], bsdf.inputs['Normal']))
         ball(made, x)
-    without("ball")
 
 
 @case("Principled: an alpha of 0.4, with metal, glass and emission")

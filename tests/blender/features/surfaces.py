@@ -233,6 +233,7 @@ def shadowed(scene):
 
 @case("surfaces with parts that lull lacks: a half unknown, bump of a coat, one of two bumps, anisotropy, hair, occlusion")
 def in_part(scene):
+    without("ball")
     made, base, tree = surface('BsdfDiffuse')
     mix(tree, 0.5, base, tree.nodes.new('ShaderNodeBsdfHairPrincipled'))
     ball(made, -2.4)
@@ -246,7 +247,6 @@ def in_part(scene):
         tree.links.new(new_node(tree, 'ShaderNode' + kind).outputs[output], socket(bsdf, name))
         ball(made, x)
     ball(surface('BsdfAnisotropic', Anisotropy=0.5)[0], 1.6)
-    without("ball")
 
 
 @case("wall that is there from inside alone")
