@@ -30,8 +30,9 @@ if [[ ! -e $root/etc/lull-root ]]; then
     touch "$root/etc/lull-root"
 fi
 
-# Only what differs is copied, so that a second call builds only that.
+# Files keep their times, so that a second call builds only what differs.
 mkdir -p "$root/srv/lull/clone" "$root/srv/lull/shared" "$root/var/log/lull"
+find "$root/srv/lull/clone" -mindepth 1 -maxdepth 1 ! -name build ! -name out -exec rm -rf {} +
 (cd "$clone" && git ls-files -z --cached --others --exclude-standard | while IFS= read -rd '' f; do
     [[ ! -e $f ]] || printf '%s\0' "$f"
 done) | rsync -a0 --files-from=- "$clone/" "$root/srv/lull/clone/"
