@@ -41,6 +41,15 @@ class Handle {
     Close close;
 };
 
+// How to make a file, a group or a data set without its times, as the same content gives the same
+// bytes then. HDF5 2 keeps them of files and groups, too.
+class Timeless : public Handle {
+  public:
+    Timeless(hid_t kind, const std::string& what) : Handle(H5Pcreate(kind), H5Pclose, what) {
+        Check(H5Pset_obj_track_times(*this, false), what);
+    }
+};
+
 std::shared_ptr<const int64_t> Share(hid_t id, Close close, const std::string& what) {
     if (id < 0) Fail(what);
     return {new int64_t(id), [close](const int64_t* owned) {
@@ -131,8 +140,9 @@ Hdf5Group Hdf5Group::Open(const std::string& path) {
 
 Hdf5Group Hdf5Group::Create(const std::string& path) {
     BeQuiet();
-    return Hdf5Group(Share(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Fclose, "create it"));
+    const Timeless options(H5P_FILE_CREATE, "create it");
+    return Hdf5Group(
+        Share(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, options, H5P_DEFAULT), H5Fclose, "create it"));
 }
 
 Hdf5Group Hdf5Group::CreateInMemory() {
@@ -140,8 +150,8 @@ Hdf5Group Hdf5Group::CreateInMemory() {
     const std::string what = "make a file in memory";
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
     Check(H5Pset_fapl_core(access, size_t(1) << 20, false), what);
-    return Hdf5Group(
-        Share(H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, what));
+    const Timeless options(H5P_FILE_CREATE, what);
+    return Hdf5Group(Share(H5Fcreate("memory", H5F_ACC_TRUNC, options, access), H5Fclose, what));
 }
 
 std::span<const std::byte> Hdf5Group::Content() {
@@ -164,8 +174,10 @@ Hdf5Group Hdf5Group::Group(const std::string& name) const {
 }
 
 Hdf5Group Hdf5Group::MakeGroup(const std::string& name) {
-    return Hdf5Group(Share(H5Gcreate2(*id, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Gclose, "make the group '" + name + "'"));
+    const std::string what = "make the group '" + name + "'";
+    const Timeless options(H5P_GROUP_CREATE, what);
+    return Hdf5Group(
+        Share(H5Gcreate2(*id, name.c_str(), H5P_DEFAULT, options, H5P_DEFAULT), H5Gclose, what));
 }
 
 std::vector<std::string> Hdf5Group::Groups() const {
@@ -311,9 +323,7 @@ void Hdf5Group::AddArray(const std::string& path, std::span<const int64_t> shape
     const std::vector<hsize_t> size(shape.begin(), shape.end());
     const Handle space(H5Screate_simple(int(size.size()), size.data(), nullptr), H5Sclose, what);
     if (Count(space) != values.size()) Fail(what + ": its values do not fill its shape");
-    const Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
-    // Without the time, the same content gives the same bytes.
-    Check(H5Pset_obj_track_times(options, false), what);
+    const Timeless options(H5P_DATASET_CREATE, what);
     if (storage == Hdf5Storage::Compressed && !values.empty()) {
         Check(H5Pset_chunk(options, int(size.size()), size.data()), what);
         Check(H5Pset_shuffle(options), what);
