@@ -21,7 +21,8 @@ std::vector<NamedProvenance> PartsOf(const Provenance& p) {
     const bool hasModel = !p.checksum.empty();
     std::vector<NamedProvenance> parts = {
         {nullptr, "renderer", "renderer", "lull"},
-        {"version", "version", "version", p.version},
+        // "version" is OpenEXR's own: a number.
+        {"version", "rendererVersion", "version", p.version},
         {nullptr, nullptr, "scene", p.scene},
         {"seed", "seed", "seed", p.seed},
         {"sampler", "sampler", "sampler", NameOf(p.sampler)},

@@ -245,7 +245,7 @@ TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
     EXPECT_EQ(text("criterion"), "fixed:6");
     EXPECT_EQ(text("samples"), std::to_string(12 * 8 * 6));
     EXPECT_EQ(text("rejectedSamples"), "0");
-    for (const char* name : {"version", "seconds", "worldToCamera", "worldToNDC"})
+    for (const char* name : {"rendererVersion", "seconds", "worldToCamera", "worldToNDC"})
         EXPECT_TRUE(exr.attributes.contains(name)) << name;
     ASSERT_TRUE(exr.Find("spp"));
     EXPECT_EQ(exr.Find("spp")->values, std::vector<float>(12 * 8, 6));
