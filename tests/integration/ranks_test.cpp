@@ -28,6 +28,13 @@ struct RanksTest : testing::Test {
                            ranks);
     }
 
+    // Sets $last to rank 2 of that mpirun: threads of it start ranks, in any order.
+    static std::string RankTwo(const std::string& mpi) {
+        return "for child in $(cat /proc/" + mpi +
+               "/task/*/children); do grep -qzx OMPI_COMM_WORLD_RANK=2 /proc/$child/environ && "
+               "last=$child; done; ";
+    }
+
     Outcome Run(const std::string& command) { return RunShell(directory, command); }
 
     std::vector<float> Texels(const std::string& name) {
@@ -140,11 +147,11 @@ TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
 
     // A rank is killed: the job ends, and what there was stays. mpirun leaves the others a second,
     // which may be too short where many share the machine.
-    const Outcome killed = Run(
-        "env OMPI_MCA_odls_base_sigkill_timeout=3 " + Ranks(3) + parts +
-        " & p=$!; while [ ! -e c.h5 ] && kill -0 $p; do sleep 0.02; done; "
-        "for child in $(cat /proc/$p/task/$p/children); do last=$child; done; kill -KILL $last; "
-        "wait $p");
+    const Outcome killed =
+        Run("env OMPI_MCA_odls_base_sigkill_timeout=3 " + Ranks(3) + parts +
+            " & p=$!; while [ ! -e c.h5 ] && kill -0 $p; do sleep 0.02; done; " + RankTwo("$p") +
+            "kill -KILL $last; "
+            "wait $p");
     EXPECT_NE(killed.exitCode, 0) << killed.err;
     // Of rank 2, or of rank 0 where mpirun was the first to end that. Open MPI 5 leaves the others
     // a quarter of a second, whatever is set, and names the rank itself.
@@ -173,9 +180,8 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
         Run("timeout -s KILL 120 " + Ranks(3) + kRender +
             "--stop fixed:100000 -o parts.exr --time 9s --checkpoint c.h5 --checkpoint-interval 0.5"
             " & p=$!; while [ ! -e c.h5 ] && kill -0 $p; do sleep 0.02; done; "
-            "mpi=$(echo $(cat /proc/$p/task/$p/children)); "
-            "for child in $(cat /proc/$mpi/task/$mpi/children); do last=$child; done; "
-            "kill -STOP $last; wait $p"));
+            "mpi=$(echo $(cat /proc/$p/task/$p/children)); " +
+            RankTwo("$mpi") + "kill -STOP $last; wait $p"));
     const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
     EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
     EXPECT_EQ(stopped.out, "parts.exr\nparts.png\nparts.spp.png\nparts.thresholds.csv\n");
