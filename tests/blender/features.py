@@ -176,12 +176,12 @@ def table():
 
     def cell(row):
         if row is None:
-            return "not there"
+            return "–"
         return "right" if row[1].startswith("right") else f"{row[2]} %, {row[4]} %" if row[2] else "refused"
 
     counts = [f"{sum(row[1].startswith('right') for row in rows.values())} of {len(rows)} in Blender {version}"
               for version, rows in versions.items()]
-    lines = [f"Right are {' and '.join(counts)}. The others, with the difference of the mean and that of a block:", "",
+    lines = [f"Right are {' and '.join(counts)}. The others, with the difference of the mean and that of a block (–: not rendered):", "",
              f"| feature | {' | '.join(versions)} |", "|---|" + "---|" * len(versions)]
     lines += [f"| {title} | {' | '.join(cell(rows.get(title)) for rows in versions.values())} |" for title in titles if title not in right]
     return "\n" + "\n".join(lines) + "\n\n"
