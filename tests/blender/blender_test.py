@@ -25,16 +25,17 @@ SPP = 64
 MEANS, BLOCKS = 0.01, 0.02  # differences from the table
 
 # Rendered with Cycles and with lull.
-PICTURES = """plastic transparent exposure shift orthographic_focus depth_of_field clip_start area_shapes area_shadow lamp_groups sun_nodes
-lamps_seen spot portal world_image world_backdrop water emission alphas alpha leaf_cut shadowed glow mixed
-added_shine coated two_sided nothing group by_object coarse_image mappings muted uvs_lacking alpha_unused colours_for_renders colours
-channels_as_colours generated_of_modifiers faces layers pose motion_of_copies unseen_copies hair_info displacement passes""".split()
+PICTURES = """plastic transparent exposure shift orthographic_focus depth_of_field clip_start area_shapes area_shadow lamp_groups
+sun_nodes lamps_seen spot portal world_image world_backdrop water emission alphas alpha leaf_cut shadowed glow mixed added_shine
+coated two_sided nothing group by_object coarse_image mappings muted uvs_lacking alpha_unused colours_for_renders colours
+channels_as_colours generated_of_modifiers faces text_uvs layers pose motion_of_copies unseen_copies hair_info displacement
+passes""".split()
 
 # Exported by lull alone, for the warnings.
-WARNED = """in_part unknown masked_glass coat_tinted leaning terminator lamps_scaled limits oren_nayar subsurface tint velvet smooth_edges
-instancer_uvs by_facing fine light_groups negative_lamp no_shadow lamp_rays lamp_bounces falloff lamp_texture spot_scaled light_linking
-simplify transparent_glass holdout pixel_aspect blades sheared_camera motion_of_lamps world_volume world_rays points volume
-dicing""".split()
+WARNED = """in_part unknown masked_glass coat_tinted leaning terminator lamps_scaled limits oren_nayar subsurface tint velvet
+smooth_edges instancer_uvs by_facing fine light_groups negative_lamp no_shadow lamp_rays lamp_bounces falloff lamp_texture spot_scaled
+light_linking simplify transparent_glass holdout pixel_aspect blades sheared_camera motion_of_lamps world_volume world_rays points
+volume dicing""".split()
 
 EXPORT = "bpy.ops.lull.check(); print('TEXT', repr(bpy.data.texts['lull: differences'].as_string())); bpy.ops.lull.export(filepath={!r})"
 LAYERS = "r.image_settings.file_format = 'OPEN_EXR_MULTILAYER'; "
