@@ -389,6 +389,7 @@ def alphas(scene):
     dressed(principled(Metallic=1, Roughness=0.2, Alpha=0.4)[0])
     for x, values in (-1.6, dict(Transmission=1, Roughness=0)), (1.6, dict(Emission=(1, 0.8, 0.3, 1), Emission_Strength=2)):
         ball(principled(Alpha=0.4, **values)[0], x)
+    scene.cycles.samples = scene.lull.spp = 512  # of caustics
 
 
 @case("vector displacement of a grid, displacement of a cube")
