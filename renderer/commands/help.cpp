@@ -86,7 +86,7 @@ class Help : public CLI::Formatter {
         return text;
     }
 
-    // What belongs to an option's name: its value with the default, and other options.
+    // Returns the rest of an option's head: its value with the default, and related options.
     std::string ValueOf(const CLI::Option& option) const {
         std::string text;
         if (option.get_type_size() != 0) {

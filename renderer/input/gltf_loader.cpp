@@ -103,8 +103,8 @@ bool HasExtent(const Mat4d& m) {
 }
 
 // Returns a transform that flattens the mesh with a millionth of its extent left across, which has
-// an inverse: what is flat before stays as it is. Those onto a line or a point are returned as they
-// are.
+// an inverse: a flat mesh stays as it is. A transform onto a line or a point is returned as it
+// is.
 Mat4d Thickened(const Mat4d& m) {
     if (HasExtent(m) || !m.allFinite()) return m;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.topLeftCorner<3, 3>(),

@@ -11,6 +11,7 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/input/gltf/accessors.h"
+#include "renderer/input/gltf/uri.h"
 
 namespace lull {
 namespace {
@@ -220,7 +221,7 @@ bool HideCompressed(nlohmann::json* root) {
         if (owner->contains(name))
             for (nlohmann::json& one : owner->at(name)) f(one);
     };
-    // What stands in for compressed data is not read, unless a view without them lies in it.
+    // The stand-in of compressed data is not read, unless a view without them lies in it.
     const auto isRead = [&](const nlohmann::json* buffer) {
         bool is = false;
         each(root, "bufferViews", [&](const nlohmann::json& view) {
@@ -231,7 +232,7 @@ bool HideCompressed(nlohmann::json* root) {
     };
     each(root, "buffers", [&](nlohmann::json& buffer) {
         if (!has(buffer, kMeshoptExtension) || (buffer.contains("uri") && isRead(&buffer))) return;
-        buffer["uri"] = "data:application/octet-stream;base64,AA==";
+        buffer["uri"] = kOneByteUri;
         buffer["byteLength"] = 1;
         hasChanged = true;
     });

@@ -75,7 +75,16 @@ std::string_view JsonOf(const std::string& file, std::string_view bytes) {
     return bytes.substr(kGlbHeader + kChunkHeader, length);
 }
 
-// Returns the file with other JSON in it; that of a .glb is padded with spaces to its alignment.
+// Returns whether the second chunk of a .glb, the first of its `rest`, is empty, or not padded to
+// the alignment of 4 bytes.
+bool HasOddChunk(std::string_view rest) {
+    if (rest.size() < kChunkHeader) return false;
+    const uint32_t length = LittleEndian(rest.data());
+    return length == 0 || (length % 4 != 0 && length <= rest.size() - kChunkHeader);
+}
+
+// Returns the file with other JSON in it. That of a .glb is padded with spaces to its alignment, as
+// is its second chunk by NULs, which is left out where it is empty.
 std::string WithJson(std::string_view bytes, std::string json) {
     if (!IsBinary(bytes)) return json;
     const auto number = [](size_t n) {
@@ -85,7 +94,17 @@ std::string WithJson(std::string_view bytes, std::string json) {
     };
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const size_t start = kGlbHeader + kChunkHeader;
-    const std::string rest = RepairedChunks(bytes.substr(start + LittleEndian(bytes.data() + 12)));
+    std::string rest(bytes.substr(start + LittleEndian(bytes.data() + 12)));
+    if (HasOddChunk(rest)) {
+        const size_t length = LittleEndian(rest.data()), padded = (length + 3) / 4 * 4;
+        if (length == 0) {
+            rest.erase(0, kChunkHeader);
+        } else {
+            rest.resize(kChunkHeader + length);
+            rest.resize(kChunkHeader + padded, '\0');
+            rest.replace(0, 4, number(padded));
+        }
+    }
     return "glTF" + number(2) + number(start + json.size() + rest.size()) + number(json.size()) +
            "JSON" + json + rest;
 }

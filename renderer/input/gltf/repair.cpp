@@ -1,20 +1,16 @@
 #include "renderer/input/gltf/repair.h"
 
-#include <cstdint>
-#include <cstring>
 #include <optional>
 #include <set>
-#include <vector>
+#include <string>
 
 #include "renderer/input/gltf/json_at.h"
+#include "renderer/input/gltf/uri.h"
 
 namespace lull {
 namespace {
 
 using nlohmann::json;
-
-constexpr size_t kHeaderBytes = 8;
-constexpr const char* kOneByte = "data:application/octet-stream;base64,AA==";
 
 // Returns a member of an object; null where there is none.
 json* Member(json* value, const char* name) {
@@ -70,12 +66,6 @@ void Collect(const json& value, const std::string& name, std::set<size_t>* numbe
         if (const auto index = counts ? IndexOf(member) : std::nullopt) numbers->insert(*index);
         if (member.is_structured()) Collect(member, name, numbers, counts);
     }
-}
-
-uint32_t LengthOfChunk(std::string_view rest) {
-    uint32_t length;
-    std::memcpy(&length, rest.data(), sizeof length);
-    return length;
 }
 
 class Repair {
@@ -167,13 +157,13 @@ class Repair {
         std::set<size_t> views, buffers;
         Collect(*root, "bufferView", &views);
         ForEachObject(root, "bufferViews", [&](json& view, size_t i) {
-            if (views.contains(i)) Collect(json::array({view}), "buffer", &buffers);
+            if (views.contains(i)) Collect(view, "buffer", &buffers);
         });
         std::set<size_t> filled;
         ForEachObject(root, "buffers", [&](json& buffer, size_t i) {
             const bool isUnread = Member(&buffer, "uri") && !buffers.contains(i);
             if (!isUnread && !IsZero(Member(&buffer, "byteLength"))) return;
-            buffer = {{"uri", kOneByte}, {"byteLength", 1u}};
+            buffer = {{"uri", kOneByteUri}, {"byteLength", 1u}};
             filled.insert(i);
             hasChanged = true;
         });
@@ -197,22 +187,6 @@ class Repair {
 
 bool RepairGltfJson(const std::string& file, json* root, Warnings& warnings) {
     return Repair(file, root, warnings).Run();
-}
-
-bool HasOddChunk(std::string_view rest) {
-    if (rest.size() < kHeaderBytes) return false;
-    const uint32_t length = LengthOfChunk(rest);
-    return length == 0 || (length % 4 != 0 && length <= rest.size() - kHeaderBytes);
-}
-
-std::string RepairedChunks(std::string_view rest) {
-    if (!HasOddChunk(rest)) return std::string(rest);
-    const uint32_t length = LengthOfChunk(rest), padded = (length + 3) / 4 * 4;
-    if (length == 0) return std::string(rest.substr(kHeaderBytes));
-    std::string repaired(rest.substr(0, kHeaderBytes + length));
-    std::memcpy(repaired.data(), &padded, sizeof padded);
-    repaired.resize(kHeaderBytes + padded, '\0');
-    return repaired;
 }
 
 }  // namespace lull

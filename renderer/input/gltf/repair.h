@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 #include "renderer/base/error.h"
 
@@ -17,11 +16,5 @@ namespace lull {
 // Silently: accessors, views and buffers without a byte, and buffers that nothing reads, whose
 // files may be missing, stand for a byte of 0.
 bool RepairGltfJson(const std::string& file, nlohmann::json* root, Warnings& warnings);
-
-// Returns whether the second chunk of a .glb, the first of its `rest`, is empty, or not padded to
-// the alignment of 4 bytes.
-bool HasOddChunk(std::string_view rest);
-// Returns the rest without it, or with it padded.
-std::string RepairedChunks(std::string_view rest);
 
 }  // namespace lull

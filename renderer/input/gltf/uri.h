@@ -8,6 +8,9 @@
 
 namespace lull {
 
+// A data URI of a byte of 0, for buffers that nothing reads.
+inline constexpr const char* kOneByteUri = "data:application/octet-stream;base64,AA==";
+
 // Undoes the percent-encoding of a URI.
 std::string DecodeUri(std::string_view uri);
 
