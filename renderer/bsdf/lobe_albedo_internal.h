@@ -100,5 +100,16 @@ typename To::Value Albedo(const ThinSpecular& lobe, const Vec3f& wo, To to) {
     const Rgb through = Rgb(lobe.t) * std::max(0.f, above.Through(cosO));
     return to(Rgb(lobe.scale) * (reflected + through));
 }
+template <typename To>
+typename To::Value Albedo(const CoatedDiffuseLobe& lobe, const Vec3f& wo, To to) {
+    const float cosO = std::abs(wo.z());
+    const float coat = lobe.row->isSmooth ? 0 : lobe.CoatAlbedo(cosO);
+    return to(Rgb(lobe.scale) * (lobe.BaseAlbedo(cosO) + coat));
+}
+template <typename To>
+typename To::Value Albedo(const CoatedConductorLobe& lobe, const Vec3f& wo, To to) {
+    const CoatedConductorInterface smooth{lobe.eta, lobe.thickness, lobe.n, lobe.k};
+    return to(Rgb(lobe.scale) * smooth(wo.z()));
+}
 
 }  // namespace lull

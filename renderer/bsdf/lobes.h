@@ -16,6 +16,7 @@
 #include <variant>
 
 #include "renderer/base/variant.h"
+#include "renderer/bsdf/coat.h"
 #include "renderer/bsdf/disney_lobes.h"
 #include "renderer/bsdf/fourier_lobe.h"
 #include "renderer/bsdf/hair_lobe.h"
@@ -187,7 +188,9 @@ using Lobe =
                  FresnelBlend, DisneyDiffuse, DisneyReflection, DisneyTransmission, DisneyClearcoat,
                  HairLobe, FourierLobe, LayeredReflection, MicrofacetReflection<SchlickInterface>,
                  ThinTransmission, ThinSpecular, DiffuseExit, CharlieSheen,
-                 MicrofacetReflection<CoatedInterface>>;
+                 MicrofacetReflection<CoatedInterface>, CoatedDiffuseLobe,
+                 SpecularReflection<CoatInterface>, SpecularReflection<CoatedConductorInterface>,
+                 CoatedConductorLobe, ThinDielectricLobe>;
 static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
@@ -214,7 +217,8 @@ constexpr bool IsMirrorLike() {
                                std::is_same_v<L, OrenNayar> || std::is_same_v<L, DisneyDiffuse> ||
                                std::is_same_v<L, DiffuseExit> || std::is_same_v<L, CharlieSheen>;
     constexpr bool reflects =
-        !L::kTransmits || std::is_same_v<L, FresnelSpecular> || std::is_same_v<L, ThinSpecular>;
+        !L::kTransmits || std::is_same_v<L, FresnelSpecular> || std::is_same_v<L, ThinSpecular> ||
+        std::is_same_v<L, ThinDielectricLobe>;
     return reflects && !isDiffuse && !requires { L::kIsTwoSided; };
 }
 inline bool Mirrors(const Lobe& lobe) {

@@ -170,8 +170,13 @@ void AddGltfOptions(CLI::App& app, GltfOptions* view) {
 }  // namespace
 
 void AddSceneOptions(CLI::App& app, SceneOptions* options) {
-    app.add_option("SCENE", options->file, "Scene to read: pbrt-v3, or glTF 2.0 (.gltf, .glb)")
+    app.add_option("SCENE", options->file, "Scene to read: pbrt-v3, pbrt-v4, or glTF 2.0 (.gltf, .glb)")
         ->required();
+    app.add_option("--pbrt", options->pbrt,
+                   "Read the scene as for this version of pbrt [as its directives show]")
+        ->group("Scene")
+        ->check(CLI::IsMember({3, 4}))
+        ->type_name("3|4");
     AddFilmOptions(app, &options->compile.film);
     const std::vector<std::string> integrators = IntegratorNames();
     app.add_option("--integrator", options->integrator,
@@ -200,9 +205,11 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
         throw Error(
             options.file +
             ": not a glTF file; --camera, --orbit, --frame, --variant and --solid-glass are for "
-            "glTF, set them in the pbrt-v3 scene");
+            "glTF, set them in the scene");
+    std::optional<PbrtVersion> version;
+    if (options.pbrt != 0) version = options.pbrt == 3 ? PbrtVersion::V3 : PbrtVersion::V4;
     Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
-                                     : ParsePbrt(options.file, warnings);
+                                     : ParsePbrt(options.file, warnings, version);
     if (!options.integrator.empty()) SetIntegrator(options.integrator, &description);
     if (options.exposure != 0) SetExposure(options.exposure, &description);
     if (!options.environment.empty())

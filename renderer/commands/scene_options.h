@@ -17,12 +17,13 @@ struct SceneOptions {
     bool isVerbose = false;   // print warnings that do not concern the image
     CompileOptions compile;
     std::string integrator;  // empty: the scene's
+    int pbrt = 0;            // the version, 3 or 4, that the scene is written for; 0: as it shows
     GltfOptions view;
     std::string environment;  // empty: the scene's own
     double environmentRotation = 0, exposure = 0;
 };
 
-// Adds SCENE, --resolution, --crop, --integrator, --max-depth, --threads, --substitute,
+// Adds SCENE, --pbrt, --resolution, --crop, --integrator, --max-depth, --threads, --substitute,
 // --exposure, --environment, --environment-rotation, --camera, --orbit, --frame,
 // --animation, --shutter, --variant, --solid-glass.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);

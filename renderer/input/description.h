@@ -47,7 +47,12 @@ enum class ParameterType {
     Vector3,
     Normal,
     Spectrum,
-    Texture
+    Texture,
+    // Of pbrt-v4, until it is known what they are the spectra of: names and files, pairs of
+    // wavelength and value, kelvin.
+    SpectrumName,
+    SpectrumSamples,
+    Blackbody
 };
 // As in scenes; spectra have more kinds.
 template <>
@@ -58,7 +63,10 @@ struct EnumNames<ParameterType> {
         {ParameterType::Point2, "point2"},   {ParameterType::Vector2, "vector2"},
         {ParameterType::Point3, "point"},    {ParameterType::Vector3, "vector"},
         {ParameterType::Normal, "normal"},   {ParameterType::Spectrum, "rgb"},
-        {ParameterType::Texture, "texture"}};
+        {ParameterType::Texture, "texture"},
+        {ParameterType::SpectrumName, "spectrum"},
+        {ParameterType::SpectrumSamples, "spectrum"},
+        {ParameterType::Blackbody, "blackbody"}};
 };
 
 // One "type name" [values]. Points, vectors, normals and spectra lie flat in a vector of

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include "renderer/input/pbrt/foreign_file.h"
 #include "renderer/input/pbrt/pbrt_builder.h"
 
 namespace lull {
@@ -20,19 +19,23 @@ struct Directive {
     void (PbrtBuilder::*run)();
 };
 
-// Lists every directive of pbrt-v3, and whether it belongs before WorldBegin, after it or both.
+// Lists every directive, and whether it belongs before WorldBegin, after it or both. Four of them
+// are pbrt-v4's.
 constexpr Directive kDirectives[] = {
     {"Accelerator", Place::Options, &PbrtBuilder::Accelerator},
     {"ActiveTransform", Place::Anywhere, &PbrtBuilder::ActiveTransform},
     {"AreaLightSource", Place::World, &PbrtBuilder::AreaLightSource},
+    {"Attribute", Place::Anywhere, &PbrtBuilder::Attribute},
     {"AttributeBegin", Place::World, &PbrtBuilder::AttributeBegin},
     {"AttributeEnd", Place::World, &PbrtBuilder::AttributeEnd},
     {"Camera", Place::Options, &PbrtBuilder::Camera},
+    {"ColorSpace", Place::Anywhere, &PbrtBuilder::ColorSpace},
     {"ConcatTransform", Place::Anywhere, &PbrtBuilder::ConcatTransform},
     {"CoordSysTransform", Place::Anywhere, &PbrtBuilder::CoordSysTransform},
     {"CoordinateSystem", Place::Anywhere, &PbrtBuilder::CoordinateSystem},
     {"Film", Place::Options, &PbrtBuilder::Film},
     {"Identity", Place::Anywhere, &PbrtBuilder::Identity},
+    {"Import", Place::World, &PbrtBuilder::Import},
     {"Include", Place::Anywhere, &PbrtBuilder::Include},
     {"Integrator", Place::Options, &PbrtBuilder::Integrator},
     {"LightSource", Place::World, &PbrtBuilder::LightSource},
@@ -45,6 +48,7 @@ constexpr Directive kDirectives[] = {
     {"ObjectBegin", Place::World, &PbrtBuilder::ObjectBegin},
     {"ObjectEnd", Place::World, &PbrtBuilder::ObjectEnd},
     {"ObjectInstance", Place::World, &PbrtBuilder::ObjectInstance},
+    {"Option", Place::Options, &PbrtBuilder::Option},
     {"PixelFilter", Place::Options, &PbrtBuilder::PixelFilter},
     {"ReverseOrientation", Place::World, &PbrtBuilder::ReverseOrientation},
     {"Rotate", Place::Anywhere, &PbrtBuilder::Rotate},
@@ -102,24 +106,12 @@ bool SkipToDirective(PbrtLexer* lexer) {
     }
 }
 
-// Throws Error at a sign of pbrt-v2 or pbrt-v4.
-void CheckVersion(const Token& token, PbrtLexer* lexer) {
-    const bool isNamed = token.text == "Film" || token.text == "Material";
-    const std::string kind = isNamed ? lexer->Peek().text : "";
-    const std::string version = token.kind == TokenKind::Word ? OtherVersion(token.text, kind) : "";
-    if (version.empty()) return;
-    throw Error(token.loc, "this scene is written for " + version + ", as its " +
-                               (kind.empty() ? "directive " + token.text
-                                             : token.text + " \"" + Printable(kind) + "\"") +
-                               " shows; lull reads scenes for pbrt-v3");
-}
-
 // Reads directives until the end, or an error after which none can be judged.
 void ReadDirectives(PbrtBuilder* builder, Warnings& warnings) {
     PbrtLexer& lexer = builder->lexer;
     Token token;
     while ((token = lexer.Take()).kind != TokenKind::End) {
-        CheckVersion(token, &lexer);
+        builder->CloseImports();
         if (builder->CurrentStage() == PbrtBuilder::Stage::Done)
             throw Error(token.loc, Describe(token) +
                                        " after WorldEnd: a file describes one scene; move the "
@@ -138,8 +130,10 @@ void ReadDirectives(PbrtBuilder* builder, Warnings& warnings) {
 
 }  // namespace
 
-Description ParsePbrt(const std::string& file, Warnings& warnings) {
-    PbrtBuilder builder(file, warnings);
+Description ParsePbrt(const std::string& file, Warnings& warnings,
+                      std::optional<PbrtVersion> version) {
+    if (!version) version = DetectPbrtVersion(file, warnings);
+    PbrtBuilder builder(file, *version, warnings);
     Description description;
     const bool isWhole = warnings.Try([&] { ReadDirectives(&builder, warnings); }) &&
                          !builder.hasFailed &&

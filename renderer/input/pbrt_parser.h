@@ -1,19 +1,24 @@
-// Reads pbrt-v3 scene files.
+// Reads scene files of pbrt-v3 and pbrt-v4.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "renderer/base/error.h"
 #include "renderer/input/description.h"
+#include "renderer/input/pbrt/pbrt_version.h"
 
 namespace lull {
 
 // Reads the scene in `file` and the files it includes; relative names in them start at the
-// directory of `file`. Parameters of plug-ins are not checked here. A shape's material is always a
-// valid index: a plain "matte" is added if a shape comes before any material. Throws Error, with
+// directory of `file`. The version is DetectPbrtVersion()'s unless it is given; of pbrt-v4 the
+// entities are translated into those that lull has, nearly all of them pbrt-v3's. Parameters of
+// pbrt-v3's plug-ins are not checked here. A shape's material is always a valid index: a plain
+// "matte" is added if a shape comes before any material. Throws Error, with
 // file and line, for wrong or unsupported directives, of all of them at once (see
 // Warnings::ThrowErrors). Missing names and files have substitutes: without these, the errors are
 // left in `warnings` for Compile() to add its own.
-Description ParsePbrt(const std::string& file, Warnings& warnings);
+Description ParsePbrt(const std::string& file, Warnings& warnings,
+                      std::optional<PbrtVersion> version = {});
 
 }  // namespace lull

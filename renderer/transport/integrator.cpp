@@ -22,7 +22,8 @@ namespace {
 [[gnu::noinline]] void Weigh(const Scene& scene, const SampleStart& start, const Rgb& found,
                              bool isRejected, GroupRadiance* groups) {
     if (isRejected) groups->Clear();
-    groups->Scale(LimitOf(scene, Luminance(found)));
+    groups->Scale(LimitOf(scene, found, Luminance(found)));
+    for (Rgb& radiance : groups->All()) radiance = Balanced(scene, radiance);
     groups->Scale(WeightOf(scene, start));
 }
 
@@ -48,7 +49,8 @@ void RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampl
     SetRadiance(scene, start, found, sample);
     if (sample->asksForHit) {
         Rgb& emission = sample->hit.emission;
-        emission *= LimitOf(scene, Luminance(found)) * WeightOf(scene, start);
+        emission = Balanced(scene, emission) *
+                   (LimitOf(scene, found, Luminance(found)) * WeightOf(scene, start));
         if (sample->rejected || !IsFinite(emission)) emission = Rgb::Zero();
     }
     if (sample->groups) Weigh(scene, start, found, sample->rejected, sample->groups);

@@ -27,10 +27,21 @@ struct SampleStart {
     return start;
 }
 
-// Returns the factor that limits radiance of this luminance.
-inline float LimitOf(const Scene& scene, float luminance) {
+// Returns the factor that limits radiance.
+inline float LimitOf(const Scene& scene, const Rgb& L, float luminance) {
     const float most = scene.film.maxSampleLuminance;
-    return luminance > most ? most / luminance : 1;
+    if (luminance > most) return most / luminance;
+    if (scene.film.maxComponent == kInfinity) [[likely]]
+        return 1;
+    const float component = L.maxCoeff() * scene.film.scale;
+    return component > scene.film.maxComponent ? scene.film.maxComponent / component : 1;
+}
+
+// Applies the film's white balance, if it has one.
+inline Rgb Balanced(const Scene& scene, const Rgb& L) {
+    if (scene.film.colorMatrix) [[unlikely]]
+        return (*scene.film.colorMatrix * L.matrix()).array();
+    return L;
 }
 
 inline float WeightOf(const Scene& scene, const SampleStart& start) {
@@ -42,8 +53,8 @@ inline float WeightOf(const Scene& scene, const SampleStart& start) {
                                                PathSample* sample) {
     const float luminance = Luminance(L);
     const bool isRadiance = IsFinite(L) && !(luminance < -1e-5f);
-    L *= LimitOf(scene, luminance);
-    L *= WeightOf(scene, start);
+    L *= LimitOf(scene, L, luminance);
+    L = Balanced(scene, L) * WeightOf(scene, start);
     // The scale of the film may be 2^100.
     sample->rejected = !isRadiance || !IsFinite(L);
     sample->radiance = sample->rejected ? Rgb(Rgb::Zero()) : L;

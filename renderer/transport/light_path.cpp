@@ -1,6 +1,7 @@
 #include "renderer/base/color.h"
 #include "renderer/scene/cameras/camera_view.h"
 #include "renderer/transport/bdpt_internal.h"
+#include "renderer/transport/integrator_internal.h"
 
 namespace lull {
 namespace {
@@ -50,7 +51,7 @@ class CameraConnector {
         const float luminance = Luminance(L);
         if (luminance > scene.film.maxSampleLuminance)
             L *= scene.film.maxSampleLuminance / luminance;
-        L *= scene.film.scale;
+        L = Balanced(scene, L) * scene.film.scale;
         const bool isValid = IsFinite(L) && luminance >= 0;
         splats->push_back({view.film, isValid ? L : Rgb(Rgb::Zero()), light, !isValid});
     }

@@ -91,7 +91,9 @@ class FirstHitRecorder : public NoRecorder {
 
     float Depth() const {
         const Camera& camera = scene.camera;
-        if (camera.projection == Projection::Environment) return distance;
+        if (camera.projection == Projection::Environment ||
+            camera.projection == Projection::EqualArea)
+            return distance;
         Vec3f axis = camera.rotation.col(2);
         if (camera.motion) axis = TransformVector(camera.motion->At(time), axis);
         const float scale = axis.norm();

@@ -10,9 +10,4 @@ namespace lull {
 // text at all; "" if it may be a pbrt scene.
 std::string ForeignFormat(std::string_view bytes);
 
-// Returns the version of pbrt for which a scene is written, if a directive shows that it is another
-// than pbrt-v3: one that pbrt-v3 does not have, or one with a `kind`, such as a material's, that
-// only pbrt-v4 has; "" otherwise.
-std::string OtherVersion(std::string_view directive, std::string_view kind);
-
 }  // namespace lull

@@ -1,10 +1,12 @@
 #include "renderer/input/pbrt/pbrt_builder.h"
 
+#include <fmt/format.h>
 #include <Eigen/LU>
 #include <filesystem>
 #include <utility>
 
 #include "renderer/input/pbrt/pbrt_state.h"
+#include "renderer/input/pbrt/v4.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
@@ -28,8 +30,10 @@ const char* ScopeName(int kind) {
 
 }  // namespace
 
-PbrtBuilder::PbrtBuilder(const std::string& file, Warnings& warnings)
+PbrtBuilder::PbrtBuilder(const std::string& file, PbrtVersion version, Warnings& warnings)
     : lexer(file), warnings(warnings) {
+    context.version = version;
+    if (IsV4()) SetV4Defaults(&description);
     description.directory = std::filesystem::path(file).parent_path().string();
     context.directory = description.directory;
 }
@@ -37,6 +41,7 @@ PbrtBuilder::PbrtBuilder(const std::string& file, Warnings& warnings)
 Description PbrtBuilder::Finish() {
     if (stage == Stage::Options)
         throw Error(loc, "the file ends without WorldBegin: it describes no scene");
+    if (stage == Stage::World && IsV4()) EndWorld();
     if (stage == Stage::World)
         throw Error(loc, "the file ends without WorldEnd for the WorldBegin of line " +
                              std::to_string(worldBegin.line));
@@ -49,15 +54,39 @@ void PbrtBuilder::SubstituteName(const std::string& problem, const std::string& 
     if (!hasFailed) warnings.Substitute(loc, problem, substitute);
 }
 
-void PbrtBuilder::Include() {
+void PbrtBuilder::Include() { IncludeFile(false); }
+void PbrtBuilder::Import() { IncludeFile(true); }
+
+void PbrtBuilder::IncludeFile(bool isImport) {
     const std::string path = ResolvePath(description, ReadString("the name of a file"));
-    if (ReasonNotToRead(path).empty()) return lexer.Include(path, loc);
+    if (ReasonNotToRead(path).empty()) {
+        lexer.Include(path, loc);
+        if (isImport) imports.push_back({lexer.Depth(), scopes.size(), state});
+        return;
+    }
     try {
         ReadFile(path, loc);
     } catch (const Error& error) {
         warnings.Substitute(error, "it is left out");
         hasFailed |= !warnings.Substitutes();
     }
+}
+
+void PbrtBuilder::CloseImports() {
+    for (; !imports.empty() && lexer.Depth() < imports.back().depth; imports.pop_back()) {
+        if (scopes.size() != imports.back().scopes)
+            throw Error(loc, "the imported file ends within another scope than it begins in");
+        state = std::move(imports.back().saved);
+        context.rgbFromColorSpace = state.rgbFromColorSpace;
+    }
+}
+
+// Reports a name that is defined once more, which pbrt-v4 refuses.
+void PbrtBuilder::NameAgain(const char* what, const std::string& name) {
+    if (IsV4())
+        throw Error(loc, fmt::format("{} \"{}\" is there already; pbrt-v4 takes each name once",
+                                     what, Printable(name)));
+    warnings.Add(loc, fmt::format("{} redefined", what), "\"" + Printable(name) + "\"");
 }
 
 // Scopes.
@@ -73,13 +102,18 @@ void PbrtBuilder::End(ScopeKind kind) {
     const std::string name = ScopeName(int(kind));
     if (scopes.empty()) throw Error(loc, name + "End without " + name + "Begin");
     Scope& scope = scopes.back();
-    // In pbrt-v3 attributes and objects share a stack, and their ends may cross.
-    if ((scope.kind == ScopeKind::Transform) != (kind == ScopeKind::Transform))
+    // In pbrt-v3 attributes and objects share a stack, and their ends may cross; in pbrt-v4 those
+    // of attributes and transforms are the same.
+    const bool isFree = IsV4() && kind != ScopeKind::Object && scope.kind != ScopeKind::Object;
+    if (!isFree && (scope.kind == ScopeKind::Transform) != (kind == ScopeKind::Transform))
         throw Error(loc, name + "End where the " + ScopeName(int(scope.kind)) + "Begin of line " +
                              std::to_string(scope.loc.line) + " is still open");
-    if (kind == ScopeKind::Transform) {
+    if (kind == ScopeKind::Transform && !IsV4()) {
         state.ctm = scope.saved.ctm;
         state.active = scope.saved.active;
+    } else if (IsV4()) {
+        state = std::move(scope.saved);
+        context.rgbFromColorSpace = state.rgbFromColorSpace;
     } else {
         state = std::move(scope.saved);
         context.floatTextures.Restore(state.floatTextureMark);
@@ -100,6 +134,7 @@ void PbrtBuilder::WorldBegin() {
     state.ctm = {};
     state.active = kAllTimes;
     coordinateSystems["world"] = state.ctm;
+    if (IsV4()) SetExposureOfV4(&description);
     if (earlyMedium) {
         loc = earlyMedium->second;
         if (!SeesMedium(earlyMedium->first)) {
@@ -110,15 +145,30 @@ void PbrtBuilder::WorldBegin() {
     }
 }
 
-void PbrtBuilder::WorldEnd() {
+void PbrtBuilder::CheckScopes(const std::string& end) {
     if (!scopes.empty())
-        throw Error(loc, std::string("WorldEnd where the ") + ScopeName(int(scopes.back().kind)) +
+        throw Error(loc, end + " where the " + ScopeName(int(scopes.back().kind)) +
                              "Begin of line " + std::to_string(scopes.back().loc.line) +
                              " is still open");
     if (currentObject >= 0)
-        throw Error(loc, "WorldEnd where the ObjectBegin of line " +
+        throw Error(loc, end + " where the ObjectBegin of line " +
                              std::to_string(description.objects[currentObject].loc.line) +
                              " is still open");
+}
+
+void PbrtBuilder::EndWorld() {
+    CloseImports();
+    CheckScopes("the file ends");
+    description.cameraMedium = MediumNamed(mediumOfCamera);
+    stage = Stage::Done;
+}
+
+void PbrtBuilder::WorldEnd() {
+    if (IsV4()) {
+        warnings.Add(loc, "WorldEnd has no effect in pbrt-v4");
+        return;
+    }
+    CheckScopes("WorldEnd");
     // pbrt-v3 makes its camera only here, in the medium that is then in force.
     description.cameraMedium = MediumNamed(state.outsideMedium);
     stage = Stage::Done;
@@ -133,7 +183,7 @@ void PbrtBuilder::ObjectBegin() {
     currentObject = int(description.objects.size());
     description.objects.push_back({name, loc, {}});
     if (!objects.insert_or_assign(name, currentObject).second)
-        warnings.Add(loc, "object redefined", "\"" + Printable(name) + "\"");
+        NameAgain("object", name);
 }
 
 void PbrtBuilder::ObjectEnd() {
@@ -190,7 +240,7 @@ void PbrtBuilder::AddMovingShape(ShapeEntity shape) {
 // The scene.
 
 void PbrtBuilder::AreaLightSource() {
-    Entity entity = ReadEntity();
+    Entity entity = Translated(EntityKind::AreaLight, ReadEntity());
     if (CountValues(entity.parameters) > kMostAreaLightValues)
         throw Error(loc, "AreaLightSource has more than " + std::to_string(kMostAreaLightValues) +
                              " values; its parameters are single numbers and spectra");
@@ -199,7 +249,7 @@ void PbrtBuilder::AreaLightSource() {
 }
 
 void PbrtBuilder::LightSource() {
-    auto light = ReadAs<LightEntity>();
+    auto light = ReadAs<LightEntity>(EntityKind::Light);
     light.worldFromLight = StaticTransform("LightSource");
     description.lights.push_back(std::move(light));
 }
@@ -234,11 +284,13 @@ void AddShape(ShapeEntity shape, std::vector<ShapeEntity>* shapes) {
 }  // namespace
 
 void PbrtBuilder::Shape() {
-    auto shape = ReadAs<ShapeEntity>();
+    auto shape = ReadAs<ShapeEntity>(EntityKind::Shape);
     shape.worldFromObject = state.ctm.at[0];
     shape.reverseOrientation = state.reverseOrientation;
     shape.material = CurrentMaterial();
-    if (auto own = MaterialOfShape(description.materials[size_t(shape.material)], shape)) {
+    if (IsV4()) {
+        // Its materials belong to no shape.
+    } else if (auto own = MaterialOfShape(description.materials[size_t(shape.material)], shape)) {
         shape.material = int(description.materials.size());
         description.materials.push_back(std::move(*own));
     }
@@ -262,17 +314,20 @@ void PbrtBuilder::Shape() {
 void PbrtBuilder::Texture() {
     const std::string name = ReadString("the name of a texture");
     const std::string kind = ReadString("\"float\" or \"spectrum\"");
-    auto texture = ReadAs<TextureEntity>();
+    TextureEntity texture;
+    static_cast<Entity&>(texture) = ReadEntity();
     texture.textureName = name;
-    texture.isSpectrum = kind == "spectrum" || kind == "color";
+    texture.isSpectrum = kind == "spectrum" || (kind == "color" && !IsV4());
     if (!texture.isSpectrum && kind != "float")
         throw Error(loc, "texture kind \"" + Printable(kind) +
                              "\" is unknown; write \"float\" or "
                              "\"spectrum\"");
+    static_cast<Entity&>(texture) = Translated(
+        texture.isSpectrum ? EntityKind::SpectrumTexture : EntityKind::FloatTexture, texture);
     texture.worldFromTexture = StaticTransform("Texture");
     ScopedNames& names = texture.isSpectrum ? context.spectrumTextures : context.floatTextures;
     if (names.Find(name) >= 0)
-        warnings.Add(loc, "texture redefined", "\"" + Printable(name) + "\"");
+        NameAgain("texture", name);
     names.Define(name, int(description.textures.size()));
     description.textures.push_back(std::move(texture));
 }
@@ -299,19 +354,23 @@ int PbrtBuilder::CurrentMaterial() {
     return defaultMaterial;
 }
 
-void PbrtBuilder::Material() { state.material = AddMaterial(ReadAs<MaterialEntity>()); }
+void PbrtBuilder::Material() {
+    state.material = AddMaterial(ReadAs<MaterialEntity>(EntityKind::Material));
+}
 
 void PbrtBuilder::MakeNamedMaterial() {
-    auto material = ReadAs<MaterialEntity>();
+    MaterialEntity material;
+    static_cast<Entity&>(material) = ReadEntity();
     material.materialName = std::exchange(material.name, {});
     const Parameter* type = material.parameters.Find(ParameterType::String, "type");
     if (!type)
         throw Error(loc, "MakeNamedMaterial \"" + Printable(material.materialName) +
                              "\" has no \"string type\"; add one, such as \"matte\"");
     material.name = material.parameters.GetString("type", "");
+    static_cast<Entity&>(material) = Translated(EntityKind::Material, material);
     const std::string name = material.materialName;
     if (materials.Find(name) >= 0)
-        warnings.Add(loc, "named material redefined", "\"" + Printable(name) + "\"");
+        NameAgain("named material", name);
     materials.Define(name, AddMaterial(std::move(material)));
 }
 
@@ -328,7 +387,8 @@ void PbrtBuilder::NamedMaterial() {
 // Media.
 
 void PbrtBuilder::MakeNamedMedium() {
-    auto medium = ReadAs<MediumEntity>();
+    MediumEntity medium;
+    static_cast<Entity&>(medium) = ReadEntity();
     if (!SeesMedium("MakeNamedMedium")) return;
     medium.mediumName = std::exchange(medium.name, {});
     const std::string name = medium.mediumName;
@@ -336,9 +396,10 @@ void PbrtBuilder::MakeNamedMedium() {
         throw Error(loc, "MakeNamedMedium \"" + Printable(name) +
                              "\" has no \"string type\"; add one, such as \"homogeneous\"");
     medium.name = medium.parameters.GetString("type", "");
+    static_cast<Entity&>(medium) = Translated(EntityKind::Medium, medium);
     medium.worldFromMedium = StaticTransform("MakeNamedMedium");
     if (!media.insert_or_assign(name, int(description.media.size())).second)
-        warnings.Add(loc, "named medium redefined", "\"" + Printable(name) + "\"");
+        NameAgain("named medium", name);
     description.media.push_back(std::move(medium));
 }
 

@@ -1,4 +1,4 @@
-// Builds a Description from the directives of a pbrt-v3 file: one function per directive.
+// Builds a Description from the directives of a scene file: one function per directive.
 #pragma once
 
 #include <array>
@@ -22,20 +22,23 @@ class PbrtBuilder {
   public:
     enum class Stage { Options, World, Done };
 
-    PbrtBuilder(const std::string& file, Warnings& warnings);
+    PbrtBuilder(const std::string& file, PbrtVersion version, Warnings& warnings);
 
     // Each reads the arguments of its directive and applies it; `loc` is the place of its name.
     void Accelerator();
     void ActiveTransform();
     void AreaLightSource();
+    void Attribute();
     void AttributeBegin();
     void AttributeEnd();
     void Camera();
+    void ColorSpace();
     void ConcatTransform();
     void CoordSysTransform();
     void CoordinateSystem();
     void Film();
     void Identity();
+    void Import();
     void Include();
     void Integrator();
     void LightSource();
@@ -48,6 +51,7 @@ class PbrtBuilder {
     void ObjectBegin();
     void ObjectEnd();
     void ObjectInstance();
+    void Option();
     void PixelFilter();
     void ReverseOrientation();
     void Rotate();
@@ -62,6 +66,9 @@ class PbrtBuilder {
     void Translate();
     void WorldBegin();
     void WorldEnd();
+
+    // Takes back what imported files that have been read have set.
+    void CloseImports();
 
     Stage CurrentStage() const { return stage; }
     // Returns the description; throws Error at `loc`, the end, if the world was not closed.
@@ -79,6 +86,11 @@ class PbrtBuilder {
         FileLoc loc;
         GraphicsState saved;
     };
+    // A file that Import reads: up to where so many files are open.
+    struct ImportedFile {
+        size_t depth, scopes;
+        GraphicsState saved;
+    };
 
     void SubstituteName(const std::string& problem, const std::string& substitute);
     std::string ReadString(const char* what);
@@ -86,14 +98,21 @@ class PbrtBuilder {
     template <size_t N>
     std::array<double, N> ReadNumbers();
     Mat4d ReadMatrix();
-    Entity ReadEntity();
+    Entity ReadEntity();  // as it stands
+    // Returns it in the terms of the Description.
+    Entity Translated(EntityKind kind, Entity entity);
     template <typename T>
-    T ReadAs() {
+    T ReadAs(EntityKind kind) {
         T entity;
-        static_cast<Entity&>(entity) = ReadEntity();
+        static_cast<Entity&>(entity) = Translated(kind, ReadEntity());
         return entity;
     }
-    void ReadOption(Entity* entity, const char* directive);
+    void ReadOption(EntityKind kind, Entity* entity, const char* directive);
+    void NameAgain(const char* what, const std::string& name);
+    void IncludeFile(bool isImport);
+    void CheckScopes(const std::string& end);
+    void EndWorld();
+    bool IsV4() const { return context.version == PbrtVersion::V4; }
 
     void Apply(const Mat4d& m);
     void Check();
@@ -113,6 +132,7 @@ class PbrtBuilder {
     FileLoc worldBegin;
     GraphicsState state;
     std::vector<Scope> scopes;
+    std::vector<ImportedFile> imports;
     ParameterContext context;
     ScopedNames materials;
     int defaultMaterial = -1;
@@ -123,6 +143,7 @@ class PbrtBuilder {
     std::map<std::string, TransformPair> coordinateSystems;
     std::map<std::string, FileLoc> optionsSeen;
     std::map<std::string, int> media;                            // into Description::media
+    std::string mediumOfCamera;  // outside of pbrt-v4's camera, by name
     std::optional<std::pair<std::string, FileLoc>> earlyMedium;  // the first before WorldBegin
 };
 

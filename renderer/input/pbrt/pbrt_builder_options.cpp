@@ -1,9 +1,14 @@
 // PbrtBuilder's readers, and the directives that set transforms and rendering options.
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cctype>
+#include <string_view>
 #include <utility>
 
 #include "renderer/input/pbrt/pbrt_builder.h"
+#include "renderer/input/pbrt/v4.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -45,27 +50,81 @@ Entity PbrtBuilder::ReadEntity() {
     return {std::move(name), ReadParameters(lexer, context, warnings), loc};
 }
 
-void PbrtBuilder::ReadOption(Entity* entity, const char* directive) {
-    *entity = ReadEntity();
+Entity PbrtBuilder::Translated(EntityKind kind, Entity entity) {
+    if (!IsV4()) return entity;
+    const auto preset = state.attributes.find(kind);
+    if (preset != state.attributes.end()) AddPresets(preset->second, &entity.parameters);
+    return TranslateV4({kind, description, state, warnings}, entity);
+}
+
+void PbrtBuilder::ReadOption(EntityKind kind, Entity* entity, const char* directive) {
+    *entity = Translated(kind, ReadEntity());
     if (!optionsSeen.emplace(directive, loc).second)
         warnings.Add(loc, std::string(directive) + " given again; the later one counts");
 }
 
-void PbrtBuilder::Film() { ReadOption(&description.film, "Film"); }
-void PbrtBuilder::Integrator() { ReadOption(&description.integrator, "Integrator"); }
-void PbrtBuilder::PixelFilter() { ReadOption(&description.filter, "PixelFilter"); }
-void PbrtBuilder::Sampler() { ReadOption(&description.sampler, "Sampler"); }
+void PbrtBuilder::Film() { ReadOption(EntityKind::Film, &description.film, "Film"); }
+void PbrtBuilder::Integrator() {
+    ReadOption(EntityKind::Integrator, &description.integrator, "Integrator");
+}
+void PbrtBuilder::PixelFilter() {
+    ReadOption(EntityKind::Filter, &description.filter, "PixelFilter");
+}
+void PbrtBuilder::Sampler() { ReadOption(EntityKind::Sampler, &description.sampler, "Sampler"); }
 void PbrtBuilder::Accelerator() { ReadEntity(); }  // Embree builds its own
 void PbrtBuilder::TransformTimes() { description.transformTimes = ReadNumbers<2>(); }
 
+// Directives of pbrt-v4 alone.
+
+void PbrtBuilder::Attribute() {
+    constexpr std::pair<const char*, EntityKind> kTargets[] = {{"light", EntityKind::Light},
+                                                               {"material", EntityKind::Material},
+                                                               {"medium", EntityKind::Medium},
+                                                               {"shape", EntityKind::Shape},
+                                                               {"texture", EntityKind::FloatTexture}};
+    const std::string target = ReadString("\"shape\", \"light\" or the like");
+    const Parameters given = ReadParameters(lexer, context, warnings);
+    const auto* known = std::ranges::find(kTargets, target, [](const auto& t) { return t.first; });
+    if (known == std::end(kTargets))
+        throw Error(loc, "Attribute \"" + Printable(target) +
+                             "\" is unknown; light, material, medium, shape and texture are");
+    const auto add = [&](EntityKind kind) {
+        for (const Parameter& parameter : given.All()) state.attributes[kind].Add(parameter);
+    };
+    add(known->second);
+    if (known->second == EntityKind::Light) add(EntityKind::AreaLight);
+    if (known->second == EntityKind::FloatTexture) add(EntityKind::SpectrumTexture);
+}
+
+void PbrtBuilder::ColorSpace() {
+    state.rgbFromColorSpace = RgbFromColorSpace(ReadString("the name of a colour space"), loc);
+    context.rgbFromColorSpace = state.rgbFromColorSpace;
+}
+
+void PbrtBuilder::Option() {
+    constexpr std::string_view kKnown[] = {
+        "disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
+        "displacementedgescale", "forcediffuse", "msereferenceimage", "msereferenceout",
+        "pixelstats", "rendercoordsys", "seed", "wavefront"};
+    const std::string given = ReadString("the name of an option");
+    lexer.Take();  // its value, one word
+    std::string name;
+    for (const char c : given)
+        if (c != '_' && c != '-') name += char(std::tolower(static_cast<unsigned char>(c)));
+    if (std::ranges::count(kKnown, name) == 0)
+        throw Error(loc, "Option \"" + Printable(given) + "\" is unknown");
+    if (name != "seed") warnings.Add(loc, "Option \"" + name + "\" has no effect");
+}
+
 void PbrtBuilder::Camera() {
-    ReadOption(&description.camera, "Camera");
+    ReadOption(EntityKind::Camera, &description.camera, "Camera");
     description.cameraFromWorld = state.ctm.at[0];
     description.movingCameraFromWorld.reset();
     if (state.ctm.IsAnimated()) description.movingCameraFromWorld = state.ctm;
     TransformPair worldFromCamera = state.ctm;
     for (Mat4d& m : worldFromCamera.at) m = Mat4d(m.inverse());
     coordinateSystems["camera"] = worldFromCamera;
+    mediumOfCamera = state.outsideMedium;
 }
 
 // Transforms.

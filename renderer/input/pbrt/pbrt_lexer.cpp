@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "renderer/files/file_io.h"
+#include "renderer/input/inflate.h"
 #include "renderer/input/pbrt/foreign_file.h"
 #include "stopping/base/input_file.h"
 
@@ -78,7 +79,7 @@ void PbrtLexer::Include(const std::string& file, const FileLoc& loc) { Open(file
 void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     Source source;
     source.name = std::make_shared<const std::string>(file);
-    source.contents = ReadFile(file, loc);
+    source.contents = Inflated(ReadFile(file, loc), loc);
     std::error_code ignored;
     source.canonical = std::filesystem::canonical(file, ignored).string();
     for (const Source& open : sources)

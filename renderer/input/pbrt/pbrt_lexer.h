@@ -1,4 +1,4 @@
-// Cuts pbrt-v3 scene files into tokens, following Include.
+// Cuts pbrt's scene files into tokens, following Include.
 #pragma once
 
 #include <map>
@@ -33,6 +33,8 @@ class PbrtLexer {
     // Continues with `file` and returns at its end. Throws Error at `loc` if it is open already
     // (recursion), cannot be read, or if repeated inclusion has added up to absurd amounts of text.
     void Include(const std::string& file, const FileLoc& loc);
+    // Returns how many files are open: one more within each that is included.
+    size_t Depth() const { return sources.size(); }
     // Returns the files that were read.
     std::vector<std::string> Files() const;
 

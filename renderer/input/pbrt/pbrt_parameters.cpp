@@ -25,6 +25,17 @@ struct TypeName {
     Encoding encoding = Encoding::Plain;
 };
 
+struct NewerName {
+    std::string_view old, name;
+};
+
+// Types that pbrt-v4 no longer has, and what it has instead.
+constexpr NewerName kGoneTypes[] = {{"color", "rgb"},
+                                    {"normal3", "normal"},
+                                    {"point", "point3"},
+                                    {"vector", "vector3"},
+                                    {"xyz", "rgb"}};
+
 constexpr std::array<TypeName, 17> kTypes = {{
     {"integer", ParameterType::Integer, 1},
     {"float", ParameterType::Float, 1},
@@ -51,7 +62,7 @@ struct Declaration {
 };
 
 // Splits "type name", where blanks may stand before, between and after.
-Declaration ReadDeclaration(const Token& token) {
+Declaration ReadDeclaration(const Token& token, PbrtVersion version) {
     std::string_view rest = token.text;
     const auto takeWord = [&rest] {
         rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
@@ -62,6 +73,11 @@ Declaration ReadDeclaration(const Token& token) {
     const std::string_view type = takeWord(), name = takeWord();
     if (name.empty() || !takeWord().empty())
         throw Error(token.loc, Describe(token) + " declares no parameter; write \"type name\"");
+    if (const auto* gone = std::ranges::find(kGoneTypes, type, &NewerName::old);
+        version == PbrtVersion::V4 && gone != std::end(kGoneTypes))
+        throw Error(token.loc, "parameter type \"" + std::string(type) +
+                                   "\" is pbrt-v3's, in a scene for pbrt-v4; write \"" +
+                                   std::string(gone->name) + "\"");
     const auto* known = std::ranges::find(kTypes, type, &TypeName::name);
     if (known == kTypes.end())
         throw Error(token.loc,
@@ -95,11 +111,14 @@ std::vector<float> ReadFloats(PbrtLexer& lexer, const Token& owner) {
     return values;
 }
 
-std::vector<int> ReadInts(PbrtLexer& lexer, const Token& owner, Warnings& warnings) {
+std::vector<int> ReadInts(PbrtLexer& lexer, const Token& owner, PbrtVersion version,
+                          Warnings& warnings) {
     std::vector<int> values;
     bool cut = false;
     ReadValues(lexer, owner, "integers", &values,
                [&](int* v) { return lexer.TakeNumber(v, &cut); });
+    if (cut && version == PbrtVersion::V4)
+        throw Error(owner.loc, "parameter " + Describe(owner) + " has a number with a fraction");
     if (cut) warnings.Add(owner.loc, "integer with a fraction, which is cut off", Describe(owner));
     return values;
 }
@@ -114,13 +133,17 @@ std::vector<std::string> ReadStrings(PbrtLexer& lexer, const Token& owner) {
     return values;
 }
 
-// Reads booleans as pbrt-v3 writes them, quoted, or bare.
-std::vector<int> ReadBools(PbrtLexer& lexer, const Token& owner) {
+// Reads booleans, quoted as pbrt-v3 writes them, or bare as pbrt-v4 does.
+std::vector<int> ReadBools(PbrtLexer& lexer, const Token& owner, PbrtVersion version,
+                           Warnings& warnings) {
     std::vector<int> values;
     ReadValues(lexer, owner, "true or false", &values, [&](int* v) {
         const Token& next = lexer.Peek();
         const bool isText = next.kind == TokenKind::String || next.kind == TokenKind::Word;
         if (!isText || (next.text != "true" && next.text != "false")) return false;
+        if (version == PbrtVersion::V4 && next.kind == TokenKind::String)
+            warnings.Add(next.loc, "true and false stand without quotes in pbrt-v4",
+                         Describe(owner));
         *v = lexer.Take().text == "true";
         return true;
     });
@@ -201,6 +224,19 @@ std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding, 
     return values;
 }
 
+// Turns triplets of pbrt-v4's colour space into linear sRGB.
+std::vector<float> ConvertRgb(std::vector<float> values, const Mat3f& rgbFromColorSpace,
+                              const Token& owner) {
+    for (size_t i = 0; i + 2 < values.size(); i += 3) {
+        const Vec3f given(values[i], values[i + 1], values[i + 2]);
+        if (!(given.minCoeff() >= 0))
+            throw Error(owner.loc, "the colour of " + Describe(owner) + " has a part below 0");
+        const Vec3f rgb = rgbFromColorSpace * given;
+        std::copy_n(rgb.data(), 3, &values[i]);
+    }
+    return values;
+}
+
 std::vector<float> ReadFloatsOf(const TypeName& type, PbrtLexer& lexer, const Token& owner) {
     std::vector<float> values = ReadFloats(lexer, owner);
     if (values.size() % type.multiple != 0)
@@ -210,21 +246,43 @@ std::vector<float> ReadFloatsOf(const TypeName& type, PbrtLexer& lexer, const To
     return values;
 }
 
+// Reads a spectrum as it stands, and rgb as linear sRGB.
+void ReadSpectrumV4(const TypeName& type, PbrtLexer& lexer, const Token& owner,
+                    const ParameterContext& context, Parameter* parameter) {
+    switch (type.encoding) {
+        case Encoding::Sampled:
+            parameter->type = lexer.NextIsText() ? ParameterType::SpectrumName
+                                                 : ParameterType::SpectrumSamples;
+            if (parameter->type == ParameterType::SpectrumName)
+                parameter->values = ReadStrings(lexer, owner);
+            else
+                parameter->values = ReadFloatsOf(type, lexer, owner);
+            break;
+        case Encoding::Blackbody:
+            parameter->type = ParameterType::Blackbody;
+            parameter->values = ReadFloats(lexer, owner);
+            break;
+        default:
+            parameter->values =
+                ConvertRgb(ReadFloatsOf(type, lexer, owner), context.rgbFromColorSpace, owner);
+    }
+}
+
 }  // namespace
 
 Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings& warnings) {
     Parameters parameters;
     while (lexer.Peek().kind == TokenKind::String) {
         const Token owner = lexer.Take();
-        Declaration declaration = ReadDeclaration(owner);
+        Declaration declaration = ReadDeclaration(owner, context.version);
         const TypeName& type = *declaration.type;
         Parameter parameter{type.type, std::move(declaration.name), owner.loc, {}};
         switch (type.type) {
             case ParameterType::Integer:
-                parameter.values = ReadInts(lexer, owner, warnings);
+                parameter.values = ReadInts(lexer, owner, context.version, warnings);
                 break;
             case ParameterType::Bool:
-                parameter.values = ReadBools(lexer, owner);
+                parameter.values = ReadBools(lexer, owner, context.version, warnings);
                 break;
             case ParameterType::String:
                 parameter.values = ReadStrings(lexer, owner);
@@ -234,7 +292,9 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings&
                 if (IsSubstituted(parameter, owner, warnings)) continue;
                 break;
             case ParameterType::Spectrum:
-                if (type.encoding == Encoding::Sampled && lexer.NextIsText())
+                if (context.version == PbrtVersion::V4)
+                    ReadSpectrumV4(type, lexer, owner, context, &parameter);
+                else if (type.encoding == Encoding::Sampled && lexer.NextIsText())
                     parameter.values = ReadSpectrumFiles(lexer, owner, context, warnings);
                 else
                     parameter.values = ConvertSpectrum(ReadFloatsOf(type, lexer, owner),

@@ -1,7 +1,8 @@
-// Keeps the state that a pbrt-v3 scene file changes: transforms, and names with scopes.
+// Keeps the state that a scene file changes: transforms, and names with scopes.
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -39,6 +40,23 @@ class ScopedNames {
 // Which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
+// The kinds of entity of a scene. Attribute names the last five.
+enum class EntityKind {
+    Accelerator,
+    Camera,
+    Film,
+    Filter,
+    Integrator,
+    Sampler,
+    AreaLight,
+    Shape,
+    Light,
+    Material,
+    Medium,
+    FloatTexture,
+    SpectrumTexture
+};
+
 // State that AttributeBegin saves and AttributeEnd restores.
 struct GraphicsState {
     TransformPair ctm;
@@ -47,6 +65,8 @@ struct GraphicsState {
     bool reverseOrientation = false;
     std::shared_ptr<const Entity> areaLight;
     std::string insideMedium, outsideMedium;  // by name; empty: vacuum
+    std::map<EntityKind, Parameters> attributes;  // of pbrt-v4's Attribute
+    Mat3f rgbFromColorSpace = Mat3f::Identity();  // of pbrt-v4's ColorSpace
     size_t floatTextureMark = 0, spectrumTextureMark = 0, materialMark = 0;
 };
 

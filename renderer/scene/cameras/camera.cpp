@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/equal_area.h"
 #include "renderer/base/math.h"
 #include "renderer/base/sampling.h"
 #include "renderer/files/file_io.h"
@@ -40,6 +41,17 @@ Ray Camera::GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const {
         const float phi = plane.x(), theta = plane.y(), sinTheta = std::sin(theta);
         const Vec3f d(sinTheta * std::cos(phi), std::cos(theta), sinTheta * std::sin(phi));
         return {position, rotation * d, kInfinity};
+    }
+    if (projection == Projection::EqualArea) {
+        // Filters may reach beyond an edge, where the square is folded.
+        Vec2f p = plane;
+        for (int i = 0; i < 2; ++i)
+            if (p[i] < 0 || p[i] > 1) {
+                p[i] = p[i] < 0 ? -p[i] : 2 - p[i];
+                p[1 - i] = 1 - p[1 - i];
+            }
+        const Vec3f d = DirectionOfEqualAreaSquare(p);
+        return {position, rotation * Vec3f(d.x(), d.z(), d.y()), kInfinity};
     }
     Vec3f origin(plane.x(), plane.y(), 0), direction = Vec3f::UnitZ();
     if (lensRadius > 0) {
@@ -145,6 +157,7 @@ Projection ReadProjection(const Entity& entity) {
     if (entity.name == "perspective") return Projection::Perspective;
     if (entity.name == "orthographic") return Projection::Orthographic;
     if (entity.name == "environment") return Projection::Environment;
+    if (entity.name == "equalarea") return Projection::EqualArea;
     if (entity.name == "realistic") return Projection::Realistic;
     throw Error(entity.loc,
                 fmt::format("Camera \"{}\" is not supported; perspective, orthographic, "
@@ -196,7 +209,9 @@ void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     if (!(camera->clipEnd > camera->clipStart))
         throw Error(entity.loc, "\"clipend\" has to be above \"clipstart\"");
 
-    if (camera->projection == Projection::Environment) {
+    if (camera->projection == Projection::EqualArea) {
+        camera->planePerPixel = resolution.cast<float>().cwiseInverse();
+    } else if (camera->projection == Projection::Environment) {
         camera->lensRadius = 0;  // it has none, though pbrt-v3 reads the parameter
         camera->planePerPixel = {2 * kPi / resolution.x(), kPi / resolution.y()};
     } else {
@@ -208,11 +223,17 @@ void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     }
 }
 
+// Returns whether the camera shows what is seen through a window of a plane.
+bool HasPlane(const Camera& camera) {
+    return camera.projection == Projection::Perspective ||
+           camera.projection == Projection::Orthographic;
+}
+
 }  // namespace
 
 double Farthest(const Camera& camera, const FilmSettings& film) {
     double size = 1;
-    if (camera.projection != Projection::Environment && !camera.lenses) {
+    if (HasPlane(camera)) {
         const Vec2f last =
             camera.planeOrigin + film.resolution.cast<float>().cwiseProduct(camera.planePerPixel);
         size += camera.planeOrigin.cast<double>().norm() + last.cast<double>().norm();
@@ -270,7 +291,7 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
 Mat4d WorldToCamera(const Camera& camera) { return camera.worldFromCamera.inverse(); }
 
 std::optional<Mat4d> WorldToNdc(const Camera& camera, const FilmSettings& film) {
-    if (camera.projection == Projection::Environment || camera.lenses) return {};
+    if (!HasPlane(camera)) return {};
     const bool isPerspective = camera.projection == Projection::Perspective;
     // Project onto the plane z = 1, or along z, then scale the image to [0, 1]^2.
     Mat4d ndcFromCamera = Mat4d::Zero();

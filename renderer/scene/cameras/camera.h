@@ -1,5 +1,5 @@
 // Generates camera rays: pbrt-v3's perspective and orthographic cameras, with pinhole or thin lens,
-// its environment camera, and its realistic one, with real lens systems.
+// its environment camera, pbrt-v4's of equal areas, and its realistic one, with real lens systems.
 #pragma once
 
 #include "renderer/input/description.h"
@@ -16,16 +16,17 @@ struct CameraSample {
     float time = 0;                  // from 0, where the shutter opens, to 1
 };
 
-enum class Projection { Perspective, Orthographic, Environment, Realistic };
+enum class Projection { Perspective, Orthographic, Environment, EqualArea, Realistic };
 
 struct Camera {
     Projection projection = Projection::Perspective;
     Mat4d worldFromCamera = Mat4d::Identity();
     // Maps the image [0, width] x [0, height] in pixels to the plane z = 1 of camera space
-    // (perspective), z = 0 (orthographic), or to the angles phi and theta (environment).
+    // (perspective), z = 0 (orthographic), to the angles phi and theta (environment), or to the
+    // unit square (equal area).
     Vec2f planeOrigin = Vec2f::Zero(), planePerPixel = Vec2f::Zero();
     float lensRadius = 0, focalDistance = 1e6f;
-    // Nothing is seen nearer or farther along the axis (not of environment and realistic cameras).
+    // Nothing is seen nearer or farther along the axis (of perspective and orthographic cameras).
     float clipStart = 0, clipEnd = kInfinity;
 
     // The rotation and position of worldFromCamera in float, for the ray loop.
@@ -75,7 +76,8 @@ struct Camera {
     Ray Move(const Ray& ray, float time) const;
 };
 
-// Reads Camera "perspective", "orthographic", "environment" or "realistic", whose exit pupils are
+// Reads Camera "perspective", "orthographic", "environment", "equalarea" or "realistic", whose exit
+// pupils are
 // found with `threads` threads (0: all). Throws Error for other cameras, a field of view outside
 // (0, 180), a transform that cannot be inverted, or lenses as LoadLens and LensSystem say.
 Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);

@@ -19,6 +19,10 @@ void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings*
             throw Error(entity.loc, "\"cropwindow\" needs four values: x0 x1 y0 y1");
         std::copy(window.begin(), window.end(), crop.begin());
     }
+    const auto bounds = entity.parameters.GetInts("pixelbounds");  // pbrt-v4's: x0 x1 y0 y1
+    if (bounds.size() == 4 && entity.parameters.GetFloats(ParameterType::Float, "cropwindow").empty())
+        for (int k = 0; k < 4; ++k)
+            crop[size_t(k)] = (float(bounds[size_t(k)]) - 1e-3f) / float(film->resolution[k / 2]);
     if (overrides.crop) crop = *overrides.crop;
     for (int i = 0; i < 2; ++i) {
         // pbrt-v3 swaps limits in the wrong order and clamps them to the image.
@@ -62,8 +66,14 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
     film.exposure = params.GetFloat("exposure", 0);
     film.scale = params.GetFloat("scale", 1) * std::exp2(film.exposure);
     film.maxSampleLuminance = params.GetFloat("maxsampleluminance", kInfinity);
-    if (!(film.scale > 0) || !std::isfinite(film.scale) || !(film.maxSampleLuminance > 0))
-        throw Error(entity.loc, "\"scale\" and \"maxsampleluminance\" have to be positive");
+    film.maxComponent = params.GetFloat("maxcomponentvalue", kInfinity);
+    if (const auto m = params.GetFloats(ParameterType::Float, "colormatrix"); m.size() == 9)
+        film.colorMatrix = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(m.data());
+    if (!(film.scale > 0) || !std::isfinite(film.scale) || !(film.maxSampleLuminance > 0) ||
+        !(film.maxComponent > 0))
+        throw Error(entity.loc,
+                    "\"scale\", \"maxsampleluminance\" and \"maxcomponentvalue\" have to be "
+                    "positive");
     film.diagonal = params.GetFloat("diagonal", 35) * 0.001f;  // millimetres
     if (!(film.diagonal > 0) || !std::isfinite(film.diagonal))
         throw Error(entity.loc, "\"diagonal\" has to be positive");

@@ -1,6 +1,7 @@
 // Describes the image that is wanted: its size, crop and scale. (The film itself is in film/.)
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "renderer/base/math.h"
@@ -18,6 +19,10 @@ struct FilmSettings {
     float scale = 1;          // multiplies every sample, exposure included
     float exposure = 0;       // in stops
     float maxSampleLuminance = kInfinity;  // a brighter sample is scaled down to this
+    // Of scenes for pbrt-v4: the largest component of a sample once it is multiplied by the scale,
+    // beyond which it is scaled down, and what colours are multiplied by.
+    float maxComponent = kInfinity;
+    std::optional<Mat3f> colorMatrix;
 
     Vec2i Size() const { return cropMax - cropMin; }
 };

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "renderer/base/color.h"
+#include "renderer/base/equal_area.h"
 #include "renderer/base/math.h"
 #include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"
@@ -27,10 +28,13 @@ int NeighbourOf(int cell, int n) { return (cell / 2 + (cell % 2 == 0 ? n - 1 : 1
 
 }  // namespace
 
-EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated)
-    : image(std::move(i)), scale(s) {
-    const int columns = 2 * image.width, rows = 2 * image.height;
+EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated, MapProjection p)
+    : image(std::move(i)), scale(s), projection(p) {
+    const bool isEqualArea = projection == MapProjection::EqualArea;
+    const int perTexel = isEqualArea ? 1 : 2;
+    const int columns = perTexel * image.width, rows = perTexel * image.height;
     const auto solidAngle = [&](int row) {
+        if (isEqualArea) return 1.f;
         return std::sin(kPi * (float(row) + 0.5f) / float(rows));
     };
     float mean = 0;
@@ -52,6 +56,7 @@ EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated)
 }
 
 Rgb EnvironmentMap::Radiance(const Vec2f& st) const {
+    if (projection == MapProjection::EqualArea) return scale * NearestRgb(image, st);
     return scale * BilinearRgb(image, st, Wrap::Repeat);
 }
 
@@ -65,6 +70,15 @@ void EnvironmentMap::Prefetch(const Vec2f& st) const {
 }
 
 void EnvironmentMap::Brightness(int row, std::span<float> cells) const {
+    if (projection == MapProjection::EqualArea) {
+        std::visit(
+            [&](const auto& texels) {
+                for (int x = 0; x < image.width; ++x)
+                    cells[x] = Luminance(scale * TexelRgb(image, texels, x, row));
+            },
+            image.texels);
+        return;
+    }
     // Interpolate between the centres of the texels, down and then across.
     const int near = row / 2, far = NeighbourOf(row, image.height);
     std::vector<float> column(image.width);
@@ -177,6 +191,47 @@ int Blacken(const Rgb& L, Image* image) {
     return count;
 }
 
+// Returns the direction of latitude-longitude coordinates, each in [0, 1]; unit.
+Vec3f DirectionOf(const Vec2f& st, float* sine) {
+    const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
+    const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
+    *sine = sinTheta;
+    return {sinTheta * cosPhi, sinTheta * sinPhi, cosTheta};
+}
+
+// Tells by its shape how a map of pbrt-v4 shows directions. Throws Error for other shapes.
+MapProjection ProjectionOf(const LightReader& in, const Image& image, const std::string& file) {
+    if (!in.entity.parameters.GetBool("equalarea", false)) return MapProjection::LatitudeLongitude;
+    if (image.width == image.height) return MapProjection::EqualArea;
+    if (image.width != 2 * image.height)
+        throw Error(in.entity.loc,
+                    fmt::format("the sky \"{}\" has {}x{} pixels; it has to be square, of equal "
+                                "areas, or twice as wide as high, of latitude and longitude",
+                                file, image.width, image.height));
+    in.warnings.Add(in.entity.loc,
+                    "a sky that is twice as wide as high is taken for one of latitude and longitude",
+                    file);
+    return MapProjection::LatitudeLongitude;
+}
+
+// Returns the illuminance, as luminance, that the half of a map about +z gives a surface.
+float IlluminanceOf(const EnvironmentMap& map, int width, int height) {
+    // Small maps have texels on both sides of the horizon.
+    const int columns = std::max(width, 512), rows = std::max(height, 512);
+    double sum = 0, solidAngle = 0;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) {
+            const Vec2f st((float(x) + 0.5f) / float(columns), (float(y) + 0.5f) / float(rows));
+            float weight = 1;
+            const Vec3f w = map.Projection() == MapProjection::EqualArea
+                                ? DirectionOfEqualAreaSquare(st)
+                                : DirectionOf(st, &weight);
+            solidAngle += double(weight);
+            if (w.z() > 0) sum += double(weight * w.z() * Luminance(map.Radiance(st)));
+        }
+    return float(4 * kPi * sum / solidAngle);
+}
+
 }  // namespace
 
 InfiniteLight InfiniteLight::Make(const LightReader& in) {
@@ -205,10 +260,22 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
     try {
         // As in pbrt-v3, 8-bit environment maps are taken as linear.
         Image image = ReadImage(ResolvePath(in.description, file));
+        if (params.GetBool("decode", false)) DecodeBytes(&image);
+        const MapProjection projection = ProjectionOf(in, image, file);
         for (int bad = Blacken(L, &image); bad > 0; --bad)
             in.warnings.Add(entity.loc, "environment map texel that is not finite or negative",
                             file);
-        light.map = std::make_shared<const EnvironmentMap>(std::move(image), L, in.isCompensated);
+        const int width = image.width, height = image.height;
+        const auto make = [&](Image texels, const Rgb& scale) {
+            return std::make_shared<const EnvironmentMap>(std::move(texels), scale,
+                                                          in.isCompensated, projection);
+        };
+        if (const float e = params.GetFloat("illuminance", -1); e > 0) {
+            const float found = IlluminanceOf(*make(image, L), width, height);
+            light.map = make(std::move(image), found > 0 ? Rgb(L * (2 * e / found)) : L);
+        } else {
+            light.map = make(std::move(image), L);
+        }
     } catch (const Error& error) {
         in.warnings.Substitute(entity.loc, error.what(), "a constant light stands in");
     }
@@ -219,11 +286,18 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
 std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) const {
     float mapPdf = 1;
     const Vec2f st = map ? map->Sample(u, &mapPdf) : u;
-    const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
-    const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
-    const Vec3f local(sinTheta * cosPhi, sinTheta * sinPhi, cosTheta);
+    Vec3f local;
+    float perSolidAngle;
+    if (map && map->Projection() == MapProjection::EqualArea) {
+        local = DirectionOfEqualAreaSquare(st);
+        perSolidAngle = mapPdf / (4 * kPi);
+    } else {
+        float sinTheta;
+        local = DirectionOf(st, &sinTheta);
+        perSolidAngle = mapPdf / (2 * kPi * kPi * sinTheta);
+    }
     const Vec3f wi = (worldFromLight * local).normalized();
-    const float pdf = mapPdf / (2 * kPi * kPi * sinTheta) * Stretch(wi);
+    const float pdf = perSolidAngle * Stretch(wi);
     if (!(pdf > 0) || !std::isfinite(pdf)) return {};
     if (map) map->Prefetch(st);
     return LightSample{.L = map ? Rgb::Ones() : constant,
@@ -238,6 +312,10 @@ std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) c
 
 Emitted InfiniteLight::LeAndPdf(const Vec3f& w) const {
     const Vec3f local = (lightFromWorld * w).normalized();
+    if (map && map->Projection() == MapProjection::EqualArea) {
+        const Vec2f st = EqualAreaSquareOf(local);
+        return {map->Radiance(st), map->Pdf(st) / (4 * kPi) * Stretch(w)};
+    }
     const float sinTheta = SafeSqrt(1 - Sqr(local.z()));
     const Vec2f st = map ? CoordinatesOf(local) : Vec2f::Zero();
     const float mapPdf = map ? map->Pdf(st) : 1;

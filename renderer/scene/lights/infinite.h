@@ -10,8 +10,12 @@ namespace lull {
 
 // Radiance from all directions as an image, sampled by its brightness.
 
+// How the unit square of an image shows all directions.
+enum class MapProjection { LatitudeLongitude, EqualArea };
+
 // Interpolates bilinearly and repeats in both directions, as pbrt-v3 does. The density is constant
-// over cells of half a texel a side, in proportion to the brightness at their centres.
+// over cells of half a texel a side, in proportion to the brightness at their centres. Of equal
+// areas, texels are not interpolated and are the cells, as in pbrt-v4.
 class EnvironmentMap {
   public:
     // Sums of a few such texels are still finite.
@@ -21,7 +25,10 @@ class EnvironmentMap {
     // theta = 0; the density follows the solid angle of a row. Not compensated, it is pbrt-v3's
     // (3rd ed., 14.2.4). A compensated map leaves texels darker than the mean to BSDF sampling,
     // which suffices there (Karlik et al. 2019), and samples nearly constant maps uniformly.
-    EnvironmentMap(Image image, const Rgb& scale, bool isCompensated = false);
+    EnvironmentMap(Image image, const Rgb& scale, bool isCompensated = false,
+                   MapProjection projection = MapProjection::LatitudeLongitude);
+
+    MapProjection Projection() const { return projection; }
 
     // Returns the radiance at a point of the unit square.
     Rgb Radiance(const Vec2f& st) const;
@@ -39,6 +46,7 @@ class EnvironmentMap {
 
     Image image;
     Rgb scale;
+    MapProjection projection;
     BlockDistribution cells;
 };
 
@@ -49,8 +57,10 @@ class EnvironmentMap {
 // faces up or to the camera reflects about 1.
 Image MakeStudio();
 
-// Surrounds the scene with radiance: constant, or an image in latitude-longitude form whose
-// brightness guides the sampling (pbrt 3rd ed., 14.2.4).
+// Surrounds the scene with radiance: constant, or an image whose brightness guides the sampling
+// (pbrt 3rd ed., 14.2.4). It is in latitude-longitude form, or, if "equalarea" allows for that and
+// it is square, of equal areas. "illuminance" of an image is that of its upper half, twice so, as
+// in pbrt-v4.
 class InfiniteLight {
   public:
     static constexpr LightType kType = LightType::Infinite;

@@ -53,6 +53,7 @@ constexpr Kind<Light(const LightReader&)> kLights[] = {
     {"point", Make<PointLight>},
     {"spot", Make<SpotLight>},
     {"spot-squared", Make<SpotLight>},
+    {"spot-smooth", Make<SpotLight>},
     {"distant", MakeDistant},
     {"infinite", Make<InfiniteLight>},
     {"exinfinite", Make<InfiniteLight>},
@@ -113,7 +114,7 @@ std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
                                                    const Mat4d& worldFromShape) {
     if (entity.name == kAreaSpot)
         return std::make_unique<const EmissionProfile>(
-            SpotCone::Make(entity, worldFromShape, true));
+            SpotCone::Make(entity, worldFromShape));
     const float given = entity.parameters.GetFloat("spread", 180);
     const auto degrees = InRange(double(given), 0, 180);
     if (!degrees || !(*degrees > 0))
@@ -131,6 +132,7 @@ AreaLight MakeAreaLight(const Entity& entity, const Shape& shape, Warnings& warn
     light.twoSided = params.GetBool("twosided", false);
     params.GetInt("samples", 1);
     params.GetInt("nsamples", 1);
+    params.GetFloat("power", -1);
     LightGroupOf(entity);
     params.ReportUnused("AreaLightSource \"" + entity.name + "\"", warnings);
     light.isHidden = shape.IsInvisible();
@@ -257,8 +259,12 @@ void LightTable::AddAreaLights(const ShapeEntity& from, const TextureTable& text
         return;
     }
     shape->firstLight = Count();
+    // Of pbrt-v4, which gives it to each primitive; at a radiance of L.
+    const float power = entity.parameters.GetFloat("power", -1);
+    const Rgb L = light.L;
     for (uint32_t k = 0; k < shape->PrimitiveCount(); ++k) {
         light.surface = EmitterOf(shape->geometry, k);
+        if (power > 0) light.L = L * (power / ((light.twoSided ? 2 : 1) * kPi * light.Area()));
         if (light.map) {
             light.triangle = k;
             light.meanFactor = light.map->Mean(k);

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "renderer/base/equal_area.h"
 #include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/lights/light_sample.h"
@@ -19,6 +20,7 @@ std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in) {
     auto made = std::make_shared<LightImage>();
     try {
         made->image = ReadImage(ResolvePath(in.description, file));
+        if (in.entity.parameters.GetBool("decode", false)) DecodeBytes(&made->image);
     } catch (const Error& error) {
         in.warnings.Substitute(in.entity.loc, error.what(), "white stands in");
         return nullptr;
@@ -43,7 +45,7 @@ std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in) {
     return made;
 }
 
-SpotCone SpotCone::Make(const Entity& entity, const Mat4d& worldFromLight, bool isSquared) {
+SpotCone SpotCone::Make(const Entity& entity, const Mat4d& worldFromLight) {
     const Parameters& params = entity.parameters;
     const float cone = params.GetFloat("coneangle", 30);
     const float delta = params.GetFloat("conedeltaangle", 5);
@@ -52,8 +54,11 @@ SpotCone SpotCone::Make(const Entity& entity, const Mat4d& worldFromLight, bool 
     const Vec3f axis = TransformVector(worldFromLight, (to - from).normalized());
     if (!(axis.norm() > 0))
         throw Error(entity.loc, "the spot light's \"from\" and \"to\" coincide");
+    const Shape shape = entity.name == "spot-squared"  ? Shape::Square
+                        : entity.name == "spot-smooth" ? Shape::SmoothStep
+                                                       : Shape::FourthPower;
     return {axis.normalized(), std::cos(cone * kPi / 180), std::cos((cone - delta) * kPi / 180),
-            isSquared};
+            shape};
 }
 
 Vec2f SpotCone::CosinesOfBounds() const {
@@ -104,7 +109,7 @@ SpotLight SpotLight::Make(const LightReader& in) {
     const Rgb I = LightColor(in.entity, "I", in.warnings);
     const Mat4d& worldFromLight = in.entity.worldFromLight;
     return {TransformPoint(worldFromLight, from), I,
-            SpotCone::Make(in.entity, worldFromLight, in.entity.name == "spot-squared")};
+            SpotCone::Make(in.entity, worldFromLight)};
 }
 
 std::optional<LightSample> SpotLight::Sample(const Vec3f& from, const Vec2f&) const {
@@ -129,11 +134,23 @@ std::optional<LightBounds> SpotLight::Bounds() const {
                        .power = BoundedPower(4 * kPi * I)};
 }
 
+namespace {
+
+// Returns the factor that makes up the "power" of a light of pbrt-v4, whose image emits `whole`.
+float FactorOfPower(const Entity& entity, float whole) {
+    const float power = entity.parameters.GetFloat("power", -1);
+    return power > 0 && whole > 0 ? power / whole : 1;
+}
+
+}  // namespace
+
 GoniometricLight GoniometricLight::Make(const LightReader& in) {
-    const Rgb I = LightColor(in.entity, "I", in.warnings);
+    Rgb I = LightColor(in.entity, "I", in.warnings);
+    const auto image = ReadLightImage(in);
+    if (image) I *= FactorOfPower(in.entity, 4 * kPi * image->mean.mean());
     return {TransformPoint(in.entity.worldFromLight, Vec3f::Zero()), I,
-            in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(),
-            ReadLightImage(in)};
+            in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(), image,
+            in.entity.parameters.GetBool("equalarea", false)};
 }
 
 std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from, const Vec2f&) const {
@@ -144,9 +161,13 @@ std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from, const Vec
     Rgb L = I / distance2;
     if (image) {
         const Vec3f w = (lightFromWorld * -wi).normalized();
-        const float phi = std::atan2(w.z(), w.x());
-        L *= image->Lookup({(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
-                            std::acos(std::clamp(w.y(), -1.f, 1.f)) * kInvPi});
+        if (isEqualArea) {
+            L *= NearestRgb(image->image, EqualAreaSquareOf({w.x(), w.z(), w.y()})).mean();
+        } else {
+            const float phi = std::atan2(w.z(), w.x());
+            L *= image->Lookup({(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
+                                std::acos(std::clamp(w.y(), -1.f, 1.f)) * kInvPi});
+        }
     }
     if (!IsFinite(L)) return {};
     return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
@@ -155,6 +176,27 @@ std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from, const Vec
 std::optional<LightBounds> GoniometricLight::Bounds() const {
     return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
 }
+
+namespace {
+
+// Integrates the image over the directions that it is projected to.
+float WholePower(const ProjectionLight& light) {
+    const Image& image = light.image->image;
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const Vec2f st((float(x) + 0.5f) / float(image.width),
+                           (float(y) + 0.5f) / float(image.height));
+            const Vec2f plane =
+                (2 * st - Vec2f::Ones()).cwiseProduct(light.screen) / light.perTangent;
+            const double cosine = 1 / std::sqrt(1 + double(plane.squaredNorm()));
+            sum += double(NearestRgb(image, st).mean()) * cosine * cosine * cosine;
+        }
+    const Vec2f size = 2 * light.screen / light.perTangent;
+    return float(sum) * size.x() * size.y() / (float(image.width) * float(image.height));
+}
+
+}  // namespace
 
 ProjectionLight ProjectionLight::Make(const LightReader& in) {
     const Parameters& params = in.entity.parameters;
@@ -174,6 +216,7 @@ ProjectionLight ProjectionLight::Make(const LightReader& in) {
     const float aspect =
         light.image ? float(light.image->image.width) / float(light.image->image.height) : 1;
     light.screen = aspect > 1 ? Vec2f(aspect, 1) : Vec2f(1, 1 / aspect);
+    if (light.image) light.I *= FactorOfPower(in.entity, WholePower(light));
     return light;
 }
 

@@ -23,7 +23,8 @@ struct LightImage {
     Rgb Lookup(const Vec2f& st) const;
 };
 
-// Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear.
+// Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear,
+// unless "decode" says that they are sRGB.
 // Texels that are negative or not finite count as black, with a counted warning. Null substitutes
 // an image that cannot be read.
 std::shared_ptr<const LightImage> ReadLightImage(const LightReader&);
@@ -86,16 +87,19 @@ struct EmissionMap {
 // How the light of spots falls off to the sides.
 //
 // The light is whole up to the angle whose cosine is cosFalloffStart, and falls smoothly to none at
-// that of cosTotalWidth: by the fourth power of how far the cosine is from there, as in pbrt-v3, or
-// by its square, as KHR_lights_punctual proposes.
+// that of cosTotalWidth: by the fourth power of how far the cosine is from there, as in pbrt-v3, by
+// its square, as KHR_lights_punctual proposes ("spot-squared"), or by a cubic step, as in pbrt-v4
+// ("spot-smooth").
 struct SpotCone {
+    enum class Shape { FourthPower, Square, SmoothStep };
+
     Vec3f axis;  // unit, world
     float cosTotalWidth, cosFalloffStart;
-    bool isSquared = false;
+    Shape shape = Shape::FourthPower;
 
-    // Reads "from", "to", "coneangle" and "conedeltaangle", degrees. Throws Error where the points
-    // are the same.
-    static SpotCone Make(const Entity&, const Mat4d& worldFromLight, bool isSquared);
+    // Reads "from", "to", "coneangle" and "conedeltaangle", degrees; the entity's name tells the
+    // shape. Throws Error where the points are the same.
+    static SpotCone Make(const Entity&, const Mat4d& worldFromLight);
 
     // Returns the fraction of the light that leaves towards w, unit.
     float Falloff(const Vec3f& w) const {
@@ -104,7 +108,8 @@ struct SpotCone {
         const float x = cosTheta >= cosFalloffStart
                             ? 1.f
                             : (cosTheta - cosTotalWidth) / (cosFalloffStart - cosTotalWidth);
-        return isSquared ? Sqr(x) : Sqr(Sqr(x));
+        if (shape == Shape::SmoothStep) return Sqr(x) * (3 - 2 * x);
+        return shape == Shape::Square ? Sqr(x) : Sqr(Sqr(x));
     }
     // Returns about how many steradians the whole light would fill, as pbrt-v3 has it.
     float SolidAngle() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)); }
@@ -159,7 +164,7 @@ struct PointLight {
     std::optional<LightBounds> Bounds() const;
 };
 
-// Emits I, W/sr, along the axis of a cone from one point ("spot", and "spot-squared").
+// Emits I, W/sr, along the axis of a cone from one point.
 struct SpotLight {
     static constexpr LightType kType = LightType::DeltaPosition;
 
@@ -173,8 +178,8 @@ struct SpotLight {
     Rgb Power() const { return cone.SolidAngle() * I; }
 };
 
-// Emits from one point by an image in latitude-longitude form, about the y axis of the light's
-// space: I times its texels, W/sr (pbrt 3rd ed., 12.3.3).
+// Emits from one point by an image in latitude-longitude form, or of equal areas, as in pbrt-v4,
+// about the y axis of the light's space: I times its texels, W/sr (pbrt 3rd ed., 12.3.3).
 struct GoniometricLight {
     static constexpr LightType kType = LightType::DeltaPosition;
 
@@ -182,6 +187,7 @@ struct GoniometricLight {
     Rgb I;
     Mat3f lightFromWorld;
     std::shared_ptr<const LightImage> image;  // null: I in all directions
+    bool isEqualArea = false;
 
     // Throws Error if the image cannot be read.
     static GoniometricLight Make(const LightReader&);

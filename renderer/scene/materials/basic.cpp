@@ -59,11 +59,25 @@ Roughness MetalRoughness(const MaterialReader& in) {
 Metal::Metal(const MaterialReader& in)
     : eta(in.textures.GetSpectrum(in.entity, "eta", CopperEta())),
       k(in.textures.GetSpectrum(in.entity, "k", CopperK())),
-      roughness(MetalRoughness(in)) {}
+      reflectance(SpectrumOrNone(in, "reflectance")),
+      roughness(MetalRoughness(in)),
+      mirrors(in.entity.parameters.GetBool("mirrors", false)) {}
+
+ConductorInterface ConductorOf(const Rgb& reflectance) {
+    const Rgb r = reflectance.min(0.9999f);
+    return {Rgb::Ones(), 2 * (r / (1 - r)).sqrt()};
+}
 
 void Metal::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    bsdf->Add(MicrofacetReflection<ConductorInterface>{Rgb(1, 1, 1), roughness.Evaluate(in),
-                                                       ConductorInterface{in.Raw(eta), in.Raw(k)}});
+    const ConductorInterface interface =
+        reflectance ? ConductorOf(in.Color(*reflectance))
+                    : ConductorInterface{in.Raw(eta), in.Raw(k)};
+    bool isSmooth;
+    const TrowbridgeReitz distribution = roughness.Evaluate(in, &isSmooth);
+    if (mirrors && isSmooth)
+        bsdf->Add(SpecularReflection<ConductorInterface>{Rgb(1, 1, 1), interface});
+    else
+        bsdf->Add(MicrofacetReflection<ConductorInterface>{Rgb(1, 1, 1), distribution, interface});
 }
 
 Plastic::Plastic(const MaterialReader& in)

@@ -59,15 +59,20 @@ void AddDielectricLobes(const Rgb& reflected, const Rgb& transmitted, float eta,
 // Represents a rough conductor.
 struct Metal {
     SpectrumTexture eta, k;  // complex index of refraction; copper's by default
+    std::optional<SpectrumTexture> reflectance;  // head-on, instead
     Roughness roughness;
+    bool mirrors;  // where the roughness is 0, as in pbrt-v4; else there is always some
 
     explicit Metal(const MaterialReader& in);
 
     MaterialTraits Traits(const MaterialReader& in) const {
-        return in.TraitsOf(1, eta, k, roughness);
+        return in.TraitsOf(1, eta, k, reflectance, roughness);
     }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
+
+// Returns the conductor of index 1 + i k that reflects so much head-on, as pbrt-v4 has it.
+ConductorInterface ConductorOf(const Rgb& reflectance);
 
 // Represents a diffuse surface under a glossy coat.
 struct Plastic {

@@ -1,16 +1,6 @@
 #include "renderer/scene/materials/hair.h"
 
 namespace lull {
-namespace {
-
-std::optional<SpectrumTexture> SpectrumOrNone(const MaterialReader& in, const char* name) {
-    const Parameters& params = in.entity.parameters;
-    if (!params.GetTexture(name) && params.GetFloats(ParameterType::Spectrum, name).empty())
-        return {};
-    return in.Spectrum(name, 0);
-}
-
-}  // namespace
 
 Hair::Hair(const MaterialReader& in)
     : sigmaA(SpectrumOrNone(in, "sigma_a")),

@@ -7,6 +7,7 @@
 #include "renderer/input/spectrum.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/materials/basic.h"
+#include "renderer/scene/materials/coated.h"
 #include "renderer/scene/materials/disney.h"
 #include "renderer/scene/materials/fourier.h"
 #include "renderer/scene/materials/hair.h"
@@ -21,7 +22,8 @@ namespace {
 // The functions of a kind are listed in materials/material_inputs.h.
 using MaterialKind =
     std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix, Interface,
-                 Disney, Hair, Fourier, MetallicRoughness, Subsurface, KdSubsurface>;
+                 Disney, Hair, Fourier, MetallicRoughness, Subsurface, KdSubsurface, CoatedDiffuse,
+                 CoatedConductor, ThinDielectric>;
 
 // Adapts constructors to the table of kinds.
 template <typename K>
@@ -47,6 +49,9 @@ constexpr Kind<MaterialKind(const MaterialReader&)> kMaterials[] = {
     {"metallicroughness", Make<MetallicRoughness>},
     {"subsurface", Make<Subsurface>},
     {"kdsubsurface", Make<KdSubsurface>},
+    {"coateddiffuse", Make<CoatedDiffuse>},
+    {"coatedconductor", Make<CoatedConductor>},
+    {"thindielectric", Make<ThinDielectric>},
 };
 
 }  // namespace
@@ -191,9 +196,12 @@ FloatTexture MaterialReader::Share(const std::string& name, float otherwise) con
 }
 
 SurfaceTilt MaterialReader::BumpMap() const {
-    const auto bump = FloatOrNone("bumpmap");
-    if (bump && bump->IsConstant() && bump->constant == 0) return {};
-    return {.bump = bump};
+    SurfaceTilt tilt;
+    tilt.bump = FloatOrNone("bumpmap");
+    if (tilt.bump && tilt.bump->IsConstant() && tilt.bump->constant == 0) tilt.bump.reset();
+    if (entity.parameters.GetTexture("normals"))
+        tilt.normalMap = NormalMap{Spectrum("normals", 1)};
+    return tilt;
 }
 
 std::string ProblemOfIndex(const MaterialReader& in, const FloatTexture& index) {
@@ -247,7 +255,8 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
     }
     Bsdf bsdf(frame, hit->n, 1, material.turnsNormal);
     AddLobes(material,
-             MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy}, materials, hit},
+             MaterialInputs{
+                   textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy, &hit->n}, materials, hit},
              &bsdf);
     return bsdf;
 }
@@ -265,7 +274,9 @@ std::optional<SubsurfaceProfile> MaterialTable::Profile(const TextureTable& text
 }
 
 Mix::Mix(const MaterialReader& in)
-    : amount(in.ShareOfColors("amount", 0.5f)), operands(in.entity.operands) {}
+    : amount(in.ShareOfColors("amount", 0.5f)),
+      share(in.FloatOrNone("share")),
+      operands(in.entity.operands) {}
 
 std::string Mix::Problem(const MaterialReader& in) const {
     for (int i = 0; i < 2; ++i) {
@@ -284,7 +295,7 @@ std::string Mix::Problem(const MaterialReader& in) const {
 }
 
 MaterialTraits Mix::Traits(const MaterialReader& in) const {
-    MaterialTraits traits = in.TraitsOf(0, amount);
+    MaterialTraits traits = in.TraitsOf(0, amount, share);
     for (const int operand : operands) {
         const MaterialTraits& other = TraitsOfOperand(operand, in.made);
         traits.needs = traits.needs | other.needs;
@@ -295,7 +306,9 @@ MaterialTraits Mix::Traits(const MaterialReader& in) const {
 }
 
 void Mix::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const Rgb first = in.Color(amount), second = (1 - first).max(0.f);
+    const Rgb first = share ? Rgb::Constant(std::clamp(in(*share), 0.f, 1.f)).eval()
+                            : in.Color(amount);
+    const Rgb second = (1 - first).max(0.f);
     // As in pbrt-v3 a lobe scaled to black stays among those to choose from.
     const int begin = bsdf->LobeCount(LobeSet::All);
     AddOperandLobes(operands[0], in, bsdf);

@@ -2,6 +2,13 @@
 
 namespace lull {
 
+std::optional<SpectrumTexture> SpectrumOrNone(const MaterialReader& in, const char* name) {
+    const Parameters& params = in.entity.parameters;
+    if (!params.GetTexture(name) && params.GetFloats(ParameterType::Spectrum, name).empty())
+        return {};
+    return in.Spectrum(name, 0);
+}
+
 void ApplyBumpMap(const FloatTexture& displacement, const TextureTable& textures,
                   SurfaceInteraction* hit) {
     // Step half a sample's distance where it is known.

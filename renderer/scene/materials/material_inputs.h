@@ -100,7 +100,7 @@ struct MaterialReader {
         const std::optional<FloatTexture> eta = FloatOrNone("eta");
         return eta ? *eta : Float("index", 1.5f);
     }
-    // Reads "bumpmap"; nothing where it is flat.
+    // Reads "bumpmap", and "normals", pbrt-v4's normal map; nothing where both are flat.
     SurfaceTilt BumpMap() const;
 
     // Returns the traits of up to `mostLobes` lobes that depend on textures alone; a Roughness
@@ -127,6 +127,9 @@ struct MaterialReader {
         if (!roughness.IsIsotropic()) traits->needs = traits->needs | kNeedsTangents;
     }
 };
+
+// Reads a colour; nothing where it is not given.
+std::optional<SpectrumTexture> SpectrumOrNone(const MaterialReader& in, const char* name);
 
 // Returns whether a number can be an index of refraction. Beyond these limits, light that enters
 // and leaves without total reflection would count up to 1e4 times.
@@ -167,10 +170,14 @@ void AddOperandLobes(int operand, const MaterialInputs&, Bsdf*);
 
 // Reads roughness parameters and turns them into a microfacet distribution.
 
+// How a roughness becomes alpha: not at all, as in pbrt-v3, or by its root, as in pbrt-v4.
+enum class Remapping { None, PbrtV3, Root };
+
 // The roughness along one tangent; a constant is turned into alpha once.
 class RoughnessAxis {
   public:
-    RoughnessAxis(const FloatTexture& texture, bool remap) : texture(texture), remap(remap) {
+    RoughnessAxis(const FloatTexture& texture, Remapping remapping)
+        : texture(texture), remapping(remapping) {
         if (!texture.IsConstant()) return;
         constantIsZero = texture.constant == 0;
         this->texture.constant = ToAlpha(texture.constant);
@@ -189,19 +196,25 @@ class RoughnessAxis {
     const FloatTexture& Texture() const { return texture; }
 
   private:
-    float ToAlpha(float roughness) const { return remap ? RoughnessToAlpha(roughness) : roughness; }
+    float ToAlpha(float roughness) const {
+        if (remapping == Remapping::PbrtV3) return RoughnessToAlpha(roughness);
+        return remapping == Remapping::Root ? SafeSqrt(roughness) : roughness;
+    }
 
     FloatTexture texture;  // a constant holds alpha
-    bool remap, constantIsZero = false;
+    Remapping remapping;
+    bool constantIsZero = false;
 };
 
 // The roughness of a surface along both tangents. "remaproughness" (true) says whether the
-// parameters are pbrt's perceptual roughness or alpha itself.
+// parameters are pbrt-v3's perceptual roughness or alpha itself, and "remapping", of scenes for
+// pbrt-v4, that alpha is its "sqrt", or "none".
 class Roughness {
   public:
     Roughness(const MaterialReader& in, const FloatTexture& u, const FloatTexture& v)
-        : Roughness(u, v, in.entity.parameters.GetBool("remaproughness", true)) {}
-    Roughness(const FloatTexture& u, const FloatTexture& v, bool remap) : u(u, remap), v(v, remap) {
+        : Roughness(u, v, RemappingOf(in.entity.parameters)) {}
+    Roughness(const FloatTexture& u, const FloatTexture& v, Remapping remapping)
+        : u(u, remapping), v(v, remapping) {
         isIsotropic = u.index == v.index && (!u.IsConstant() || u.constant == v.constant);
     }
 
@@ -228,6 +241,13 @@ class Roughness {
     }
 
   private:
+    static Remapping RemappingOf(const Parameters& parameters) {
+        const std::string remapping = parameters.GetString("remapping", "");
+        if (remapping == "sqrt") return Remapping::Root;
+        if (remapping == "none") return Remapping::None;
+        return parameters.GetBool("remaproughness", true) ? Remapping::PbrtV3 : Remapping::None;
+    }
+
     RoughnessAxis u, v;
     bool isIsotropic;
 };

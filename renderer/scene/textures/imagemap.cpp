@@ -9,16 +9,47 @@
 
 namespace lull {
 
+void DecodeBytes(Image* image) {
+    const auto* bytes = std::get_if<std::vector<uint8_t>>(&image->texels);
+    if (!bytes) return;
+    std::vector<float> linear(bytes->size());
+    for (size_t i = 0; i < linear.size(); ++i) linear[i] = LinearFromSrgb(ToFloat((*bytes)[i]));
+    image->texels = std::move(linear);
+}
+
 namespace {
+
+std::string ExtensionOf(const std::string& filename) {
+    std::string extension = std::filesystem::path(filename).extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
 
 // Returns whether a file of that name holds sRGB unless told otherwise. pbrt-v3 knows .png and
 // .tga; the others it cannot read, and they are of the same nature.
 bool IsEncodedByDefault(const std::string& filename) {
-    std::string extension = std::filesystem::path(filename).extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = ExtensionOf(filename);
     for (const char* encoded : {".png", ".tga", ".jpg", ".jpeg", ".bmp", ".gif", ".webp"})
         if (extension == encoded) return true;
     return false;
+}
+
+// Returns the exponent of the file's texels: 1 where they are linear, kSrgb where they are sRGB.
+float GetGamma(const TextureInput& input, const std::string& filename) {
+    const Parameters& parameters = input.entity.parameters;
+    const bool isEncoded = parameters.GetBool("gamma", IsEncodedByDefault(filename));
+    const std::string encoding = parameters.GetString("encoding", "");
+    const bool isPng = ExtensionOf(filename) == ".png";
+    if (encoding.empty() || encoding == "sRGB" || !isPng) return isEncoded ? kSrgb : 1;
+    if (encoding == "linear") return 1;
+    float gamma = 0;
+    if (encoding.starts_with("gamma ")) gamma = std::strtof(encoding.c_str() + 6, nullptr);
+    if (!(gamma > 0) || !std::isfinite(gamma))
+        throw Error(input.entity.loc,
+                    fmt::format("the encoding \"{}\" is unknown; sRGB, linear and gamma with a "
+                                "number are",
+                                Printable(encoding)));
+    return gamma;
 }
 
 Wrap GetWrap(const TextureInput& input, const char* parameter) {
@@ -40,6 +71,7 @@ TextureChannels GetChannels(const TextureInput& input, bool isFloat) {
     if (channel == "green") return TextureChannels::Green;
     if (channel == "blue") return TextureChannels::Blue;
     if (channel == "alpha") return TextureChannels::Alpha;
+    if (channel == "mean or alpha") return TextureChannels::MeanOrAlpha;
     if (!channel.empty())
         input.warnings.Add(input.entity.loc, "unknown channel replaced by luminance",
                            Printable(channel));
@@ -62,11 +94,12 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
     const Parameters& parameters = entity.parameters;
     const std::string filename = parameters.GetString("filename", "");
     const int embedded = parameters.GetInt("embeddedimage", -1);
-    const bool gamma = parameters.GetBool("gamma", IsEncodedByDefault(filename));
+    const float gamma = GetGamma(input, filename);
     const TextureChannels channels = GetChannels(input, std::is_same_v<T, float>);
     const Wrap wrap = GetWrap(input, "wrap");
     const Wrap wrapT = parameters.GetString("wrapt", "").empty() ? wrap : GetWrap(input, "wrapt");
-    ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), wrap, wrapT};
+    ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), wrap, wrapT,
+                    parameters.GetBool("invert", false)};
     parameters.GetBool("trilinear", false);  // known, without effect
     parameters.GetFloat("maxanisotropy", 8);
 
@@ -82,7 +115,7 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
         const std::string what =
             fmt::format("texture \"{}\": {}", Printable(entity.textureName), error.what());
         input.warnings.Substitute(entity.loc, what, "grey stands in");
-        const float grey = map.scale * (gamma ? LinearFromSrgb(0.5f) : 0.5f);
+        const float grey = map.scale * (gamma == kSrgb ? LinearFromSrgb(0.5f) : 0.5f);
         return ConstantTexture<T>(grey);
     }
 
@@ -91,7 +124,9 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
             entity.loc, "values of a texture that are not finite count as 0",
             fmt::format("{} of \"{}\"", map.image->notFinite, Printable(filename, 200)));
     if (map.image->uniform && map.wrap != Wrap::Black && map.wrapT != Wrap::Black)
-        return TextureHandle<T>{FromRgb<T>(map.scale * *map.image->uniform)};
+        return TextureHandle<T>{
+            FromRgb<T>(map.inverts ? Inverted(Rgb(map.scale * *map.image->uniform))
+                                   : Rgb(map.scale * *map.image->uniform))};
     return map;
 }
 

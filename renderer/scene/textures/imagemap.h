@@ -130,13 +130,28 @@ inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrap) {
     });
 }
 
+// Returns the texel at a point of the unit square, its first row at st.y = 0; linear, alpha ignored.
+inline Rgb NearestRgb(const Image& image, const Vec2f& st) {
+    const auto index = [](float s, int n) { return std::clamp(int(s * float(n)), 0, n - 1); };
+    return Visit(image.texels, [&](const auto& texels) {
+        return TexelRgb(image, texels, index(st.x(), image.width), index(st.y(), image.height));
+    });
+}
+
+// Makes 8-bit texels, alpha apart, linear, as sRGB has them; others are linear already.
+void DecodeBytes(Image* image);
+
 template <typename T>
 struct ImageMap {
     Mapping2D mapping;
     std::shared_ptr<const TextureImage> image;  // never null; grey where T is float
     float scale;
-    Wrap wrap, wrapT;  // across and up the image
+    Wrap wrap, wrapT;     // across and up the image
+    bool inverts = false;  // to 1 - scale * texel, at least 0
 };
+
+inline float Inverted(float v) { return std::max(0.f, 1 - v); }
+inline Rgb Inverted(const Rgb& v) { return (1 - v).max(0.f); }
 
 template <typename T>
 T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c) {
@@ -161,7 +176,8 @@ T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c)
         else
             return T();  // never: float textures have grey images
     };
-    return map.scale * Visit(image.texels, blend);
+    const T value = map.scale * Visit(image.texels, blend);
+    return map.inverts ? Inverted(value) : value;
 }
 
 template <typename T>
@@ -170,8 +186,10 @@ SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
 }
 
 // Reads "filename" or "embeddedimage" (into Description::images), "gamma" (the file is
-// sRGB-encoded; by default as its extension suggests), "scale" (after linearisation), "channel" (of
-// a float texture: "red", "green", "blue" or "alpha" instead of the luminance), "wrap" ("repeat",
+// sRGB-encoded; by default as its extension suggests) or, of pbrt-v4, "encoding" ("sRGB", "linear"
+// or "gamma" and an exponent, which PNG files heed), "scale" (after linearisation), "invert" (after
+// that), "channel" (of a float texture: "red", "green", "blue", "alpha" or, as in pbrt-v4, "mean or
+// alpha" instead of the luminance), "wrap" ("repeat",
 // "black", "clamp", "mirrored"; "wrapt" for the second axis alone) and the mapping. "trilinear" and
 // "maxanisotropy" have no effect: the finest level is interpolated. pbrt-v3's grey substitutes an
 // image that cannot be read.

@@ -77,6 +77,34 @@ Made<T, MixTexture<T>> MakeMix(const TextureInput& input) {
     return mix;
 }
 
+// Interpolates by the angle between the surface's normal and a direction, as pbrt-v4.
+template <typename T>
+struct DirectionMix {
+    TextureHandle<T> tex1, tex2;
+    Vec3f direction;  // unit, world
+};
+
+template <typename T>
+T Evaluate(const DirectionMix<T>& mix, const TextureTable& table, const TextureContext& c) {
+    const float amount = c.n ? std::min(std::abs(c.n->dot(mix.direction)), 1.f) : 1;
+    return amount * table.Evaluate(mix.tex1, c) + (1 - amount) * table.Evaluate(mix.tex2, c);
+}
+
+template <typename T>
+SurfaceNeeds Needs(const DirectionMix<T>& mix, const TextureTable& table) {
+    return table.Needs(mix.tex1) | table.Needs(mix.tex2);
+}
+
+template <typename T>
+Made<T, DirectionMix<T>> MakeDirectionMix(const TextureInput& input) {
+    const Vec3f given = input.entity.parameters.GetVector3("dir", Vec3f::UnitY());
+    const Vec3f direction = TransformVector(input.entity.worldFromTexture, given);
+    if (!(direction.norm() > 0))
+        throw Error(input.entity.loc, "\"dir\" of a directionmix has no length");
+    return DirectionMix<T>{GetTexture<T>(input, "tex1", 0), GetTexture<T>(input, "tex2", 1),
+                           direction.normalized()};
+}
+
 // Interpolates between four values, one at each corner of the unit square of a mapping.
 template <typename T>
 struct Bilerp {

@@ -13,13 +13,13 @@ namespace lull {
 
 struct FloatTextureNode {
     std::variant<Scale<float>, MixTexture<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
-                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>>
+                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>, DirectionMix<float>>
         kind;
 };
 
 struct SpectrumTextureNode {
     std::variant<Scale<Rgb>, MixTexture<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
-                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors>
+                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors, DirectionMix<Rgb>>
         kind;
 };
 
@@ -63,6 +63,7 @@ constexpr TextureKind<FloatTextureNode> kFloatKinds[] = {
     {"fbm", AddNode<MakeOctaves<float, FractionalBrownianMotion>>},
     {"checkerboard", AddNode<MakeCheckerboard<float>>},
     {"bilerp", AddNode<MakeBilerp<float>>},
+    {"directionmix", AddNode<MakeDirectionMix<float>>},
     {"dots", AddNode<MakeDots<float>>},
     {"windy", AddNode<MakeWindy<float>>},
     {"wrinkled", AddNode<MakeOctaves<float, Turbulence>>},
@@ -78,6 +79,7 @@ constexpr TextureKind<SpectrumTextureNode> kSpectrumKinds[] = {
     {"marble", AddNode<MakeMarble>},
     {"uv", AddNode<MakeUvColors>},
     {"bilerp", AddNode<MakeBilerp<Rgb>>},
+    {"directionmix", AddNode<MakeDirectionMix<Rgb>>},
     {"dots", AddNode<MakeDots<Rgb>>},
     {"windy", AddNode<MakeWindy<Rgb>>},
     {"wrinkled", AddNode<MakeOctaves<Rgb, Turbulence>>},

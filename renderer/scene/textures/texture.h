@@ -17,6 +17,7 @@ struct TextureContext {
     Vec2f uv;
     // Of p, from one sample to the next across and down the image.
     Vec3f dpdx = Vec3f::Zero(), dpdy = Vec3f::Zero();
+    const Vec3f* n = nullptr;  // the surface's normal, where it is known
 };
 
 // Refers to a texture of a TextureTable, or is a constant, which is evaluated without a look-up.

@@ -70,13 +70,15 @@ size_t ReplaceNonFinite(TextureImage* image) {
 // Returns a grey image of one channel, white where there is none such.
 Image ExtractChannel(const Image& image, TextureChannels wanted) {
     const bool hasColor = image.channels >= 3, hasAlpha = image.channels % 2 == 0;
-    const int channel = wanted == TextureChannels::Alpha   ? image.channels - 1
+    const bool wantsAlpha =
+        wanted == TextureChannels::Alpha || wanted == TextureChannels::MeanOrAlpha;
+    const int channel = wantsAlpha                         ? image.channels - 1
                         : !hasColor                        ? 0
                         : wanted == TextureChannels::Red   ? 0
                         : wanted == TextureChannels::Green ? 1
                                                            : 2;
     Image grey{image.width, image.height, 1, {}};
-    if (wanted == TextureChannels::Alpha && !hasAlpha) {
+    if (wantsAlpha && !hasAlpha) {
         grey.texels =
             std::vector<uint8_t>(size_t(image.width) * size_t(image.height), uint8_t(255));
         return grey;
@@ -93,6 +95,37 @@ Image ExtractChannel(const Image& image, TextureChannels wanted) {
     return grey;
 }
 
+// Returns whether the image has an alpha that is not 1 all over.
+bool HasAlpha(const Image& image) {
+    if (image.channels % 2 != 0) return false;
+    return std::visit(
+        [&](const auto& texels) {
+            for (size_t i = size_t(image.channels) - 1; i < texels.size();
+                 i += size_t(image.channels))
+                if (Encoded(texels[i]) != 1) return true;
+            return false;
+        },
+        image.texels);
+}
+
+// Returns the mean of the linearised colours, in one channel.
+template <typename Linear>
+Image MeanOf(const Image& image, const Linear& linear) {
+    std::vector<float> means;
+    std::visit(
+        [&](const auto& texels) {
+            const size_t stride = size_t(image.channels), colors = stride < 3 ? 1 : 3;
+            means.reserve(texels.size() / stride);
+            for (size_t i = 0; i < texels.size(); i += stride) {
+                float sum = 0;
+                for (size_t c = 0; c < colors; ++c) sum += linear(Encoded(texels[i + c]));
+                means.push_back(sum / float(colors));
+            }
+        },
+        image.texels);
+    return {image.width, image.height, 1, std::move(means)};
+}
+
 }  // namespace
 
 size_t TextureImage::Bytes() const {
@@ -103,14 +136,19 @@ bool TextureImage::IsGrey() const {
     return std::visit([](const auto& t) { return t.kChannels == 1; }, texels);
 }
 
-TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels wanted) {
+TextureImage MakeTextureImage(const Image& image, float gamma, TextureChannels wanted) {
+    const auto linear = [gamma](float v) {
+        if (gamma == 1) return v;
+        return gamma == kSrgb ? LinearFromSrgb(v) : std::pow(std::max(v, 0.f), gamma);
+    };
+    if (wanted == TextureChannels::MeanOrAlpha && !HasAlpha(image))
+        return MakeTextureImage(MeanOf(image, linear), 1, TextureChannels::Luminance);
     if (wanted > TextureChannels::Luminance) {
         const bool isAlpha = wanted == TextureChannels::Alpha;
-        return MakeTextureImage(ExtractChannel(image, wanted), gamma && !isAlpha,
+        return MakeTextureImage(ExtractChannel(image, wanted), isAlpha ? 1 : gamma,
                                 TextureChannels::Luminance);
     }
     const bool luminance = wanted == TextureChannels::Luminance;
-    const auto linear = [gamma](float v) { return gamma ? LinearFromSrgb(v) : v; };
     TextureImage result;
     result.width = image.width;
     result.height = image.height;
@@ -118,7 +156,7 @@ TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels wa
 
     const auto convert = [&](const auto& texels) {
         using T = typename std::decay_t<decltype(texels)>::value_type;
-        const bool keep = std::is_same_v<T, uint8_t> || !gamma;
+        const bool keep = std::is_same_v<T, uint8_t> || gamma == 1;
         if (image.channels < 3 || AllGrey(texels, image.channels)) {
             if (keep)
                 result.texels =
@@ -148,7 +186,7 @@ TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels wa
 }
 
 template <typename Read>
-std::shared_ptr<const TextureImage> TextureImages::Find(const std::string& name, bool gamma,
+std::shared_ptr<const TextureImage> TextureImages::Find(const std::string& name, float gamma,
                                                         TextureChannels channels,
                                                         const Read& read) {
     const auto found = images.find({name, gamma, channels});
@@ -165,12 +203,12 @@ std::shared_ptr<const TextureImage> TextureImages::Find(const std::string& name,
     return image;
 }
 
-std::shared_ptr<const TextureImage> TextureImages::Get(const std::string& path, bool gamma,
+std::shared_ptr<const TextureImage> TextureImages::Get(const std::string& path, float gamma,
                                                        TextureChannels channels) {
     return Find(path, gamma, channels, [&] { return ReadImage(path); });
 }
 
-std::shared_ptr<const TextureImage> TextureImages::Get(const EmbeddedImage& image, bool gamma,
+std::shared_ptr<const TextureImage> TextureImages::Get(const EmbeddedImage& image, float gamma,
                                                        TextureChannels channels) {
     return Find(image.name, gamma, channels,
                 [&] { return ReadImage(image.name, image.type, image.bytes); });

@@ -41,19 +41,24 @@ struct TextureImage {
 // Channels to keep of an image. Luminance asks for one channel: grey images as they are, others by
 // their luminance; as in pbrt-v3 that is the luminance of the *encoded* colours, linearised
 // afterwards. A single channel of a grey image is its grey; Alpha is 1 if there is none, and is
-// never linearised.
-enum class TextureChannels { Rgb, Luminance, Red, Green, Blue, Alpha };
+// never linearised. MeanOrAlpha is pbrt-v4's number of an image: its alpha if that is not 1 all
+// over, else the mean of its colours, linearised.
+enum class TextureChannels { Rgb, Luminance, Red, Green, Blue, Alpha, MeanOrAlpha };
 
-// Makes a TextureImage of an image as it was read. `gamma` says that texels are sRGB-encoded.
-TextureImage MakeTextureImage(const Image& image, bool gamma, TextureChannels channels);
+// The exponent that says that texels are sRGB-encoded.
+inline constexpr float kSrgb = 0;
+
+// Makes a TextureImage of an image as it was read, whose texels are to be raised to the power of
+// `gamma`, or kSrgb.
+TextureImage MakeTextureImage(const Image& image, float gamma, TextureChannels channels);
 
 // Shares images between textures.
 class TextureImages {
   public:
     // Read the image unless it has been read already. Throw Error as ReadImage does.
-    std::shared_ptr<const TextureImage> Get(const std::string& path, bool gamma,
+    std::shared_ptr<const TextureImage> Get(const std::string& path, float gamma,
                                             TextureChannels channels);
-    std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, bool gamma,
+    std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, float gamma,
                                             TextureChannels channels);
 
     // Returns the memory taken by images.
@@ -61,10 +66,10 @@ class TextureImages {
 
   private:
     template <typename Read>
-    std::shared_ptr<const TextureImage> Find(const std::string& name, bool gamma,
+    std::shared_ptr<const TextureImage> Find(const std::string& name, float gamma,
                                              TextureChannels channels, const Read& read);
 
-    std::map<std::tuple<std::string, bool, TextureChannels>, std::shared_ptr<const TextureImage>>
+    std::map<std::tuple<std::string, float, TextureChannels>, std::shared_ptr<const TextureImage>>
         images;
     // The last one read, as other channels of it are often asked for next.
     std::string lastName;

@@ -1,0 +1,302 @@
+// Textures, shapes and media of pbrt-v4.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "renderer/input/pbrt/v4_reader.h"
+#include "stopping/base/input_file.h"
+
+namespace lull {
+namespace {
+
+void CopyMapping(V4Reader* in) {
+    in->Copy(ParameterType::String, "mapping");
+    for (const char* name : {"uscale", "vscale", "udelta", "vdelta"})
+        in->Copy(ParameterType::Float, name);
+    for (const char* name : {"v1", "v2"}) in->Copy(ParameterType::Vector3, name);
+}
+
+// Copies a texture parameter of the texture's own type.
+void CopyOperand(V4Reader* in, const char* name, bool isSpectrum, float otherwise,
+                 const char* to = nullptr) {
+    if (!to) to = name;
+    if (const TextureRef* texture = in->Texture(name))
+        in->SetTexture(to, *texture);
+    else if (isSpectrum)
+        in->Set(to, in->Surface(name, Rgb::Constant(otherwise)));
+    else
+        in->Set(to, in->Float(name, otherwise));
+}
+
+void CopyImage(V4Reader* in, bool isSpectrum) {
+    CopyMapping(in);
+    in->Copy(ParameterType::String, "filename");
+    in->Copy(ParameterType::Float, "scale");
+    in->Copy(ParameterType::Bool, "invert");
+    in->Ignore({"filter", "maxanisotropy"});
+    std::string wrap = in->String("wrap", "repeat");
+    if (wrap == "octahedralsphere") {
+        in->Warn("wrap \"octahedralsphere\" is replaced by \"repeat\"");
+        wrap = "repeat";
+    }
+    in->SetString("wrap", wrap);
+    in->SetString("encoding", in->String("encoding", "sRGB"));
+    if (!isSpectrum) in->SetString("channel", "mean or alpha");
+}
+
+// Multiplies a texture by another. The factor of an image is multiplied with its texels, before
+// they are inverted.
+Entity TranslateScale(V4Reader in, bool isSpectrum, const std::string& owner) {
+    const TextureRef* texture = in.Texture("tex");
+    const int index = !texture ? -1 : isSpectrum ? texture->spectrumIndex : texture->floatIndex;
+    const float factor = in.Float("scale", 1);
+    if (index >= 0 && !in.Texture("scale")) {
+        const TextureEntity& image = in.Context().description.textures[size_t(index)];
+        if (image.name == "imagemap") {
+            Entity copy = image;
+            in.Finish("", owner);
+            const float scale = factor * image.parameters.GetFloat("scale", 1);
+            copy.loc = in.Loc();
+            copy.parameters.Add(
+                {ParameterType::Float, "scale", in.Loc(), std::vector<float>{scale}});
+            return copy;
+        }
+    }
+    // (1 - s) 0 + s tex.
+    if (isSpectrum)
+        in.Set("tex1", Rgb(Rgb::Zero()));
+    else
+        in.Set("tex1", 0.f);
+    CopyOperand(&in, "tex", isSpectrum, 1, "tex2");
+    CopyOperand(&in, "scale", false, 1, "amount");
+    return in.Finish("mix", owner);
+}
+
+}  // namespace
+
+Entity TranslateTexture(V4Reader in, bool isSpectrum) {
+    const std::string kind = in.Name(), owner = "texture \"" + Printable(kind) + "\"";
+    const auto operands = [&](std::initializer_list<const char*> names, float first) {
+        for (const char* name : names) {
+            CopyOperand(&in, name, isSpectrum, first);
+            first = 1 - first;
+        }
+    };
+    if (kind == "scale") return TranslateScale(in, isSpectrum, owner);
+    if (kind == "constant") {
+        operands({"value"}, 1);
+    } else if (kind == "mix") {
+        operands({"tex1", "tex2"}, 0);
+        CopyOperand(&in, "amount", false, 0.5f);
+    } else if (kind == "directionmix") {
+        operands({"tex1", "tex2"}, 0);
+        const Vec3f dir = in.All().GetVector3("dir", Vec3f::UnitY());
+        in.Add(ParameterType::Vector3, "dir", std::vector<float>{dir.x(), dir.y(), dir.z()});
+    } else if (kind == "imagemap") {
+        CopyImage(&in, isSpectrum);
+    } else if (kind == "bilerp") {
+        CopyMapping(&in);
+        operands({"v00", "v01", "v10", "v11"}, 0);
+    } else if (kind == "checkerboard") {
+        CopyMapping(&in);
+        in.Copy(ParameterType::Integer, "dimension");
+        operands({"tex1", "tex2"}, 1);
+    } else if (kind == "dots") {
+        CopyMapping(&in);
+        operands({"inside", "outside"}, 1);
+    } else if (kind == "fbm" || kind == "wrinkled" || (kind == "marble" && isSpectrum)) {
+        in.Copy(ParameterType::Integer, "octaves");
+        for (const char* name : {"roughness", "scale", "variation"})
+            in.Copy(ParameterType::Float, name);
+    } else if (kind != "windy") {
+        in.Fail(fmt::format("{} texture \"{}\" is not supported", isSpectrum ? "spectrum" : "float",
+                            Printable(kind)));
+    }
+    return in.Finish(kind, owner);
+}
+
+namespace {
+
+using Corners = std::array<Vec3f, 4>;
+
+template <typename Vector>
+std::vector<Vector> Vectors(const V4Reader& in, ParameterType type, const char* name) {
+    constexpr int n = Vector::RowsAtCompileTime;
+    const auto values = in.All().GetFloats(type, name);
+    std::vector<Vector> vectors(values.size() / n);
+    for (size_t i = 0; i < vectors.size(); ++i)
+        vectors[i] = Eigen::Map<const Vector>(values.data() + n * i);
+    return vectors;
+}
+
+// Returns whether the corners p00, p10, p01, p11 lie in a plane, but for rounding.
+bool IsPlanar(const Corners& p) {
+    const Vec3f n = (p[1] - p[0]).cross(p[2] - p[0]);
+    return std::abs(n.dot(p[3] - p[0])) <= 1e-5f * n.norm() * (p[3] - p[0]).norm();
+}
+
+template <typename T>
+T Bilinear(const std::array<T, 4>& c, float u, float v) {
+    return (1 - u) * (1 - v) * c[0] + u * (1 - v) * c[1] + (1 - u) * v * c[2] + u * v * c[3];
+}
+
+// Cuts bilinear patches into triangles, 2 where one is flat, and 128 otherwise.
+Entity TranslatePatches(V4Reader in) {
+    constexpr int kCurvedSteps = 8;
+    const auto p = Vectors<Vec3f>(in, ParameterType::Point3, "P");
+    const auto n = Vectors<Vec3f>(in, ParameterType::Normal, "N");
+    const auto uv = Vectors<Vec2f>(in, ParameterType::Point2, "uv");
+    std::vector<int> indices(in.All().GetInts("indices").begin(),
+                             in.All().GetInts("indices").end());
+    if (indices.empty() && p.size() == 4) indices = {0, 1, 2, 3};
+    if (indices.empty() || indices.size() % 4 != 0)
+        in.Fail("a bilinearmesh needs four \"indices\" for each patch");
+    if (!in.String("emissionfilename").empty())
+        in.Warn("\"emissionfilename\" of a bilinearmesh has no effect on its emission");
+    in.Ignore({"faceIndices"});
+    const bool hasNormals = !n.empty() && n.size() == p.size();
+    struct Patch {
+        Corners p, n;
+        std::array<Vec2f, 4> uv = {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1), Vec2f(1, 1)};
+        bool isPlanar = false;
+    };
+    std::vector<Patch> patches(indices.size() / 4);
+    bool isPlanar = true;
+    for (size_t i = 0; i < indices.size(); ++i) {
+        Patch& patch = patches[i / 4];
+        const int index = indices[i];
+        if (index < 0 || size_t(index) >= p.size())
+            in.Fail(fmt::format("index {} is out of range: the mesh has {} vertices", index,
+                                p.size()));
+        patch.p[i % 4] = p[size_t(index)];
+        if (hasNormals) patch.n[i % 4] = n[size_t(index)];
+        if (uv.size() == p.size()) patch.uv[i % 4] = uv[size_t(index)];
+        if (i % 4 == 3) patch.isPlanar = IsPlanar(patch.p);
+        isPlanar &= i % 4 != 3 || patch.isPlanar;
+    }
+    std::vector<float> points, normals, uvs;
+    std::vector<int> triangles;
+    const auto put = [](const auto& v, std::vector<float>* to) {
+        to->insert(to->end(), v.data(), v.data() + v.size());
+    };
+    for (const Patch& patch : patches) {
+        const int steps = patch.isPlanar ? 1 : kCurvedSteps, first = int(points.size() / 3);
+        for (int y = 0; y <= steps; ++y)
+            for (int x = 0; x <= steps; ++x) {
+                const float u = float(x) / float(steps), v = float(y) / float(steps);
+                const Corners& c = patch.p;
+                put(Vec3f(Bilinear(c, u, v)), &points);
+                put(Vec2f(Bilinear(patch.uv, u, v)), &uvs);
+                if (hasNormals)
+                    put(Vec3f(Bilinear(patch.n, u, v)), &normals);
+                else if (!isPlanar)
+                    put(Vec3f(((1 - v) * (c[1] - c[0]) + v * (c[3] - c[2]))
+                                  .cross((1 - u) * (c[2] - c[0]) + u * (c[3] - c[1]))),
+                        &normals);
+            }
+        for (int y = 0; y < steps; ++y)
+            for (int x = 0; x < steps; ++x) {
+                const int a = first + y * (steps + 1) + x, c = a + steps + 1;
+                triangles.insert(triangles.end(), {a, a + 1, c + 1, a, c + 1, c});
+            }
+    }
+    in.Add(ParameterType::Point3, "P", points);
+    in.Add(ParameterType::Point2, "uv", uvs);
+    in.Add(ParameterType::Integer, "indices", triangles);
+    if (!normals.empty()) in.Add(ParameterType::Normal, "N", normals);
+    return in.Finish("trianglemesh", "Shape \"bilinearmesh\"");
+}
+
+// Reads the opacity, which is by chance.
+void CopyAlpha(V4Reader* in, bool isMesh) {
+    const TextureRef* texture = in->Texture("alpha");
+    const float alpha = in->Float("alpha", 1);
+    if (!texture && alpha >= 1) return;
+    if (!isMesh) {
+        in->Context().warnings.Add(in->Loc(), "\"alpha\" has no effect on shapes that are no mesh",
+                                   in->Name());
+    } else if (texture) {
+        in->SetTexture("coverage", *texture);
+    } else if (alpha <= 0) {
+        in->Set("alpha", 0.f);
+    } else {
+        in->Set("coverage", alpha);
+    }
+}
+
+}  // namespace
+
+Entity TranslateShape(V4Reader in) {
+    const std::string& kind = in.Name();
+    const auto copy = [&](ParameterType type, std::initializer_list<const char*> names) {
+        for (const char* name : names) in.Copy(type, name);
+    };
+    constexpr std::string_view kMeshes[] = {"trianglemesh", "plymesh", "loopsubdiv",
+                                            "bilinearmesh"};
+    CopyAlpha(&in, std::ranges::count(kMeshes, kind) > 0);
+    if (kind == "bilinearmesh") return TranslatePatches(in);
+    if (kind == "trianglemesh") {
+        copy(ParameterType::Integer, {"indices", "faceIndices"});
+        copy(ParameterType::Point3, {"P"});
+        copy(ParameterType::Point2, {"uv"});
+        copy(ParameterType::Normal, {"N"});
+        in.Ignore({"S"});
+        // Three points are a triangle.
+        if (!in.Has(ParameterType::Integer, "indices") &&
+            in.All().GetFloats(ParameterType::Point3, "P").size() == 9)
+            in.Add(ParameterType::Integer, "indices", std::vector<int>{0, 1, 2});
+    } else if (kind == "plymesh") {
+        copy(ParameterType::String, {"filename"});
+        if (in.Texture("displacement"))
+            in.Fail("\"displacement\" of a plymesh is not supported; displace the mesh itself, or "
+                    "use the material's \"displacement\", which tilts its normals");
+        in.Ignore({"edgelength"});
+    } else if (kind == "loopsubdiv") {
+        copy(ParameterType::Integer, {"levels", "indices"});
+        copy(ParameterType::Point3, {"P"});
+        copy(ParameterType::String, {"scheme"});
+    } else if (kind == "sphere" || kind == "cylinder" || kind == "disk") {
+        copy(ParameterType::Float,
+             {"radius", "zmin", "zmax", "phimax", "height", "innerradius"});
+    } else if (kind == "curve") {
+        copy(ParameterType::Point3, {"P"});
+        copy(ParameterType::Normal, {"N"});
+        copy(ParameterType::String, {"type", "basis"});
+        copy(ParameterType::Integer, {"degree", "splitdepth"});
+        copy(ParameterType::Float, {"width", "width0", "width1", "splitdepth"});
+    } else {
+        in.Fail(fmt::format("Shape \"{}\" is not supported in pbrt-v4; sphere, cylinder, disk, "
+                            "trianglemesh, bilinearmesh, loopsubdiv, plymesh and curve are",
+                            Printable(kind)));
+    }
+    return in.Finish(kind, "Shape \"" + kind + "\"");
+}
+
+Entity TranslateMedium(V4Reader in) {
+    const std::string& kind = in.Name();
+    const std::string owner = "medium \"" + Printable(kind) + "\"";
+    in.String("type");
+    const bool isGrid = kind == "uniformgrid";
+    if (!isGrid && kind != "homogeneous")
+        in.Fail(fmt::format("{} is not supported; homogeneous and uniformgrid are", owner));
+    for (const char* name : {"g", "scale"}) in.Copy(ParameterType::Float, name);
+    if (in.Has(ParameterType::String, "preset") && !isGrid) {
+        in.Copy(ParameterType::String, "preset");
+    } else {
+        in.Set("sigma_a", in.Surface("sigma_a", Rgb::Ones()));
+        in.Set("sigma_s", in.Surface("sigma_s", Rgb::Ones()));
+    }
+    if ((in.Light("Le", Rgb::Zero()) > 0).any() || in.Has(ParameterType::Float, "temperature"))
+        in.Fail("media that emit light are not supported");
+    in.Ignore({"Lescale", "temperaturescale", "temperatureoffset"});
+    if (isGrid) {
+        in.Copy(ParameterType::Float, "density");
+        for (const char* name : {"nx", "ny", "nz"}) in.Copy(ParameterType::Integer, name);
+        for (const char* name : {"p0", "p1"}) in.Copy(ParameterType::Point3, name);
+    }
+    return in.Finish(isGrid ? "heterogeneous" : kind, owner);
+}
+
+}  // namespace lull
