@@ -179,8 +179,7 @@ class ConductorWalk {
             if (!isBaseSmooth) {
                 const float weight =
                     isCoatSmooth ? 1 : Power(leave->pdf, BasePdf(w, out));
-                f += beta * BaseValue(w, out) *
-                     (out.z() * weight * Attenuation(out) * leave->weight);
+                f += beta * BaseValue(w, out) * (weight * Attenuation(out) * leave->weight);
             }
             const auto bounce = Bounce(w, numbers);
             if (!bounce) break;

@@ -33,14 +33,14 @@ Rgb Integrate(const Spectrum& spectrum) {
     return RgbFromXyz(x, y, z);
 }
 
-// Returns the spectral radiance of a black body (Planck's law) up to a factor; wavelength in m.
+}  // namespace
+
 double Planck(double wavelength, double kelvin) {
     constexpr double kLight = 299792458, kPlanck = 6.62606957e-34, kBoltzmann = 1.3806488e-23;
     return std::pow(wavelength, -5) /
            std::expm1(kPlanck * kLight / (wavelength * kBoltzmann * kelvin));
 }
 
-}  // namespace
 
 Rgb RgbFromXyz(double x, double y, double z) {
     // The matrix of ITU-R BT.709 primaries and D65 white, in pbrt-v3's digits.

@@ -26,6 +26,9 @@ Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc = {},
 // Throws Error at `loc` for other temperatures.
 Rgb RgbFromBlackbody(double kelvin, const FileLoc& loc = {});
 
+// Returns the spectral radiance of a black body (Planck's law) up to a factor; wavelength in m.
+double Planck(double wavelength, double kelvin);
+
 // Reads a file of wavelengths (nm) and values, separated by white space or commas, with comments
 // from '#' to the end of the line. `loc` is the place that names the file. Throws Error if it
 // cannot be read.

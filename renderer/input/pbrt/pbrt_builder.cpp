@@ -140,7 +140,7 @@ void PbrtBuilder::WorldBegin() {
         if (!SeesMedium(earlyMedium->first)) {
             description.media.clear();
             media.clear();
-            state.insideMedium = state.outsideMedium = "";
+            state.insideMedium = state.outsideMedium = mediumOfCamera = "";
         }
     }
 }
@@ -158,7 +158,12 @@ void PbrtBuilder::CheckScopes(const std::string& end) {
 
 void PbrtBuilder::EndWorld() {
     CloseImports();
-    CheckScopes("the file ends");
+    if (!scopes.empty() && currentObject < 0)
+        warnings.Add(loc, "the file ends where a scope is open",
+                     std::string(ScopeName(int(scopes.back().kind))) + "Begin of line " +
+                         std::to_string(scopes.back().loc.line));
+    else
+        CheckScopes("the file ends");
     description.cameraMedium = MediumNamed(mediumOfCamera);
     stage = Stage::Done;
 }
@@ -438,7 +443,7 @@ bool PbrtBuilder::SeesMedium(const std::string& directive) {
                  directive +
                      " has no effect with "
                      "Integrator \"" +
-                     Printable(integrator) + "\", in pbrt-v3 as well");
+                     Printable(integrator) + "\", in pbrt as well");
     return false;
 }
 

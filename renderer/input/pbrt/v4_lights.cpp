@@ -103,6 +103,11 @@ Entity TranslateAreaLight(V4Reader in) {
     }
     in.Set("L", Color(in, "L"));
     in.Copy(ParameterType::Float, "power");
+    if (in.Has(ParameterType::Float, "spread")) {
+        in.Warn("\"spread\" is no parameter of pbrt-v4; it is taken as the angle of the cone, in "
+                "degrees, that each point shines into");
+        in.Copy(ParameterType::Float, "spread");
+    }
     return in.Finish("diffuse", "AreaLightSource \"diffuse\"");
 }
 

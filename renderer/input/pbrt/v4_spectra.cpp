@@ -184,7 +184,10 @@ Rgb RgbOfSurface(const V4Spectrum& spectrum, const FileLoc& loc) {
         if (const auto metal = FindMetal(named->name)) return *metal;
         FailNamed(named->name, "a surface", loc);
     }
-    throw Error(loc, "a black body is no surface");
+    const double kelvin = double(std::get<BlackbodySpectrum>(spectrum).kelvin);
+    if (!(kelvin > 0)) throw Error(loc, "a black body needs a temperature above 0 K");
+    const double most = Planck(2.8977721e-3 / kelvin, kelvin);
+    return SurfaceColor([&](double nm) { return Planck(nm * 1e-9, kelvin) / most; });
 }
 
 float IndexOf(const V4Spectrum& spectrum, const FileLoc& loc) {

@@ -210,20 +210,14 @@ Entity TranslatePatches(V4Reader in) {
 }
 
 // Reads the opacity, which is by chance.
-void CopyAlpha(V4Reader* in, bool isMesh) {
-    const TextureRef* texture = in->Texture("alpha");
+void CopyAlpha(V4Reader* in) {
     const float alpha = in->Float("alpha", 1);
-    if (!texture && alpha >= 1) return;
-    if (!isMesh) {
-        in->Context().warnings.Add(in->Loc(), "\"alpha\" has no effect on shapes that are no mesh",
-                                   in->Name());
-    } else if (texture) {
+    if (const TextureRef* texture = in->Texture("alpha"))
         in->SetTexture("coverage", *texture);
-    } else if (alpha <= 0) {
-        in->Set("alpha", 0.f);
-    } else {
+    else if (alpha <= 0)
+        in->SetBool("invisible", true);
+    else if (alpha < 1)
         in->Set("coverage", alpha);
-    }
 }
 
 }  // namespace
@@ -233,9 +227,7 @@ Entity TranslateShape(V4Reader in) {
     const auto copy = [&](ParameterType type, std::initializer_list<const char*> names) {
         for (const char* name : names) in.Copy(type, name);
     };
-    constexpr std::string_view kMeshes[] = {"trianglemesh", "plymesh", "loopsubdiv",
-                                            "bilinearmesh"};
-    CopyAlpha(&in, std::ranges::count(kMeshes, kind) > 0);
+    CopyAlpha(&in);
     if (kind == "bilinearmesh") return TranslatePatches(in);
     if (kind == "trianglemesh") {
         copy(ParameterType::Integer, {"indices", "faceIndices"});

@@ -52,8 +52,9 @@ void ReportEmbreeError(void*, RTCError, const char* message) {
                             message ? message : "unknown error"));
 }
 
-// Makes a number in [0, 1) of a ray and a primitive: the same for both always, and as good as
-// random from one ray or one primitive to another (mixing by Stafford 2011, variant 13).
+}  // namespace
+
+// Mixes by Stafford 2011, variant 13.
 float NumberOf(const RTCRay& ray, const RTCHit& hit) {
     uint64_t state = 0;
     const auto mix = [&](uint64_t bits) {
@@ -72,6 +73,8 @@ float NumberOf(const RTCRay& ray, const RTCHit& hit) {
     mix(hit.instID[0]);
     return float(state >> 40) * 0x1p-24f;
 }
+
+namespace {
 
 // Returns whether a ray meets the side of a mesh that its vertices' order turns away.
 bool IsFromBehind(const Shape& shape, const RTCRay& ray, const RTCHit& hit) {
@@ -150,11 +153,14 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
             [&]<typename S>(const S&) {
                 if constexpr (!std::is_same_v<S, Mesh>) {
                     rtcSetGeometryBoundsFunction(geometry, BoundsCallback<S>, nullptr);
-                    rtcSetGeometryIntersectFunction(geometry, shape.hiddenFrom
-                                                                  ? SeenIntersectCallback<S>
-                                                                  : IntersectCallback<S>);
-                    rtcSetGeometryOccludedFunction(
-                        geometry, shape.hiddenFrom ? SeenOccludedCallback<S> : OccludedCallback<S>);
+                    rtcSetGeometryIntersectFunction(
+                        geometry, shape.coverage     ? CoveredIntersectCallback<S>
+                                  : shape.hiddenFrom ? SeenIntersectCallback<S>
+                                                     : IntersectCallback<S>);
+                    rtcSetGeometryOccludedFunction(geometry,
+                                                   shape.coverage ? CoveredOccludedCallback<S>
+                                                   : shape.hiddenFrom ? SeenOccludedCallback<S>
+                                                                      : OccludedCallback<S>);
                 }
             },
             shape.geometry);

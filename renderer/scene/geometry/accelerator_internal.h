@@ -118,19 +118,23 @@ void BoundsCallback(const RTCBoundsFunctionArguments* args) {
         *args->bounds_o = PaddedBounds(shape.WorldBounds());
 }
 
+inline void SetHit(const ShapeHit& hit, const RTCIntersectFunctionNArguments* args,
+                   RTCRayHit* rayHit) {
+    rayHit->ray.tfar = hit.t;
+    rayHit->hit.u = hit.u;
+    rayHit->hit.v = hit.v;
+    rayHit->hit.geomID = args->geomID;
+    rayHit->hit.primID = args->primID;
+    rayHit->hit.instID[0] = args->context->instID[0];
+}
+
 template <typename S>
 void IntersectCallback(const RTCIntersectFunctionNArguments* args) {
     if (!args->valid[0]) return;
     auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
     const auto hit =
         IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(rayHit->ray));
-    if (!hit) return;
-    rayHit->ray.tfar = hit->t;
-    rayHit->hit.u = hit->u;
-    rayHit->hit.v = hit->v;
-    rayHit->hit.geomID = args->geomID;
-    rayHit->hit.primID = args->primID;
-    rayHit->hit.instID[0] = args->context->instID[0];
+    if (hit) SetHit(*hit, args, rayHit);
 }
 
 template <typename S>
@@ -154,6 +158,63 @@ void SeenOccludedCallback(const RTCOccludedFunctionNArguments* args) {
     if (!IsHidden(*static_cast<const ShapeUser*>(args->geometryUserPtr),
                   *reinterpret_cast<const RTCRay*>(args->ray)))
         OccludedCallback<S>(args);
+}
+
+// Those of shapes of which parts are missing.
+
+// Makes a number in [0, 1) of a ray and a primitive: the same for both always, and as good as
+// random from one ray or one primitive to another.
+float NumberOf(const RTCRay& ray, const RTCHit& hit);
+
+// Returns the distance to the first point of a primitive that is there.
+template <typename S>
+std::optional<ShapeHit> IntersectCovered(const ShapeUser& user, uint32_t geometry,
+                                         uint32_t primitive, const RTCRay& r) {
+    constexpr int kMostTries = 8;
+    const Shape& shape = user.shapes->shapes[size_t(user.shape)];
+    const S& s = *std::get_if<S>(&shape.geometry);
+    Ray ray = RayOf(r);
+    float passed = 0;
+    for (int i = 0; i < kMostTries; ++i) {
+        const auto found = IntersectPrimitive(s, primitive, ray);
+        if (!found) return {};
+        Hit hit{};
+        hit.t = found->t;
+        hit.b1 = found->u;
+        hit.b2 = found->v;
+        hit.shape = user.shape;
+        hit.primitive = primitive;
+        SurfaceInteraction at;
+        Interact(s, ray, hit, kNeedsUv, &at);
+        const float alpha =
+            user.textures->Evaluate(shape.coverage->alpha, TextureContext{at.p, at.uv});
+        RTCHit number{};
+        number.geomID = geometry;
+        number.primID = primitive + uint32_t(i) * 0x9e3779b9u;
+        if (NumberOf(r, number) < alpha) return ShapeHit{passed + found->t, found->u, found->v};
+        const float step = found->t * 1.0001f;
+        ray.o += step * ray.d;
+        ray.tMax -= step;
+        passed += step;
+    }
+    return {};
+}
+
+template <typename S>
+void CoveredIntersectCallback(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    const auto hit = IntersectCovered<S>(user, args->geomID, args->primID, rayHit->ray);
+    if (hit) SetHit(*hit, args, rayHit);
+}
+
+template <typename S>
+void CoveredOccludedCallback(const RTCOccludedFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    if (IntersectCovered<S>(user, args->geomID, args->primID, *ray)) ray->tfar = -kInfinity;
 }
 
 }  // namespace lull

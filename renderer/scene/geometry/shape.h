@@ -114,7 +114,7 @@ struct Shape {
     int material = -1;
     int firstLight = -1;  // of its lights, one a primitive; -1: emits nothing
     std::optional<FloatTexture> alpha{}, shadowAlpha{};  // 0 there: not hit (by shadow rays)
-    std::optional<Coverage> coverage{};                  // of meshes
+    std::optional<Coverage> coverage{};
     unsigned hiddenFrom = 0;                             // kinds of rays that pass it
 
     bool IsMesh() const { return std::holds_alternative<Mesh>(geometry); }

@@ -210,6 +210,7 @@ Revolved MakeRevolved(const ShapeEntity& entity) {
 // Reads an alpha parameter, in which only 0 matters: such points are cut out.
 std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeEntity& entity,
                                       const char* name) {
+    if (entity.parameters.GetBool("invisible", false)) return FloatTexture{0};
     FloatTexture alpha = textures.GetFloat(entity, name, 1);
     if (alpha.IsConstant()) alpha.constant = RaisedToZero(alpha.constant);
     if (alpha.IsConstant() && alpha.constant != 0) return {};
@@ -270,6 +271,15 @@ Shape MakeSubdividedMesh(const ShapeReader& in) {
     return MakeCutOutMesh(in, SubdividedMesh(in.entity));
 }
 
+// Makes a shape that is no mesh, of which parts may be missing in scenes for pbrt-v4.
+template <typename Geometry>
+Shape MakeCovered(const ShapeReader& in, Geometry geometry) {
+    Shape shape{.geometry = std::move(geometry)};
+    if (in.entity.parameters.GetBool("invisible", false)) shape.alpha = FloatTexture{0};
+    shape.coverage = ReadCoverage(in.textures, in.entity);
+    return shape;
+}
+
 // Adapt makers to the table of kinds.
 template <auto Make>
 Shape MakePatches(const ShapeReader& in) {
@@ -302,9 +312,11 @@ Shape MakeSolid(const ShapeReader& in) {
                         "a mirrored quadric is inside out, as in pbrt-v3; add ReverseOrientation, "
                         "or use no mirroring transform",
                         entity.name);
-    return {.geometry = Make(entity)};
+    return MakeCovered(in, Make(entity));
 }
-Shape MakeCurves(const ShapeReader& in) { return {.geometry = ReadCurves(in.entity, in.warnings)}; }
+Shape MakeCurves(const ShapeReader& in) {
+    return MakeCovered(in, ReadCurves(in.entity, in.warnings));
+}
 
 constexpr Kind<Shape(const ShapeReader&)> kShapes[] = {
     {"plymesh", MakePlyMesh},
