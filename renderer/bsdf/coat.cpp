@@ -177,8 +177,7 @@ class ConductorWalk {
             }
             beta *= Attenuation(w);
             if (!isBaseSmooth) {
-                const float weight =
-                    isCoatSmooth ? 1 : Power(leave->pdf, BasePdf(w, out));
+                const float weight = isCoatSmooth ? 1 : Power(leave->pdf, BasePdf(w, out));
                 f += beta * BaseValue(w, out) * (weight * Attenuation(out) * leave->weight);
             }
             const auto bounce = Bounce(w, numbers);
@@ -233,8 +232,7 @@ class ConductorWalk {
     // Lets light from above through the coat.
     std::optional<Crossing> Enter(const Vec3f& w, WalkNumbers& numbers) const {
         const Vec2f u = numbers.Get2D();
-        const Vec3f h =
-            isCoatSmooth ? Vec3f(Vec3f::UnitZ()) : coat.SampleVisibleNormal(w, u);
+        const Vec3f h = isCoatSmooth ? Vec3f(Vec3f::UnitZ()) : coat.SampleVisibleNormal(w, u);
         Crossing c;
         if (!Refract(w, h, 1 / eta, &c.w) || !(c.w.z() < -kMinCosine)) return {};
         c.weight = 1 - FresnelDielectric(w.dot(h), eta);
@@ -256,8 +254,7 @@ class ConductorWalk {
     // base, are what -w and its reflection are below the coat.
     std::optional<Reflection> ReflectInside(const Vec3f& w, WalkNumbers& numbers) const {
         const Vec2f u = numbers.Get2D();
-        const Vec3f h =
-            isCoatSmooth ? Vec3f(Vec3f::UnitZ()) : coat.SampleVisibleNormal(w, u);
+        const Vec3f h = isCoatSmooth ? Vec3f(Vec3f::UnitZ()) : coat.SampleVisibleNormal(w, u);
         const Vec3f out = (2 * w.dot(h)) * h - w;
         if (!(out.z() > kMinCosine)) return {};
         float weight = FresnelDielectric(w.dot(h), 1 / eta);
@@ -268,8 +265,7 @@ class ConductorWalk {
     // Reflects at the base: w and the result both point up, towards the light's way back and on.
     std::optional<Reflection> Bounce(const Vec3f& w, WalkNumbers& numbers) const {
         const Vec2f u = numbers.Get2D();
-        const Vec3f h =
-            isBaseSmooth ? Vec3f(Vec3f::UnitZ()) : base.SampleVisibleNormal(w, u);
+        const Vec3f h = isBaseSmooth ? Vec3f(Vec3f::UnitZ()) : base.SampleVisibleNormal(w, u);
         const Vec3f out = (2 * w.dot(h)) * h - w;
         if (!(out.z() > kMinCosine)) return {};
         Reflection r{out, conductor(w.dot(h)), 0};
@@ -284,8 +280,7 @@ class ConductorWalk {
         const float h2 = h.squaredNorm();
         if (!(h2 > kMinHalf2)) return Rgb::Zero();
         const float s = base.Stretch(w), t = base.Stretch(out);
-        return conductor(0.5f * std::sqrt(h2)) *
-               (0.5f * base.D(h, h2) / (out.z() * s + w.z() * t));
+        return conductor(0.5f * std::sqrt(h2)) * (0.5f * base.D(h, h2) / (out.z() * s + w.z() * t));
     }
     float BasePdf(const Vec3f& w, const Vec3f& out) const {
         const Vec3f h = w + out;
@@ -293,8 +288,8 @@ class ConductorWalk {
         return h2 > kMinHalf2 ? 0.5f * base.D(h, h2) / (w.z() + base.Stretch(w)) : 0;
     }
 
-    // Returns f of light from wi that goes through the coat and down against `up`, for radiance, and
-    // the density with which Enter(wi) finds that direction. (pbrt-v4 weighs by that of the way
+    // Returns f of light from wi that goes through the coat and down against `up`, for radiance,
+    // and the density with which Enter(wi) finds that direction. (pbrt-v4 weighs by that of the way
     // out, so that its weights do not quite add up to 1.)
     float Leaving(const Vec3f& up, const Vec3f& wi, float* pdf) const {
         *pdf = 0;
@@ -389,8 +384,7 @@ bool CoatedConductorLobe::Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) con
     const bool ofBase = x < shares.base;
     x = ofBase ? x / shares.base : (x - shares.base) / shares.coat;
     const TrowbridgeReitz distribution = ofBase ? SeenBase(*this) : CoatOf(*this);
-    const Vec3f h =
-        distribution.SampleVisibleNormal(wo, {std::min(x, kOneMinusEpsilon), u.y()});
+    const Vec3f h = distribution.SampleVisibleNormal(wo, {std::min(x, kOneMinusEpsilon), u.y()});
     *wi = (2 * wo.dot(h)) * h - wo;
     return SameHemisphere(wo, *wi);
 }

@@ -44,7 +44,8 @@ class CoatTable {
     bool isConstant;
 };
 
-// A pointer to a row that needs no larger alignment than numbers, which would make all lobes larger.
+// A pointer to a row that needs no larger alignment than numbers, which would make all lobes
+// larger.
 class StoredRow {
   public:
     StoredRow(const CoatRow* row) { std::memcpy(bytes, &row, sizeof(row)); }
@@ -115,7 +116,7 @@ struct CoatedDiffuseLobe {
     float CoatAlbedo(float cosO) const { return FresnelDielectric(cosO, row->eta); }
 
   private:
-    float Blend(float CoatRow::* member) const {
+    float Blend(float CoatRow::*member) const {
         return blend == 0 ? row[0].*member : (1 - blend) * row[0].*member + blend * row[1].*member;
     }
     float Through(float cosine) const {
@@ -145,8 +146,8 @@ struct CoatedConductorInterface {
 // of a few walks whose random numbers come from the directions.
 struct CoatedConductorLobe {
     static constexpr bool kIsSpecular = false, kTransmits = false;
-    StoredRgb n, k;        // of the conductor relative to the coat
-    float eta, thickness;  // of the coat
+    StoredRgb n, k;                       // of the conductor relative to the coat
+    float eta, thickness;                 // of the coat
     uint16_t coatAlpha[2], baseAlpha[2];  // in units of 1 / kAlphaUnits; 0: smooth
     StoredRgb scale = Rgb(1, 1, 1);
 

@@ -216,9 +216,9 @@ constexpr bool IsMirrorLike() {
     constexpr bool isDiffuse = std::is_same_v<L, LambertianReflection> ||
                                std::is_same_v<L, OrenNayar> || std::is_same_v<L, DisneyDiffuse> ||
                                std::is_same_v<L, DiffuseExit> || std::is_same_v<L, CharlieSheen>;
-    constexpr bool reflects =
-        !L::kTransmits || std::is_same_v<L, FresnelSpecular> || std::is_same_v<L, ThinSpecular> ||
-        std::is_same_v<L, ThinDielectricLobe>;
+    constexpr bool reflects = !L::kTransmits || std::is_same_v<L, FresnelSpecular> ||
+                              std::is_same_v<L, ThinSpecular> ||
+                              std::is_same_v<L, ThinDielectricLobe>;
     return reflects && !isDiffuse && !requires { L::kIsTwoSided; };
 }
 inline bool Mirrors(const Lobe& lobe) {

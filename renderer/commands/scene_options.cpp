@@ -170,7 +170,8 @@ void AddGltfOptions(CLI::App& app, GltfOptions* view) {
 }  // namespace
 
 void AddSceneOptions(CLI::App& app, SceneOptions* options) {
-    app.add_option("SCENE", options->file, "Scene to read: pbrt-v3, pbrt-v4, or glTF 2.0 (.gltf, .glb)")
+    app.add_option("SCENE", options->file,
+                   "Scene to read: pbrt-v3, pbrt-v4, or glTF 2.0 (.gltf, .glb)")
         ->required();
     app.add_option("--pbrt", options->pbrt,
                    "Read the scene as for this version of pbrt [as its directives show]")

@@ -58,11 +58,16 @@ enum class ParameterType {
 template <>
 struct EnumNames<ParameterType> {
     static constexpr std::pair<ParameterType, const char*> all[] = {
-        {ParameterType::Integer, "integer"}, {ParameterType::Float, "float"},
-        {ParameterType::Bool, "bool"},       {ParameterType::String, "string"},
-        {ParameterType::Point2, "point2"},   {ParameterType::Vector2, "vector2"},
-        {ParameterType::Point3, "point"},    {ParameterType::Vector3, "vector"},
-        {ParameterType::Normal, "normal"},   {ParameterType::Spectrum, "rgb"},
+        {ParameterType::Integer, "integer"},
+        {ParameterType::Float, "float"},
+        {ParameterType::Bool, "bool"},
+        {ParameterType::String, "string"},
+        {ParameterType::Point2, "point2"},
+        {ParameterType::Vector2, "vector2"},
+        {ParameterType::Point3, "point"},
+        {ParameterType::Vector3, "vector"},
+        {ParameterType::Normal, "normal"},
+        {ParameterType::Spectrum, "rgb"},
         {ParameterType::Texture, "texture"},
         {ParameterType::SpectrumName, "spectrum"},
         {ParameterType::SpectrumSamples, "spectrum"},

@@ -41,7 +41,6 @@ double Planck(double wavelength, double kelvin) {
            std::expm1(kPlanck * kLight / (wavelength * kBoltzmann * kelvin));
 }
 
-
 Rgb RgbFromXyz(double x, double y, double z) {
     // The matrix of ITU-R BT.709 primaries and D65 white, in pbrt-v3's digits.
     return Rgb(float(3.240479 * x - 1.537150 * y - 0.498535 * z),

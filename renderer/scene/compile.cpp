@@ -67,6 +67,10 @@ const char* WhyNotBdpt(const Description& description, const CompileOptions& opt
     if (scene.isVolumetric)
         return scene.media.media.empty() ? "the scene has surfaces without a material"
                                          : "the scene has participating media";
+    for (const LightEntity& light : description.lights)
+        if (light.parameters.GetBool("cutsout", false) &&
+            light.parameters.Find(ParameterType::Point3, "portal"))
+            return "the sky shines through a portal";
     for (size_t i = 0; i < description.materials.size(); ++i)
         if (scene.materials.Needs(int(i)) & kScattersBelow)
             return "the scene has subsurface scattering";

@@ -64,7 +64,7 @@ Rgb LeavingLight(const BdptContext& context, const Segment& segment, const Light
     const Scene& scene = context.scene;
     Rgb sum = Rgb::Zero();
     for (const int i : scene.lights.Infinite()) {
-        const auto [L, pdf] = LeAndPdf(scene.lights[i], segment.ray.d);
+        const auto [L, pdf] = LeAndPdf(scene.lights[i], segment.ray.o, segment.ray.d);
         if (IsBlack(L)) continue;
         const double across = std::abs(double(segment.n.dot(segment.ray.d)));
         const double fewer = Sqr(across / segment.density) * segment.sum;

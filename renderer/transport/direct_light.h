@@ -65,7 +65,7 @@ Rgb SampleDirectionForLight(PathContext<Media> context, const Vertex& v, int ind
     Rgb L;
     float lightPdf;
     if (TypeOf(light) == LightType::Infinite) {
-        const Emitted found = LeAndPdf(light, sample->wi);
+        const Emitted found = LeAndPdf(light, v.Position(), sample->wi);
         if (found.pdf == 0 || !context.media.LeavesScene(context, v, sample->wi, &lightHit))
             return Rgb::Zero();
         L = found.L;

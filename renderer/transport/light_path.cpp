@@ -100,7 +100,7 @@ double DirectOverEmitted(const Scene& scene, const SubpathVertex& v, const Emitt
         density *= double(Pdf(light, v.hit.p, ray.p, ray.n)) *
                    PerArea(ray.n, d / std::sqrt(float(distance2)), distance2);
     } else if (type == LightType::Infinite) {
-        density *= double(LeAndPdf(light, -ray.w).pdf);
+        density *= double(LeAndPdf(light, v.hit.p, -ray.w).pdf);
     }
     return density / double(ray.density.origin);
 }

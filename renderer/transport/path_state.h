@@ -156,7 +156,7 @@ template <typename Recorder>
     Rgb sum = Rgb::Zero();
     if (!hit) {
         for (const int i : scene.lights.Infinite()) {
-            const auto [L, pdf] = LeAndPdf(scene.lights[i], path.ray.d);
+            const auto [L, pdf] = LeAndPdf(scene.lights[i], path.ray.o, path.ray.d);
             const Rgb weighted = L * EmissionWeight(estimator, path, i, pdf);
             recorder.FindLight(path, i, weighted);
             sum += weighted;

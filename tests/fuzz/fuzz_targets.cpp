@@ -47,6 +47,19 @@ void FuzzPbrt(std::span<const char> bytes) {
     }
 }
 
+// Reads bytes as a scene for pbrt-v4, whatever they are, and compiles its materials.
+void FuzzPbrt4(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    Warnings warnings({}, true);
+    try {
+        const Description d = ParsePbrt(path, warnings, PbrtVersion::V4);
+        const TextureTable textures(d, warnings);
+        const MaterialTable materials(d, textures, warnings);
+        const ShapeTable shapes(d, textures, warnings);
+    } catch (const Error&) {
+    }
+}
+
 void FuzzGltf(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     Warnings warnings;
@@ -255,6 +268,7 @@ void FuzzCriterionState(std::span<const char> bytes) {
 
 std::vector<NamedFuzzTarget> FuzzTargets() {
     return {{"pbrt", FuzzPbrt},
+            {"pbrt4", FuzzPbrt4},
             {"gltf", FuzzGltf},
             {"ply", FuzzPly},
             {"bsdf", FuzzBsdf},

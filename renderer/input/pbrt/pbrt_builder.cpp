@@ -187,8 +187,7 @@ void PbrtBuilder::ObjectBegin() {
     Begin(ScopeKind::Object);
     currentObject = int(description.objects.size());
     description.objects.push_back({name, loc, {}});
-    if (!objects.insert_or_assign(name, currentObject).second)
-        NameAgain("object", name);
+    if (!objects.insert_or_assign(name, currentObject).second) NameAgain("object", name);
 }
 
 void PbrtBuilder::ObjectEnd() {
@@ -331,8 +330,7 @@ void PbrtBuilder::Texture() {
         texture.isSpectrum ? EntityKind::SpectrumTexture : EntityKind::FloatTexture, texture);
     texture.worldFromTexture = StaticTransform("Texture");
     ScopedNames& names = texture.isSpectrum ? context.spectrumTextures : context.floatTextures;
-    if (names.Find(name) >= 0)
-        NameAgain("texture", name);
+    if (names.Find(name) >= 0) NameAgain("texture", name);
     names.Define(name, int(description.textures.size()));
     description.textures.push_back(std::move(texture));
 }
@@ -360,7 +358,16 @@ int PbrtBuilder::CurrentMaterial() {
 }
 
 void PbrtBuilder::Material() {
-    state.material = AddMaterial(ReadAs<MaterialEntity>(EntityKind::Material));
+    MaterialEntity material;
+    static_cast<Entity&>(material) = ReadEntity();
+    try {
+        static_cast<Entity&>(material) = Translated(EntityKind::Material, material);
+    } catch (const Error& error) {
+        if (materials.Find(material.name) < 0) throw;
+        throw Error(loc, "\"" + Printable(material.name) +
+                             "\" is the name of a material; write NamedMaterial");
+    }
+    state.material = AddMaterial(std::move(material));
 }
 
 void PbrtBuilder::MakeNamedMaterial() {
@@ -374,8 +381,7 @@ void PbrtBuilder::MakeNamedMaterial() {
     material.name = material.parameters.GetString("type", "");
     static_cast<Entity&>(material) = Translated(EntityKind::Material, material);
     const std::string name = material.materialName;
-    if (materials.Find(name) >= 0)
-        NameAgain("named material", name);
+    if (materials.Find(name) >= 0) NameAgain("named material", name);
     materials.Define(name, AddMaterial(std::move(material)));
 }
 

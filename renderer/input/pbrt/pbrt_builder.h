@@ -142,8 +142,8 @@ class PbrtBuilder {
     std::multimap<int, std::pair<int, TransformPair>> movingParts;
     std::map<std::string, TransformPair> coordinateSystems;
     std::map<std::string, FileLoc> optionsSeen;
-    std::map<std::string, int> media;                            // into Description::media
-    std::string mediumOfCamera;  // outside of pbrt-v4's camera, by name
+    std::map<std::string, int> media;  // into Description::media
+    std::string mediumOfCamera;        // outside of pbrt-v4's camera, by name
     std::optional<std::pair<std::string, FileLoc>> earlyMedium;  // the first before WorldBegin
 };
 

@@ -77,11 +77,12 @@ void PbrtBuilder::TransformTimes() { description.transformTimes = ReadNumbers<2>
 // Directives of pbrt-v4 alone.
 
 void PbrtBuilder::Attribute() {
-    constexpr std::pair<const char*, EntityKind> kTargets[] = {{"light", EntityKind::Light},
-                                                               {"material", EntityKind::Material},
-                                                               {"medium", EntityKind::Medium},
-                                                               {"shape", EntityKind::Shape},
-                                                               {"texture", EntityKind::FloatTexture}};
+    constexpr std::pair<const char*, EntityKind> kTargets[] = {
+        {"light", EntityKind::Light},
+        {"material", EntityKind::Material},
+        {"medium", EntityKind::Medium},
+        {"shape", EntityKind::Shape},
+        {"texture", EntityKind::FloatTexture}};
     const std::string target = ReadString("\"shape\", \"light\" or the like");
     const Parameters given = ReadParameters(lexer, context, warnings);
     const auto* known = std::ranges::find(kTargets, target, [](const auto& t) { return t.first; });
@@ -102,10 +103,17 @@ void PbrtBuilder::ColorSpace() {
 }
 
 void PbrtBuilder::Option() {
-    constexpr std::string_view kKnown[] = {
-        "disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
-        "displacementedgescale", "forcediffuse", "msereferenceimage", "msereferenceout",
-        "pixelstats", "rendercoordsys", "seed", "wavefront"};
+    constexpr std::string_view kKnown[] = {"disablepixeljitter",
+                                           "disabletexturefiltering",
+                                           "disablewavelengthjitter",
+                                           "displacementedgescale",
+                                           "forcediffuse",
+                                           "msereferenceimage",
+                                           "msereferenceout",
+                                           "pixelstats",
+                                           "rendercoordsys",
+                                           "seed",
+                                           "wavefront"};
     const std::string given = ReadString("the name of an option");
     lexer.Take();  // its value, one word
     std::string name;

@@ -251,8 +251,8 @@ void ReadSpectrumV4(const TypeName& type, PbrtLexer& lexer, const Token& owner,
                     const ParameterContext& context, Parameter* parameter) {
     switch (type.encoding) {
         case Encoding::Sampled:
-            parameter->type = lexer.NextIsText() ? ParameterType::SpectrumName
-                                                 : ParameterType::SpectrumSamples;
+            parameter->type =
+                lexer.NextIsText() ? ParameterType::SpectrumName : ParameterType::SpectrumSamples;
             if (parameter->type == ParameterType::SpectrumName)
                 parameter->values = ReadStrings(lexer, owner);
             else

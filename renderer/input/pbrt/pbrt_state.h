@@ -64,7 +64,7 @@ struct GraphicsState {
     int material = -1;  // into Description::materials; -1 is the default
     bool reverseOrientation = false;
     std::shared_ptr<const Entity> areaLight;
-    std::string insideMedium, outsideMedium;  // by name; empty: vacuum
+    std::string insideMedium, outsideMedium;      // by name; empty: vacuum
     std::map<EntityKind, Parameters> attributes;  // of pbrt-v4's Attribute
     Mat3f rgbFromColorSpace = Mat3f::Identity();  // of pbrt-v4's ColorSpace
     size_t floatTextureMark = 0, spectrumTextureMark = 0, materialMark = 0;

@@ -68,9 +68,8 @@ struct ParameterOf {
     PbrtVersion version;
 };
 constexpr ParameterOf kVersionsOfParameters[] = {
-    {"Kd", PbrtVersion::V3},       {"mapname", PbrtVersion::V3},
-    {"bumpmap", PbrtVersion::V3},  {"xwidth", PbrtVersion::V3},
-    {"xradius", PbrtVersion::V4},  {"reflectance", PbrtVersion::V4},
+    {"Kd", PbrtVersion::V3},       {"mapname", PbrtVersion::V3}, {"bumpmap", PbrtVersion::V3},
+    {"xwidth", PbrtVersion::V3},   {"xradius", PbrtVersion::V4}, {"reflectance", PbrtVersion::V4},
     {"normalmap", PbrtVersion::V4}};
 
 std::string_view NameOfParameter(std::string_view declaration) {
@@ -109,8 +108,8 @@ PbrtVersion DetectPbrtVersion(const std::string& file, Warnings& warnings) {
     try {
         while ((token = lexer.Take()).kind != TokenKind::End) {
             if (token.kind == TokenKind::Open || token.kind == TokenKind::Close) continue;
-            isV2 = token.kind == TokenKind::Word &&
-                   std::ranges::count(kV2Directives, token.text) > 0;
+            isV2 =
+                token.kind == TokenKind::Word && std::ranges::count(kV2Directives, token.text) > 0;
             if (isV2) break;
             hasBegun |= token.kind == TokenKind::Word && token.text == "WorldBegin";
             const Token& next = lexer.Peek();

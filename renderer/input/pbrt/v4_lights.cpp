@@ -41,7 +41,7 @@ void CopyImageLight(V4Reader* in) {
     in->SetString("mapname", file);
     in->SetBool("decode", true);
     in->Set("I", in->Name() == "goniometric" ? Color(*in, "I")
-                                            : Rgb::Constant(in->Float("scale", 1)).eval());
+                                             : Rgb::Constant(in->Float("scale", 1)).eval());
     in->Copy(ParameterType::Float, "power");
     if (in->Name() == "projection") in->Set("fov", in->Float("fov", 90));
     if (in->Name() == "goniometric") in->SetBool("equalarea", true);
@@ -61,6 +61,7 @@ void CopyInfinite(V4Reader* in) {
     }
     in->Set("L", L);
     in->Copy(ParameterType::Point3, "portal");
+    in->SetBool("cutsout", true);
 }
 
 }  // namespace
@@ -84,9 +85,10 @@ Entity TranslateLight(V4Reader in) {
     } else if (kind == "infinite") {
         CopyInfinite(&in);
     } else {
-        in.Fail(fmt::format("LightSource \"{}\" is not supported; point, distant, spot, "
-                            "goniometric, projection and infinite are",
-                            Printable(kind)));
+        in.Fail(
+            fmt::format("LightSource \"{}\" is not supported; point, distant, spot, "
+                        "goniometric, projection and infinite are",
+                        Printable(kind)));
     }
     return in.Finish(kind, "LightSource \"" + kind + "\"");
 }
@@ -104,8 +106,9 @@ Entity TranslateAreaLight(V4Reader in) {
     in.Set("L", Color(in, "L"));
     in.Copy(ParameterType::Float, "power");
     if (in.Has(ParameterType::Float, "spread")) {
-        in.Warn("\"spread\" is no parameter of pbrt-v4; it is taken as the angle of the cone, in "
-                "degrees, that each point shines into");
+        in.Warn(
+            "\"spread\" is no parameter of pbrt-v4; it is taken as the angle of the cone, in "
+            "degrees, that each point shines into");
         in.Copy(ParameterType::Float, "spread");
     }
     return in.Finish("diffuse", "AreaLightSource \"diffuse\"");

@@ -69,10 +69,9 @@ void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflecta
         in->Set("reflectance", in->Reflectance(reflectance, Rgb::Zero()));
     } else {
         const std::string eta = prefix + "eta", k = prefix + "k";
-        const auto [n, absorption] =
-            RgbOfConductor(in->Spectrum(eta.c_str()).value_or(NamedSpectrum{"metal-Cu-eta"}),
-                           in->Spectrum(k.c_str()).value_or(NamedSpectrum{"metal-Cu-k"}),
-                           in->Loc());
+        const auto [n, absorption] = RgbOfConductor(
+            in->Spectrum(eta.c_str()).value_or(NamedSpectrum{"metal-Cu-eta"}),
+            in->Spectrum(k.c_str()).value_or(NamedSpectrum{"metal-Cu-k"}), in->Loc());
         if (const TextureRef* texture = in->Texture(eta.c_str()))
             in->SetTexture("eta", *texture);
         else
@@ -211,8 +210,8 @@ Entity TranslateMaterial(V4Reader in) {
     in.String("type");
     if (const Gone* gone = std::ranges::find(kGone, std::string_view(kind), &Gone::old);
         gone != std::end(kGone))
-        in.Fail(fmt::format("{} is pbrt-v3's, in a scene for pbrt-v4; write {}", owner,
-                            gone->instead));
+        in.Fail(
+            fmt::format("{} is pbrt-v3's, in a scene for pbrt-v4; write {}", owner, gone->instead));
     if (kind.empty() || kind == "none" || kind == "interface") {
         in.Ignore({"displacement", "normalmap"});
         return in.Finish("none", owner);
@@ -222,8 +221,8 @@ Entity TranslateMaterial(V4Reader in) {
         return in.Finish(kind, owner);
     }
     constexpr std::string_view kKnown[] = {
-        "coatedconductor", "coateddiffuse", "conductor", "dielectric", "diffuse",
-        "diffusetransmission", "hair", "subsurface", "thindielectric"};
+        "coatedconductor",     "coateddiffuse", "conductor",  "dielectric",    "diffuse",
+        "diffusetransmission", "hair",          "subsurface", "thindielectric"};
     if (std::ranges::count(kKnown, kind) == 0)
         in.Fail(fmt::format("{} is not supported; {}, interface and mix are", owner,
                             fmt::join(kKnown, ", ")));

@@ -12,11 +12,12 @@ namespace lull {
 namespace {
 
 constexpr std::string_view kSensors[] = {
-    "cie1931",        "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d",
-    "canon_eos_200d_mkii", "canon_eos_5d",  "canon_eos_5d_mkii",  "canon_eos_5d_mkiii",
-    "canon_eos_5d_mkiv", "canon_eos_5ds",   "canon_eos_m",        "hasselblad_l1d_20c",
-    "nikon_d810",     "nikon_d850",         "sony_ilce_6400",     "sony_ilce_7m3",
-    "sony_ilce_7rm3", "sony_ilce_9"};
+    "cie1931",           "canon_eos_100d",      "canon_eos_1dx_mkii",
+    "canon_eos_200d",    "canon_eos_200d_mkii", "canon_eos_5d",
+    "canon_eos_5d_mkii", "canon_eos_5d_mkiii",  "canon_eos_5d_mkiv",
+    "canon_eos_5ds",     "canon_eos_m",         "hasselblad_l1d_20c",
+    "nikon_d810",        "nikon_d850",          "sony_ilce_6400",
+    "sony_ilce_7m3",     "sony_ilce_7rm3",      "sony_ilce_9"};
 
 constexpr const char* kDefaultFile = "pbrt.exr";
 
@@ -39,8 +40,9 @@ Entity TranslateFilm(V4Reader in) {
     if (std::ranges::count(kSensors, sensor) == 0)
         in.Fail(fmt::format("the sensor \"{}\" is unknown", Printable(sensor)));
     if (sensor != "cie1931")
-        in.Warn("a camera's sensor has no effect: in RGB it is that of the eye, but for 2 to 4 % "
-                "of a saturated colour");
+        in.Warn(
+            "a camera's sensor has no effect: in RGB it is that of the eye, but for 2 to 4 % "
+            "of a saturated colour");
     const float kelvin = in.Float("whitebalance", 0);
     const bool isNeutral = kelvin == 0 || (kelvin == 6500 && sensor != "cie1931");
     if (!isNeutral) {
@@ -62,7 +64,8 @@ Entity TranslateCamera(V4Reader in) {
     const std::string owner = "Camera \"" + Printable(name) + "\"";
     if (name == "realistic") {
         in.Copy(ParameterType::String, "lensfile");
-        for (const char* p : {"aperturediameter", "focusdistance"}) in.Copy(ParameterType::Float, p);
+        for (const char* p : {"aperturediameter", "focusdistance"})
+            in.Copy(ParameterType::Float, p);
         if (!in.String("aperture").empty())
             in.Warn("\"aperture\" has no effect: the stop of the lens is round");
         in.SetBool("simpleweighting", true);
@@ -96,9 +99,10 @@ Entity TranslateFilter(V4Reader in) {
         {"box", 0.5f}, {"gaussian", 1.5f}, {"mitchell", 2}, {"sinc", 4}, {"triangle", 2}};
     const Kind* kind = std::ranges::find(kKinds, std::string_view(in.Name()), &Kind::name);
     if (kind == std::end(kKinds))
-        in.Fail(fmt::format("PixelFilter \"{}\" is unknown; box, gaussian, mitchell, sinc and "
-                            "triangle are",
-                            Printable(in.Name())));
+        in.Fail(
+            fmt::format("PixelFilter \"{}\" is unknown; box, gaussian, mitchell, sinc and "
+                        "triangle are",
+                        Printable(in.Name())));
     in.Set("xwidth", in.Float("xradius", kind->radius));
     in.Set("ywidth", in.Float("yradius", kind->radius));
     if (in.Name() == "gaussian") in.Set("alpha", 0.5f / Sqr(in.Float("sigma", 0.5f)));
@@ -119,10 +123,15 @@ Entity TranslateSampler(V4Reader in) {
     }
     constexpr std::string_view kKnown[] = {"halton", "paddedsobol", "pmj02bn", "sobol", "zsobol"};
     const bool isIndependent = name == "independent";
+    if (name == "random") in.Fail("Sampler \"random\" is pbrt-v3's; pbrt-v4 has \"independent\"");
+    for (const char* gone : {"02sequence", "lowdiscrepancy", "maxmindist"})
+        if (name == gone)
+            in.Fail(fmt::format("Sampler \"{}\" is pbrt-v3's; pbrt-v4 has \"zsobol\"", name));
     if (!isIndependent && std::ranges::count(kKnown, name) == 0)
-        in.Fail(fmt::format("Sampler \"{}\" is unknown in pbrt-v4; halton, independent, "
-                            "paddedsobol, pmj02bn, sobol, stratified and zsobol are",
-                            Printable(name)));
+        in.Fail(
+            fmt::format("Sampler \"{}\" is unknown in pbrt-v4; halton, independent, "
+                        "paddedsobol, pmj02bn, sobol, stratified and zsobol are",
+                        Printable(name)));
     in.SetInt("pixelsamples", in.Int("pixelsamples", isIndependent ? 4 : 16));
     return in.Finish(isIndependent ? "random" : "sobol", "Sampler \"" + name + "\"");
 }
@@ -133,22 +142,28 @@ Entity TranslateIntegrator(V4Reader in) {
         const char* as;
         bool isSame;  // paths of the same kind
     };
-    constexpr Kind kKinds[] = {
-        {"bdpt", "bdpt", true},       {"lightpath", "bdpt", false}, {"mlt", "bdpt", false},
-        {"path", "path", true},       {"randomwalk", "path", false}, {"simplepath", "path", true},
-        {"simplevolpath", "volpath", true}, {"sppm", "bdpt", false}, {"volpath", "volpath", true}};
+    constexpr Kind kKinds[] = {{"bdpt", "bdpt", true},
+                               {"lightpath", "bdpt", false},
+                               {"mlt", "bdpt", false},
+                               {"path", "path", true},
+                               {"randomwalk", "path", false},
+                               {"simplepath", "path", true},
+                               {"simplevolpath", "volpath", true},
+                               {"sppm", "bdpt", false},
+                               {"volpath", "volpath", true}};
     const Kind* kind = std::ranges::find(kKinds, std::string_view(in.Name()), &Kind::name);
     if (kind == std::end(kKinds))
-        in.Fail(fmt::format("Integrator \"{}\" is not supported; path, volpath, bdpt, simplepath, "
-                            "simplevolpath, randomwalk, lightpath, mlt and sppm are",
-                            Printable(in.Name())));
+        in.Fail(
+            fmt::format("Integrator \"{}\" is not supported; path, volpath, bdpt, simplepath, "
+                        "simplevolpath, randomwalk, lightpath, mlt and sppm are",
+                        Printable(in.Name())));
     in.SetInt("maxdepth", in.Int("maxdepth", 5));
     if (in.Bool("regularize", false))
         in.Warn("\"regularize\" has no effect: it would blur reflections of reflections");
     if (!kind->isSame)
         in.Warn(fmt::format("Integrator \"{}\" is rendered as \"{}\"", in.Name(), kind->as));
-    in.Ignore({"lightsampler", "samplelights", "samplebsdf", "visualizestrategies",
-               "visualizeweights"});
+    in.Ignore(
+        {"lightsampler", "samplelights", "samplebsdf", "visualizestrategies", "visualizeweights"});
     if (!kind->isSame)
         for (const Parameter& parameter : in.All().All()) parameter.lookedUp = true;
     return in.Finish(kind->as, "Integrator \"" + in.Name() + "\"");

@@ -34,9 +34,9 @@ std::optional<V4Spectrum> V4Reader::Spectrum(const char* name) const {
             return BlackbodySpectrum{values[0]};
         if (type == ParameterType::Spectrum && values.size() == 3)
             return Rgb(values[0], values[1], values[2]);
-        throw Error(loc, fmt::format("\"{}\" has {} numbers; it needs {}", name, values.size(),
-                                     type == ParameterType::Blackbody ? "one, in kelvin"
-                                                                      : "three"));
+        throw Error(loc,
+                    fmt::format("\"{}\" has {} numbers; it needs {}", name, values.size(),
+                                type == ParameterType::Blackbody ? "one, in kelvin" : "three"));
     }
     return {};
 }
@@ -55,9 +55,9 @@ Rgb V4Reader::Reflectance(const char* name, const Rgb& otherwise) const {
     const Rgb color = Surface(name, otherwise);
     const bool isSrgb = context.state.rgbFromColorSpace == Mat3f::Identity();
     if (isSrgb && Has(ParameterType::Spectrum, name) && (color > 1).any())
-        throw Error(from.parameters.Find(ParameterType::Spectrum, name)->loc,
-                    fmt::format("\"rgb {}\" has a part above 1; a reflectance lies between 0 and 1",
-                                name));
+        throw Error(
+            from.parameters.Find(ParameterType::Spectrum, name)->loc,
+            fmt::format("\"rgb {}\" has a part above 1; a reflectance lies between 0 and 1", name));
     return color.max(0.f).min(1.f);
 }
 

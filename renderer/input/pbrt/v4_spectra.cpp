@@ -77,9 +77,9 @@ struct NamedGlass {
     float index;
 };
 constexpr NamedGlass kGlasses[] = {
-    {"glass-BK7", 1.51680f},  {"glass-BAF10", 1.67000f}, {"glass-FK51A", 1.48656f},
+    {"glass-BK7", 1.51680f},   {"glass-BAF10", 1.67000f}, {"glass-FK51A", 1.48656f},
     {"glass-LASF9", 1.85027f}, {"glass-F5", 1.67272f},    {"glass-SF5", 1.67272f},
-    {"glass-F10", 1.72828f},  {"glass-SF10", 1.72828f},  {"glass-F11", 1.78474f},
+    {"glass-F10", 1.72828f},   {"glass-SF10", 1.72828f},  {"glass-F11", 1.78474f},
     {"glass-SF11", 1.78474f},
 };
 
@@ -165,8 +165,8 @@ Rgb RgbOfLight(const V4Spectrum& spectrum, const FileLoc& loc) {
     }
     Rgb rgb;
     if (const auto* sampled = std::get_if<SampledSpectrum>(&spectrum)) {
-        const Eigen::Vector3d xyz = Xyz([&](double nm) { return sampled->At(nm); },
-                                        [](int) { return 1.; });
+        const Eigen::Vector3d xyz =
+            Xyz([&](double nm) { return sampled->At(nm); }, [](int) { return 1.; });
         if (!(xyz.y() > 0)) return Rgb::Zero();
         rgb = RgbFromXyz(xyz.x() / xyz.y(), 1, xyz.z() / xyz.y());
     } else {

@@ -168,8 +168,8 @@ Entity TranslatePatches(V4Reader in) {
         Patch& patch = patches[i / 4];
         const int index = indices[i];
         if (index < 0 || size_t(index) >= p.size())
-            in.Fail(fmt::format("index {} is out of range: the mesh has {} vertices", index,
-                                p.size()));
+            in.Fail(
+                fmt::format("index {} is out of range: the mesh has {} vertices", index, p.size()));
         patch.p[i % 4] = p[size_t(index)];
         if (hasNormals) patch.n[i % 4] = n[size_t(index)];
         if (uv.size() == p.size()) patch.uv[i % 4] = uv[size_t(index)];
@@ -242,16 +242,16 @@ Entity TranslateShape(V4Reader in) {
     } else if (kind == "plymesh") {
         copy(ParameterType::String, {"filename"});
         if (in.Texture("displacement"))
-            in.Fail("\"displacement\" of a plymesh is not supported; displace the mesh itself, or "
-                    "use the material's \"displacement\", which tilts its normals");
+            in.Fail(
+                "\"displacement\" of a plymesh is not supported; displace the mesh itself, or "
+                "use the material's \"displacement\", which tilts its normals");
         in.Ignore({"edgelength"});
     } else if (kind == "loopsubdiv") {
         copy(ParameterType::Integer, {"levels", "indices"});
         copy(ParameterType::Point3, {"P"});
         copy(ParameterType::String, {"scheme"});
     } else if (kind == "sphere" || kind == "cylinder" || kind == "disk") {
-        copy(ParameterType::Float,
-             {"radius", "zmin", "zmax", "phimax", "height", "innerradius"});
+        copy(ParameterType::Float, {"radius", "zmin", "zmax", "phimax", "height", "innerradius"});
     } else if (kind == "curve") {
         copy(ParameterType::Point3, {"P"});
         copy(ParameterType::Normal, {"N"});
@@ -259,9 +259,10 @@ Entity TranslateShape(V4Reader in) {
         copy(ParameterType::Integer, {"degree", "splitdepth"});
         copy(ParameterType::Float, {"width", "width0", "width1", "splitdepth"});
     } else {
-        in.Fail(fmt::format("Shape \"{}\" is not supported in pbrt-v4; sphere, cylinder, disk, "
-                            "trianglemesh, bilinearmesh, loopsubdiv, plymesh and curve are",
-                            Printable(kind)));
+        in.Fail(
+            fmt::format("Shape \"{}\" is not supported in pbrt-v4; sphere, cylinder, disk, "
+                        "trianglemesh, bilinearmesh, loopsubdiv, plymesh and curve are",
+                        Printable(kind)));
     }
     return in.Finish(kind, "Shape \"" + kind + "\"");
 }

@@ -20,7 +20,8 @@ void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings*
         std::copy(window.begin(), window.end(), crop.begin());
     }
     const auto bounds = entity.parameters.GetInts("pixelbounds");  // pbrt-v4's: x0 x1 y0 y1
-    if (bounds.size() == 4 && entity.parameters.GetFloats(ParameterType::Float, "cropwindow").empty())
+    if (bounds.size() == 4 &&
+        entity.parameters.GetFloats(ParameterType::Float, "cropwindow").empty())
         for (int k = 0; k < 4; ++k)
             crop[size_t(k)] = (float(bounds[size_t(k)]) - 1e-3f) / float(film->resolution[k / 2]);
     if (overrides.crop) crop = *overrides.crop;

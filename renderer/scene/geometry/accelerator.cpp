@@ -153,12 +153,12 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
             [&]<typename S>(const S&) {
                 if constexpr (!std::is_same_v<S, Mesh>) {
                     rtcSetGeometryBoundsFunction(geometry, BoundsCallback<S>, nullptr);
-                    rtcSetGeometryIntersectFunction(
-                        geometry, shape.coverage     ? CoveredIntersectCallback<S>
-                                  : shape.hiddenFrom ? SeenIntersectCallback<S>
-                                                     : IntersectCallback<S>);
+                    rtcSetGeometryIntersectFunction(geometry,
+                                                    shape.coverage     ? CoveredIntersectCallback<S>
+                                                    : shape.hiddenFrom ? SeenIntersectCallback<S>
+                                                                       : IntersectCallback<S>);
                     rtcSetGeometryOccludedFunction(geometry,
-                                                   shape.coverage ? CoveredOccludedCallback<S>
+                                                   shape.coverage     ? CoveredOccludedCallback<S>
                                                    : shape.hiddenFrom ? SeenOccludedCallback<S>
                                                                       : OccludedCallback<S>);
                 }

@@ -115,7 +115,7 @@ struct Shape {
     int firstLight = -1;  // of its lights, one a primitive; -1: emits nothing
     std::optional<FloatTexture> alpha{}, shadowAlpha{};  // 0 there: not hit (by shadow rays)
     std::optional<Coverage> coverage{};
-    unsigned hiddenFrom = 0;                             // kinds of rays that pass it
+    unsigned hiddenFrom = 0;  // kinds of rays that pass it
 
     bool IsMesh() const { return std::holds_alternative<Mesh>(geometry); }
     bool IsInvisible() const { return alpha && alpha->IsConstant() && alpha->constant == 0; }

@@ -105,6 +105,43 @@ Rgb EnvironmentMap::MeanTexel() const {
     return scale * (sum / (double(image.width) * image.height)).cast<float>();
 }
 
+Portal Portal::Make(std::span<const float> corners, const FileLoc& loc) {
+    const auto fail = [&] {
+        throw Error(loc, "\"portal\" needs the four corners of a rectangle, in their order");
+    };
+    if (corners.size() != 12) fail();
+    const auto at = [&](size_t i) {
+        return Vec3f(corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]);
+    };
+    Portal portal{at(0), at(3) - at(0), at(1) - at(0), {}, 0};
+    const float a = portal.x.norm(), b = portal.y.norm();
+    portal.n = portal.x.cross(portal.y);
+    portal.area = portal.n.norm();
+    const bool isSquare = std::abs(portal.x.dot(portal.y)) <= 1e-3f * a * b;
+    const bool isParallel = (at(2) - at(1) - portal.x).norm() <= 1e-3f * (a + b);
+    if (!(portal.area > 0) || !isSquare || !isParallel) fail();
+    portal.n /= portal.area;
+    return portal;
+}
+
+std::optional<std::pair<Vec3f, float>> Portal::Sample(const Vec3f& from, const Vec2f& u) const {
+    const Vec3f d = corner + u.x() * x + u.y() * y - from;
+    const float distance2 = d.squaredNorm(), along = d.dot(n);
+    if (!(along > 0) || !(distance2 < kInfinity)) return {};
+    const float distance = std::sqrt(distance2);
+    return std::pair(Vec3f(d / distance), distance2 * distance / (area * along));
+}
+
+float Portal::Pdf(const Vec3f& from, const Vec3f& w) const {
+    const float cosine = w.dot(n), height = (corner - from).dot(n);
+    if (!(cosine > 0 && height > 0)) return 0;
+    const float t = height / cosine;
+    const Vec3f p = from + t * w - corner;
+    const float s = p.dot(x) / x.squaredNorm(), v = p.dot(y) / y.squaredNorm();
+    if (!(s >= 0 && s <= 1 && v >= 0 && v <= 1)) return 0;
+    return t * t / (area * cosine);
+}
+
 namespace {
 
 // A square soft box: where it hangs, in degrees, to the right of the camera and above the horizon,
@@ -208,9 +245,9 @@ MapProjection ProjectionOf(const LightReader& in, const Image& image, const std:
                     fmt::format("the sky \"{}\" has {}x{} pixels; it has to be square, of equal "
                                 "areas, or twice as wide as high, of latitude and longitude",
                                 file, image.width, image.height));
-    in.warnings.Add(in.entity.loc,
-                    "a sky that is twice as wide as high is taken for one of latitude and longitude",
-                    file);
+    in.warnings.Add(
+        in.entity.loc,
+        "a sky that is twice as wide as high is taken for one of latitude and longitude", file);
     return MapProjection::LatitudeLongitude;
 }
 
@@ -250,8 +287,13 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
     const Rgb L = LightColor(entity, "L", in.warnings);
     const std::string file = params.GetString("mapname", "");
     light.constant = L;
-    if (params.Find(ParameterType::Point3, "portal"))
-        in.warnings.Add(entity.loc, "portals are not used", "the mean of the image is the same");
+    if (const auto corners = params.GetFloats(ParameterType::Point3, "portal"); !corners.empty()) {
+        if (params.GetBool("cutsout", false))
+            light.portal = Portal::Make(corners, entity.loc);
+        else
+            in.warnings.Add(entity.loc, "portals are not used",
+                            "the mean of the image is the same");
+    }
     if (params.GetBool("studio", false)) {
         light.map = std::make_shared<const EnvironmentMap>(MakeStudio(), L, in.isCompensated);
         return light;
@@ -283,7 +325,17 @@ InfiniteLight InfiniteLight::Make(const LightReader& in) {
 }
 
 // A constant light is sampled as pbrt-v3 does, as a map of one texel: evenly in both coordinates.
-std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) const {
+std::optional<LightSample> InfiniteLight::Sample(const Vec3f& from, const Vec2f& u) const {
+    if (portal) [[unlikely]] {
+        const auto sample = portal->Sample(from, u);
+        if (!sample) return {};
+        return LightSample{.L = LeAndPdf(from, sample->first).L,
+                           .wi = sample->first,
+                           .pdf = sample->second,
+                           .isDelta = false,
+                           .isHidden = false,
+                           .isAtInfinity = true};
+    }
     float mapPdf = 1;
     const Vec2f st = map ? map->Sample(u, &mapPdf) : u;
     Vec3f local;
@@ -310,8 +362,15 @@ std::optional<LightSample> InfiniteLight::Sample(const Vec3f&, const Vec2f& u) c
                        .p = {st.x(), st.y(), 0}};
 }
 
-Emitted InfiniteLight::LeAndPdf(const Vec3f& w) const {
+Emitted InfiniteLight::LeAndPdf(const Vec3f& from, const Vec3f& w) const {
     const Vec3f local = (lightFromWorld * w).normalized();
+    if (portal) [[unlikely]] {
+        const float pdf = portal->Pdf(from, w);
+        if (pdf == 0) return {Rgb::Zero(), 0};
+        if (!map) return {constant, pdf};
+        const bool isEqualArea = map->Projection() == MapProjection::EqualArea;
+        return {map->Radiance(isEqualArea ? EqualAreaSquareOf(local) : CoordinatesOf(local)), pdf};
+    }
     if (map && map->Projection() == MapProjection::EqualArea) {
         const Vec2f st = EqualAreaSquareOf(local);
         return {map->Radiance(st), map->Pdf(st) / (4 * kPi) * Stretch(w)};

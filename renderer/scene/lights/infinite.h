@@ -1,6 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include "renderer/base/block_distribution.h"
 #include "renderer/image/image.h"
@@ -50,6 +53,21 @@ class EnvironmentMap {
     BlockDistribution cells;
 };
 
+// A rectangle that the light of a sky comes through, sampled evenly by area.
+struct Portal {
+    Vec3f corner, x, y;  // world; the edges are square to each other
+    Vec3f n;             // unit, along which rays leave the scene
+    float area;
+
+    // Reads four corners. Throws Error at `loc` unless they are those of a rectangle.
+    static Portal Make(std::span<const float> corners, const FileLoc& loc);
+
+    // Returns a unit direction that leaves through it, and the density, 1/sr; nothing from behind.
+    std::optional<std::pair<Vec3f, float>> Sample(const Vec3f& from, const Vec2f& u) const;
+    // Returns the density with which Sample finds w: 0 where w does not leave through it.
+    float Pdf(const Vec3f& from, const Vec3f& w) const;
+};
+
 // The light of a photographer's studio, for scenes that have none of their own.
 
 // Returns a latitude-longitude map: a grey backdrop, brighter above, and three soft boxes. Its +z
@@ -70,7 +88,8 @@ class InfiniteLight {
     static InfiniteLight Make(const LightReader&);
 
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    Emitted LeAndPdf(const Vec3f& w) const;
+    Emitted LeAndPdf(const Vec3f& from, const Vec3f& w) const;
+    bool HasPortal() const { return portal.has_value(); }
     // Returns the radiance of a sample that is on the map.
     Rgb Radiance(const LightSample& sample) const { return map->Radiance(sample.p.head<2>()); }
 
@@ -87,6 +106,7 @@ class InfiniteLight {
     float stretch = 0;           // |determinant| of lightFromWorld; 0: the transform scales evenly
     Rgb constant = Rgb::Ones();  // where there is no map
     std::shared_ptr<const EnvironmentMap> map;  // null: none
+    std::optional<Portal> portal;
 };
 
 // Lights in one direction, without size or with.
@@ -120,7 +140,7 @@ struct SunLight {
     SunLight(const DistantLight& parallel, double angle);
 
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    Emitted LeAndPdf(const Vec3f& direction) const {
+    Emitted LeAndPdf(const Vec3f&, const Vec3f& direction) const {
         // Of nearly parallel vectors, the product is less precise than the difference.
         if ((direction - w).squaredNorm() > 2 * height) return {Rgb::Zero(), 0};
         return {L, 1 / solidAngle};

@@ -21,9 +21,9 @@
 //
 // and one of type Infinite, which rays reach when they leave the scene,
 //
-//     Emitted LeAndPdf(const Vec3f& w) const
-//         returns the radiance that arrives from direction w (unit, world), and the density, 1/sr,
-//         with which Sample finds w.
+//     Emitted LeAndPdf(const Vec3f& from, const Vec3f& w) const
+//         returns the radiance that arrives at `from` from direction w (unit, world), and the
+//         density, 1/sr, with which Sample finds w.
 //
 // Light that leaves a light, for paths that start there, is sampled in light_emission.cpp: by type,
 // of one with a place (DeltaPosition) by its point `Vec3f p` and the cone of directions that it
@@ -65,9 +65,9 @@ inline float Pdf(const Light& light, const Vec3f& from, const Vec3f& p, const Ve
 }
 
 // The function of kinds of type Infinite.
-inline Emitted LeAndPdf(const Light& light, const Vec3f& w) {
+inline Emitted LeAndPdf(const Light& light, const Vec3f& from, const Vec3f& w) {
     return Visit(light, [&]<typename L>(const L& l) -> Emitted {
-        if constexpr (L::kType == LightType::Infinite) return l.LeAndPdf(w);
+        if constexpr (L::kType == LightType::Infinite) return l.LeAndPdf(from, w);
         return {Rgb::Zero(), 0};
     });
 }

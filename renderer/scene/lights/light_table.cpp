@@ -113,8 +113,7 @@ bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
 std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
                                                    const Mat4d& worldFromShape) {
     if (entity.name == kAreaSpot)
-        return std::make_unique<const EmissionProfile>(
-            SpotCone::Make(entity, worldFromShape));
+        return std::make_unique<const EmissionProfile>(SpotCone::Make(entity, worldFromShape));
     const float given = entity.parameters.GetFloat("spread", 180);
     const auto degrees = InRange(double(given), 0, 180);
     if (!degrees || !(*degrees > 0))

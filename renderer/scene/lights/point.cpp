@@ -108,8 +108,7 @@ SpotLight SpotLight::Make(const LightReader& in) {
     const Vec3f from = in.entity.parameters.GetPoint3("from", Vec3f::Zero());
     const Rgb I = LightColor(in.entity, "I", in.warnings);
     const Mat4d& worldFromLight = in.entity.worldFromLight;
-    return {TransformPoint(worldFromLight, from), I,
-            SpotCone::Make(in.entity, worldFromLight)};
+    return {TransformPoint(worldFromLight, from), I, SpotCone::Make(in.entity, worldFromLight)};
 }
 
 std::optional<LightSample> SpotLight::Sample(const Vec3f& from, const Vec2f&) const {

@@ -69,9 +69,8 @@ ConductorInterface ConductorOf(const Rgb& reflectance) {
 }
 
 void Metal::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const ConductorInterface interface =
-        reflectance ? ConductorOf(in.Color(*reflectance))
-                    : ConductorInterface{in.Raw(eta), in.Raw(k)};
+    const ConductorInterface interface = reflectance ? ConductorOf(in.Color(*reflectance))
+                                                     : ConductorInterface{in.Raw(eta), in.Raw(k)};
     bool isSmooth;
     const TrowbridgeReitz distribution = roughness.Evaluate(in, &isSmooth);
     if (mirrors && isSmooth)

@@ -58,7 +58,7 @@ void AddDielectricLobes(const Rgb& reflected, const Rgb& transmitted, float eta,
 
 // Represents a rough conductor.
 struct Metal {
-    SpectrumTexture eta, k;  // complex index of refraction; copper's by default
+    SpectrumTexture eta, k;                      // complex index of refraction; copper's by default
     std::optional<SpectrumTexture> reflectance;  // head-on, instead
     Roughness roughness;
     bool mirrors;  // where the roughness is 0, as in pbrt-v4; else there is always some

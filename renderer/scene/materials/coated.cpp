@@ -49,10 +49,8 @@ void CoatedDiffuse::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     float blend;
     const float alpha = isSmooth ? 0 : std::sqrt(distribution.AlphaX() * distribution.AlphaY());
     const CoatRow* row = table->RowOf(alpha, &blend);
-    if (isSmooth)
-        bsdf->Add(SpecularReflection<CoatInterface>{Rgb(1, 1, 1), CoatInterface{eta}});
-    bsdf->Add(
-        CoatedDiffuseLobe{Rgb(in.Color(reflectance).min(1.f)), distribution, row, blend});
+    if (isSmooth) bsdf->Add(SpecularReflection<CoatInterface>{Rgb(1, 1, 1), CoatInterface{eta}});
+    bsdf->Add(CoatedDiffuseLobe{Rgb(in.Color(reflectance).min(1.f)), distribution, row, blend});
 }
 
 CoatedConductor::CoatedConductor(const MaterialReader& in)
@@ -83,8 +81,12 @@ void CoatedConductor::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     }
     if (isCoatSmooth)
         bsdf->Add(SpecularReflection<CoatInterface>{Rgb(1, 1, 1), CoatInterface{index}});
-    CoatedConductorLobe lobe{.n = n, .k = absorption, .eta = index, .thickness = thickness,
-                             .coatAlpha = {0, 0}, .baseAlpha = {0, 0}};
+    CoatedConductorLobe lobe{.n = n,
+                             .k = absorption,
+                             .eta = index,
+                             .thickness = thickness,
+                             .coatAlpha = {0, 0},
+                             .baseAlpha = {0, 0}};
     const auto store = [](bool isSmooth, const TrowbridgeReitz& d, uint16_t* to) {
         if (isSmooth) return;
         to[0] = CoatedConductorLobe::StoreAlpha(std::max(d.AlphaX(), kLeastAlpha));

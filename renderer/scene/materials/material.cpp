@@ -199,8 +199,7 @@ SurfaceTilt MaterialReader::BumpMap() const {
     SurfaceTilt tilt;
     tilt.bump = FloatOrNone("bumpmap");
     if (tilt.bump && tilt.bump->IsConstant() && tilt.bump->constant == 0) tilt.bump.reset();
-    if (entity.parameters.GetTexture("normals"))
-        tilt.normalMap = NormalMap{Spectrum("normals", 1)};
+    if (entity.parameters.GetTexture("normals")) tilt.normalMap = NormalMap{Spectrum("normals", 1)};
     return tilt;
 }
 
@@ -254,10 +253,10 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
         CoordinateSystem(frame.n, &frame.s, &frame.t);
     }
     Bsdf bsdf(frame, hit->n, 1, material.turnsNormal);
-    AddLobes(material,
-             MaterialInputs{
-                   textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy, &hit->n}, materials, hit},
-             &bsdf);
+    AddLobes(
+        material,
+        MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy, &hit->n}, materials, hit},
+        &bsdf);
     return bsdf;
 }
 
@@ -306,8 +305,8 @@ MaterialTraits Mix::Traits(const MaterialReader& in) const {
 }
 
 void Mix::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    const Rgb first = share ? Rgb::Constant(std::clamp(in(*share), 0.f, 1.f)).eval()
-                            : in.Color(amount);
+    const Rgb first =
+        share ? Rgb::Constant(std::clamp(in(*share), 0.f, 1.f)).eval() : in.Color(amount);
     const Rgb second = (1 - first).max(0.f);
     // As in pbrt-v3 a lobe scaled to black stays among those to choose from.
     const int begin = bsdf->LobeCount(LobeSet::All);

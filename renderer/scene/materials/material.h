@@ -42,7 +42,7 @@ class MaterialTable {
 // Represents a weighted sum of two other materials.
 
 struct Mix {
-    SpectrumTexture amount;  // of the first; the second gets 1 - amount
+    SpectrumTexture amount;             // of the first; the second gets 1 - amount
     std::optional<FloatTexture> share;  // the amount where it is a number, as in pbrt-v4
     std::array<int, 2> operands;        // into the table, before this one
 

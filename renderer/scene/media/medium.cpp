@@ -56,10 +56,44 @@ float GridMedium::Density(const Vec3f& p) const {
     return sum;
 }
 
+namespace {
+
+// Where colours differ, collisions are those of the greatest extinction, and others weigh in.
+Rgb TintedTransmittance(const GridMedium& grid, const Crossing& crossing, float majorant,
+                        Sampler& sampler) {
+    Rgb transmittance = Rgb::Ones();
+    for (float t = crossing.tMin;;) {
+        t = NextCollision(t, majorant, sampler);
+        if (!(t < crossing.tMax)) return transmittance;
+        const float share = std::max(0.f, grid.Density(crossing(t)) / grid.maxDensity);
+        transmittance *= 1 - *grid.tint * share;
+        if (const float most = transmittance.maxCoeff(); most < 0.1f) {
+            const float q = std::max(0.05f, 1 - most);
+            if (sampler.Get1D() < q) return Rgb::Zero();
+            transmittance /= 1 - q;
+        }
+    }
+}
+
+MediumSample SampleTinted(const GridMedium& grid, const Crossing& crossing, float majorant,
+                          Sampler& sampler) {
+    Rgb weight = Rgb::Ones();
+    for (float t = crossing.tMin;;) {
+        t = NextCollision(t, majorant, sampler);
+        if (!(t < crossing.tMax)) return {.weight = weight};
+        const float share = std::clamp(grid.Density(crossing(t)) / grid.maxDensity, 0.f, 1.f);
+        if (sampler.Get1D() < share) return {.t = t, .weight = weight * grid.albedo};
+        weight *= (1 - *grid.tint * share) / (1 - share);
+    }
+}
+
+}  // namespace
+
 Rgb GridMedium::Transmittance(const Ray& worldRay, Sampler& sampler) const {
     const float majorant = sigmaT * maxDensity;
     if (!(majorant > 0)) return Rgb::Ones();
     const Crossing crossing(gridFromWorld, worldRay);
+    if (tint) return TintedTransmittance(*this, crossing, majorant, sampler);
     float transmittance = 1;
     for (float t = crossing.tMin;;) {
         t = NextCollision(t, majorant, sampler);
@@ -77,6 +111,7 @@ MediumSample GridMedium::Sample(const Ray& worldRay, Sampler& sampler) const {
     const float majorant = sigmaT * maxDensity;
     if (!(majorant > 0)) return {};
     const Crossing crossing(gridFromWorld, worldRay);
+    if (tint) return SampleTinted(*this, crossing, majorant, sampler);
     for (float t = crossing.tMin;;) {
         t = NextCollision(t, majorant, sampler);
         if (!(t < crossing.tMax)) return {};

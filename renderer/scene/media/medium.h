@@ -53,9 +53,10 @@ struct HomogeneousMedium {
 // Fills the unit cube of its own space; outside there is nothing. The densities are at the centres
 // of cells, and 0 beyond the outermost.
 struct GridMedium {
-    float sigmaT;  // extinction per unit of length in the world where the density is 1
-    Rgb albedo;
-    float g;  // of the phase function
+    float sigmaT;  // greatest extinction per unit of length in the world where the density is 1
+    Rgb albedo;    // scattering over that
+    std::optional<Rgb> tint = {};  // extinction over that, where colours differ
+    float g;                       // of the phase function
     Vec3i size = Vec3i::Ones();
     std::vector<float> density;  // x fastest, then y
     float maxDensity = 0;

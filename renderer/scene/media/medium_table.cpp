@@ -69,12 +69,11 @@ GridMedium MakeGrid(const MediumEntity& entity, const Rgb& sigmaA, const Rgb& si
     const Parameters& params = entity.parameters;
     GridMedium grid;
     const Rgb sigmaT = sigmaA + sigmaS;
-    if (sigmaT.maxCoeff() - sigmaT.minCoeff() > 1e-5f * sigmaT.maxCoeff())
-        throw Error(entity.loc, fmt::format("medium \"{}\": \"sigma_a\" plus \"sigma_s\" of a "
-                                            "heterogeneous medium has to be the same in red, green "
-                                            "and blue",
-                                            Printable(entity.mediumName)));
     grid.sigmaT = sigmaT.x();
+    if (sigmaT.maxCoeff() - sigmaT.minCoeff() > 1e-5f * sigmaT.maxCoeff()) {
+        grid.sigmaT = sigmaT.maxCoeff();
+        grid.tint = sigmaT / grid.sigmaT;
+    }
     grid.albedo = grid.sigmaT > 0 ? Rgb(sigmaS / grid.sigmaT) : Rgb(Rgb::Zero());
     grid.g = g;
     ReadDensity(entity, &grid);

@@ -98,7 +98,11 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
     const TextureChannels channels = GetChannels(input, std::is_same_v<T, float>);
     const Wrap wrap = GetWrap(input, "wrap");
     const Wrap wrapT = parameters.GetString("wrapt", "").empty() ? wrap : GetWrap(input, "wrapt");
-    ImageMap<T> map{MakeMapping2D(input), nullptr, parameters.GetFloat("scale", 1), wrap, wrapT,
+    ImageMap<T> map{MakeMapping2D(input),
+                    nullptr,
+                    parameters.GetFloat("scale", 1),
+                    wrap,
+                    wrapT,
                     parameters.GetBool("invert", false)};
     parameters.GetBool("trilinear", false);  // known, without effect
     parameters.GetFloat("maxanisotropy", 8);
@@ -124,9 +128,9 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
             entity.loc, "values of a texture that are not finite count as 0",
             fmt::format("{} of \"{}\"", map.image->notFinite, Printable(filename, 200)));
     if (map.image->uniform && map.wrap != Wrap::Black && map.wrapT != Wrap::Black)
-        return TextureHandle<T>{
-            FromRgb<T>(map.inverts ? Inverted(Rgb(map.scale * *map.image->uniform))
-                                   : Rgb(map.scale * *map.image->uniform))};
+        return TextureHandle<T>{FromRgb<T>(map.inverts
+                                               ? Inverted(Rgb(map.scale * *map.image->uniform))
+                                               : Rgb(map.scale * *map.image->uniform))};
     return map;
 }
 

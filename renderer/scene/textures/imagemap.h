@@ -130,7 +130,8 @@ inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrap) {
     });
 }
 
-// Returns the texel at a point of the unit square, its first row at st.y = 0; linear, alpha ignored.
+// Returns the texel at a point of the unit square, its first row at st.y = 0; linear, alpha
+// ignored.
 inline Rgb NearestRgb(const Image& image, const Vec2f& st) {
     const auto index = [](float s, int n) { return std::clamp(int(s * float(n)), 0, n - 1); };
     return Visit(image.texels, [&](const auto& texels) {
@@ -146,7 +147,7 @@ struct ImageMap {
     Mapping2D mapping;
     std::shared_ptr<const TextureImage> image;  // never null; grey where T is float
     float scale;
-    Wrap wrap, wrapT;     // across and up the image
+    Wrap wrap, wrapT;      // across and up the image
     bool inverts = false;  // to 1 - scale * texel, at least 0
 };
 

@@ -25,7 +25,7 @@ class PbrtErrors : public testing::Test {
 TEST_F(PbrtErrors, Structure) {
     Expect("", "scene.pbrt:1: the file ends without WorldBegin");
     Expect("# nothing\n\n", "scene.pbrt:3: the file ends without WorldBegin");
-    Expect("WorldBegin\n",
+    Expect("Film \"image\" WorldBegin\n",
            "scene.pbrt:2: the file ends without WorldEnd for the WorldBegin of "
            "line 1");
     Expect("WorldBegin WorldEnd\nWorldBegin", "scene.pbrt:2: 'WorldBegin' after WorldEnd");

@@ -189,7 +189,7 @@ TEST(SunLight, HasTheIrradianceOfAParallelLight) {
             ASSERT_TRUE(s && !s->isDelta && s->isAtInfinity);
             facing += (s->L * (s->wi.dot(kTowardsSun) / s->pdf)).cast<double>() / (n * n);
             inclined += (s->L * (s->wi.z() / s->pdf)).cast<double>() / (n * n);
-            const Emitted found = LeAndPdf(test.scene->lights[0], s->wi);
+            const Emitted found = LeAndPdf(test.scene->lights[0], Vec3f::Zero(), s->wi);
             unknown += found.pdf != s->pdf || (found.L != s->L).any();
         }
         EXPECT_LE(unknown, angle < 0.1 ? n : 0) << angle;
@@ -235,8 +235,8 @@ TEST(SunLight, IsADisc) {
                 outside += counts[i];
         EXPECT_GT(test::UpperGamma(63 / 2., chi2 / 2), 1e-3) << angle;
         EXPECT_LE(outside, kSamples / 1000) << angle;
-        EXPECT_GT(LeAndPdf(test.scene->lights[0], kTowardsSun).pdf, 0);
-        EXPECT_EQ(LeAndPdf(test.scene->lights[0], -kTowardsSun).pdf, 0);
+        EXPECT_GT(LeAndPdf(test.scene->lights[0], Vec3f::Zero(), kTowardsSun).pdf, 0);
+        EXPECT_EQ(LeAndPdf(test.scene->lights[0], Vec3f::Zero(), -kTowardsSun).pdf, 0);
     }
 }
 

@@ -17,7 +17,7 @@ std::pair<Rgb, float> Arriving(const Scene& scene, const Vec3f& from, const Vec3
     Hit hit;
     if (!scene.accelerator.Intersect(ray, &hit)) {
         if (scene.lights.Infinite().empty()) return {Rgb::Zero(), 0};
-        const Emitted found = LeAndPdf(scene.lights[scene.lights.Infinite()[0]], w);
+        const Emitted found = LeAndPdf(scene.lights[scene.lights.Infinite()[0]], Vec3f::Zero(), w);
         return {found.L, found.pdf};
     }
     const int index = scene.shapes.LightAt(hit);
@@ -250,7 +250,8 @@ TEST(Skies, LoseWhatIsNegativeOrNotFiniteAlone) {
     const Rgb expected[] = {{.5f, .25f, 0}, {.5f, .25f, 0}, {0, 0, 0}, {.5f, .25f, 1}};
     for (int i = 0; i < 4; ++i) {
         const float phi = (float(i) + .5f) * kPi / 2;
-        const Rgb L = LeAndPdf(scene->lights[0], Vec3f(std::cos(phi), std::sin(phi), 0)).L;
+        const Rgb L =
+            LeAndPdf(scene->lights[0], Vec3f::Zero(), Vec3f(std::cos(phi), std::sin(phi), 0)).L;
         EXPECT_LT((L - expected[i]).abs().maxCoeff(), 1e-3f) << i;
     }
     EXPECT_EQ(warnings.Counts().at("environment map texel that is not finite or negative"), 2);

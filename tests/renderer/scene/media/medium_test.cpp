@@ -198,7 +198,7 @@ TEST(MediumTable, RefusesNonsense) {
         Contains(error("homogeneous", {RgbParameter("sigma_s", 0, kInfinity, 0)}), "\"sigma_s\""));
     for (const float g : {1.001f, -2.f, std::nanf("")})
         EXPECT_TRUE(Contains(error("homogeneous", {FloatParameter("g", {g})}), "\"g\""));
-    EXPECT_TRUE(Contains(error("heterogeneous", {}), "has to be the same in red"));
+    EXPECT_TRUE(Contains(error("heterogeneous", {}), "0 values"));
     EXPECT_TRUE(Contains(error("heterogeneous", GridParameters({1, 2})), "2 values"));
     for (const float densest : {1e8f, 1e30f}) {
         std::vector<float> density(12, 0.f);
