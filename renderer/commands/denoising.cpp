@@ -16,8 +16,8 @@ void KeepDecisions(const RenderResult& result, DenoisedImage* denoised) {
         const BlockResult& block = result.blocks[i];
         std::optional<VisibleError>& error = denoised->blocks[i];
         if (!error || !block.block.stoppedByVote || block.decisions.empty()) continue;
-        error->upper = block.decisions.back().decision.value;
-        error->estimate = std::min(error->estimate, error->upper);
+        error->estimate = block.decisions.back().decision.value;
+        error->upper = std::max(error->upper, error->estimate);
     }
 }
 

@@ -101,6 +101,24 @@ struct DenoiserResults {
     std::vector<ExrChannel> halves;  // what can be denoised later
 };
 
+// Denoises each eye of a pair by itself, so that neither sees the other at the seam.
+DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const ProgressStyle& style,
+                          const DenoiserOptions& how) {
+    const PixelRect& region = p.render.input.region;
+    const Vec2i across(region.Width() / 2, 0);
+    const PixelRect left{region.min, region.max - across};
+    const size_t count = p.blocks.size() / 2;
+    const auto denoise = [&](const PixelRect& eye, size_t first) {
+        const std::vector<Block> blocks(p.blocks.begin() + std::ptrdiff_t(first),
+                                        p.blocks.begin() + std::ptrdiff_t(first + count));
+        return film.layers.Find<LightGroupLayer>()
+                   ? DenoiseWithReports(GroupedPictureOf(film, eye), eye, blocks, style, how)
+                   : DenoiseWithReports(PictureOf(film, eye), eye, blocks, style, how);
+    };
+    const DenoisedImage first = denoise(left, 0);
+    return Beside(first, denoise({left.min + across, left.max + across}, count));
+}
+
 // Makes the requested images, and frees their inputs.
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
@@ -110,9 +128,15 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     DenoiserResults made;
     NoisyPicture picture;
     GroupedPicture groups;
+    const bool isPair = p.render.input.film.isPair;
     const bool hasGroups = p.request.denoise && film.layers.Find<LightGroupLayer>();
+    const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
+    const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
+    const auto start = std::chrono::steady_clock::now();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
-    if (hasGroups)
+    if (isPair && p.request.denoise)
+        made.image = DenoisePair(p, film, style, how);
+    else if (hasGroups)
         groups = TakeGroups(&film);
     else if (p.request.denoise)
         picture = TakePicture(&film);
@@ -120,11 +144,10 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     film.DropHalf();
     if (!p.request.denoise) return made;
     const Messages messages = MessagesOf(settings);
-    const auto start = std::chrono::steady_clock::now();
-    const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
-    const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
-    made.image = hasGroups ? DenoiseWithReports(std::move(groups), region, p.blocks, style, how)
-                           : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
+    if (!isPair)
+        made.image = hasGroups ? DenoiseWithReports(std::move(groups), region, p.blocks, style, how)
+                               : DenoiseWithReports(std::move(picture), region, p.blocks, style,
+                                                    how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int unknown = RemoveUnknownErrors(result, region, &*made.image); unknown > 0)
         messages.Warn(fmt::format(

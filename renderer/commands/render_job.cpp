@@ -40,7 +40,9 @@ RenderJob::RenderJob(const RenderSettings& given, MpiJob* ranks, bool withHalf)
     : settings(given),
       ranks(ranks),
       input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = withHalf},
-            MessagesOf(settings)) {}
+            MessagesOf(settings)) {
+    if (input.film.isPair) settings.schedule.eyeWidth = input.film.Size().x();
+}
 
 bool RenderJob::Leads() const { return !ranks || ranks->Rank() == 0; }
 

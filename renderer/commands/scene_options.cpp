@@ -126,6 +126,32 @@ void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
         ->type_name("DEG");
 }
 
+void AddStereoOptions(CLI::App& app, SceneOptions* options) {
+    auto* stereo =
+        app.add_option_function<std::string>(
+               "--stereo",
+               [options](const std::string& text) {
+                   std::array<float, 2> both = {0, 0};
+                   std::array<float, 1> one;
+                   const bool hasOne = ParseNumbers(text, ',', &one);
+                   if (hasOne) both[0] = one[0];
+                   if ((!hasOne && !ParseNumbers(text, ',', &both)) || !(both[0] > 0) ||
+                       !(both[1] >= 0) || !(both[0] + both[1] < 1e6f))
+                       throw CLI::ValidationError(
+                           text, "is not D or D,C: the distance of the eyes, above 0, and the "
+                                 "distance where both see the same");
+                   options->stereo = {both[0], both[1]};
+               },
+               "Render a pair for two eyes, D apart, that see the same at the distance C [parallel]")
+            ->group("Scene")
+            ->type_name("D[,C]");
+    app.add_option("--eye", options->eye, "Render one eye of the pair alone")
+        ->group("Scene")
+        ->needs(stereo)
+        ->check(CLI::IsMember({"left", "right"}))
+        ->type_name("left|right");
+}
+
 void AddAnimationOptions(CLI::App& app, GltfOptions* view) {
     auto* frame = app.add_option("--frame", view->frame, "glTF: pose the animations at this time")
                       ->group("Scene")
@@ -191,6 +217,7 @@ void AddSceneOptions(CLI::App& app, SceneOptions* options) {
         ->group("Scene");
     app.add_flag("--verbose", options->isVerbose, "Print warnings without effect on the image, too")
         ->group("Scene");
+    AddStereoOptions(app, options);
     AddEnvironmentOptions(app, options);
     AddGltfOptions(app, &options->view);
 }
@@ -211,6 +238,7 @@ Description LoadDescription(const SceneOptions& options, Warnings& warnings) {
     if (options.pbrt != 0) version = options.pbrt == 3 ? PbrtVersion::V3 : PbrtVersion::V4;
     Description description = isGltf ? ParseGltf(options.file, options.view, warnings)
                                      : ParsePbrt(options.file, warnings, version);
+    if (!options.stereo.empty()) SetStereo(options.stereo, options.eye, &description);
     if (!options.integrator.empty()) SetIntegrator(options.integrator, &description);
     if (options.exposure != 0) SetExposure(options.exposure, &description);
     if (!options.environment.empty())
@@ -224,7 +252,7 @@ SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptio
     : warnings(MakePrintedWarnings(options, messages)),
       description(LoadDescription(options, warnings)),
       film(SilentFilmSettings(description, options)),
-      region{film.cropMin, film.cropMax} {
+      region(film.Region()) {
     CheckFilmFits(region, filmOptions);
 }
 

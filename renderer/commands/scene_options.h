@@ -19,6 +19,8 @@ struct SceneOptions {
     std::string integrator;  // empty: the scene's
     int pbrt = 0;            // the version, 3 or 4, that the scene is written for; 0: as it shows
     GltfOptions view;
+    std::vector<float> stereo;  // distance and convergence of two eyes; empty: the scene's
+    std::string eye;            // "left" or "right": of these, one alone
     std::string environment;  // empty: the scene's own
     double environmentRotation = 0, exposure = 0;
 };

@@ -26,9 +26,9 @@ struct VisibleError {
 
 inline constexpr double kNoticedError = 5;  // of a pixel, in lightness
 
-// The upper bound, without the worst pixels, below which a block is accepted: the default of the
-// rule `denoised`.
-inline constexpr double kAcceptedBound = 3.1;
+// The estimate, without the worst pixels, below which a block is accepted: the default of the rule
+// `denoised`.
+inline constexpr double kAcceptedDifference = 3.1;
 
 // Measures a block of at least 10 pixels a side. Half the difference of the denoised halves has the
 // pattern of the error; it is scaled to the error in lightness (MeasureLightnessError). Structure

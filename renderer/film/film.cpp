@@ -17,11 +17,12 @@ void Store(const Rgb& c, float* to) {
 }
 
 // Returns the tile that each pixel along an axis of `size` pixels is in.
-std::vector<int> TilesAlong(int size, const TileGrid& grid) {
+std::vector<int> TilesAlong(int size, const TileGrid& grid, bool isAcross) {
     std::vector<int> tiles;
     int tile = -1;
     for (int i = 0; i < size; ++i) {
-        tile += i % grid.blockSize % grid.tileSize == 0;
+        const int at = isAcross && grid.eyeWidth > 0 ? i % grid.eyeWidth : i;
+        tile += at % grid.blockSize % grid.tileSize == 0;
         tiles.push_back(tile);
     }
     return tiles;
@@ -47,8 +48,8 @@ Rgb FilmPixel::HalfMean() const {
 
 Film::Film(const PixelRect& region, const FilmOptions& options)
     : layers(region, options.layers),
-      columns(TilesAlong(region.Width(), options.grid)),
-      rows(TilesAlong(region.Height(), options.grid)),
+      columns(TilesAlong(region.Width(), options.grid, true)),
+      rows(TilesAlong(region.Height(), options.grid, false)),
       tiles({{0, 0}, {CountOf(columns), CountOf(rows)}}),
       sums(region) {
     if (options.withHalf) halfSums.emplace(region);
@@ -57,12 +58,12 @@ Film::Film(const PixelRect& region, const FilmOptions& options)
 
 int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {
     constexpr int64_t kSumBytes = sizeof(std::array<double, 3>);
-    const auto tilesAlong = [&](int size) {
-        return int64_t(CountOf(TilesAlong(size, options.grid)));
+    const auto tilesAlong = [&](int size, bool isAcross) {
+        return int64_t(CountOf(TilesAlong(size, options.grid, isAcross)));
     };
     return region.Area() *
                ((options.withHalf ? 2 * kSumBytes : kSumBytes) + Layers::Bytes(options.layers)) +
-           tilesAlong(region.Width()) * tilesAlong(region.Height()) * int64_t(sizeof(TileSamples));
+           tilesAlong(region.Width(), true) * tilesAlong(region.Height(), false) * int64_t(sizeof(TileSamples));
 }
 
 FilmPixel Film::At(const Vec2i& p) const {

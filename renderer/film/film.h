@@ -39,6 +39,7 @@ struct FilmView {
 // pixels of a tile have the same number of samples.
 struct TileGrid {
     int blockSize = 1, tileSize = 1;  // pixels a side, > 0
+    int eyeWidth = 0;  // where the right eye's image, cut by itself, follows; 0: there is one image
 };
 
 struct FilmOptions {

@@ -63,6 +63,11 @@ using RowSource = std::function<void(int y, std::span<float> values)>;
 // Does the same with channels of `image` that have no values: they come row by row.
 int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
+// Writes several images as the parts of one file, whose attributes "view" name them; `rows` has
+// those of each.
+int64_t WriteExr(const std::string& path, std::span<const ExrImage> parts,
+                 std::span<const RowSource> rows);
+
 // Reads an EXR with all its channels and those attributes that ExrAttribute can hold; other formats
 // as ReadImage() does, as channels R, G, B, A or Y, A. Throws Error as that does.
 ExrImage ReadExr(const std::string& path);

@@ -132,8 +132,7 @@ void ReadDirectives(PbrtBuilder* builder, Warnings& warnings) {
 
 Description ParsePbrt(const std::string& file, Warnings& warnings,
                       std::optional<PbrtVersion> version) {
-    if (!version) version = DetectPbrtVersion(file, warnings);
-    PbrtBuilder builder(file, *version, warnings);
+    PbrtBuilder builder(file, version, warnings);
     Description description;
     const bool isWhole = warnings.Try([&] { ReadDirectives(&builder, warnings); }) &&
                          !builder.hasFailed &&

@@ -69,6 +69,13 @@ void SetExposure(double stops, Description* description) {
                                       std::vector<float>{float(stops)}});
 }
 
+void SetStereo(const std::vector<float>& numbers, const std::string& eye, Description* d) {
+    Parameters& camera = d->camera.parameters;
+    camera.Add({ParameterType::Float, "eyedistance", {}, std::vector<float>{numbers.at(0)}});
+    camera.Add({ParameterType::Float, "convergence", {}, std::vector<float>{numbers.at(1)}});
+    camera.Add({ParameterType::String, "eye", {}, std::vector<std::string>{eye}});
+}
+
 void SetEnvironment(const std::string& file, double rotation, Description* description) {
     std::erase_if(description->lights, IsEnvironment);
     LightEntity light;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "renderer/input/description.h"
 
@@ -13,6 +14,10 @@ void SetExposure(double stops, Description* description);
 // Replaces the integrator by "path" or "bdpt". Where the scene's sees media, "volpath" is the path
 // that does.
 void SetIntegrator(const std::string& name, Description* description);
+
+// Has the camera render a pair, or one eye of it: numbers and names as in Stereo.
+void SetStereo(const std::vector<float>& distanceAndConvergence, const std::string& eye,
+               Description* description);
 
 // Surrounds the scene by an image of the radiance from all directions, in latitude-longitude form,
 // in place of its environment. The image's top is turned to glTF's up, or to the axis of the scene

@@ -63,6 +63,8 @@ std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const Rend
         const auto& [rect, spp] = std::pair(b.block.pixels, b.block.spp);
         BlockStart start{
             .spp = spp, .stopped = b.block.stopped, .stoppedByVote = b.block.stoppedByVote};
+        start.hasVoted = std::ranges::any_of(
+            b.decisions, [](const BlockDecision& d) { return d.decision.stop; });
         if (context.secondsLeft && !b.block.stopped)
             start.passEnd = EndOfPassBegun(b.block, options.schedule, film);
         if (context.secondsLeft && IsPassEnd(spp, options.schedule) && spp > 0) {

@@ -23,7 +23,7 @@ VisibleError BlockDenoiser::MeasureBlock(int block) const {
 
 SignalMeasure MeasureOf(std::shared_ptr<const BlockDenoiser> denoiser) {
     return [denoiser](const BlockView&, const BlockInfo& block) -> Signals {
-        return denoiser->MeasureBlock(block.index).upper;
+        return denoiser->MeasureBlock(block.index).estimate;
     };
 }
 

@@ -41,7 +41,7 @@ class BlockDenoiser {
     std::function<void(const PixelRect&, std::span<const float> rgb)> showPicture;
 };
 
-// Returns the value of the rule `denoised`: the upper bound.
+// Returns the value of the rule `denoised`: the estimate.
 SignalMeasure MeasureOf(std::shared_ptr<const BlockDenoiser>);
 
 }  // namespace lull

@@ -30,6 +30,9 @@ DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vec
 DenoisedImage DenoiseImage(GroupedPicture, const PixelRect& region, const std::vector<Block>&,
                            const DenoiserOptions& = {});
 
+// Returns the images of both eyes of a pair as one, side by side, the blocks of the left first.
+DenoisedImage Beside(const DenoisedImage& left, const DenoisedImage& right);
+
 // Denoises what there is of a render for a quick look: a larger one at a lower resolution of at
 // most so many pixels, so that it does not take minutes, and its errors are not known. Takes at
 // most kPreviewBytes of memory a pixel if it is large.

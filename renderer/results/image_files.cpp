@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 
 #include "renderer/base/error.h"
@@ -83,12 +84,11 @@ PngFormat MakePngFormat(const PictureFormat& wanted, double exposure) {
     return format;
 }
 
-// Writes means R, G, B as those of an EXR, with the samples of each pixel, and the values of the
-// channels after these four.
-int64_t WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
-                 const RowSource& spp) {
+// Returns means R, G, B as rows of an EXR, with the samples of each pixel, and the values of the
+// channels after these four. The EXR must be there, and not move.
+RowSource ChannelsOf(const ExrImage& exr, const RowSource& means, const RowSource& spp) {
     const size_t stride = exr.channels.size();
-    return WriteExr(file, exr, [&](int y, std::span<float> row) {
+    return [&exr, means, spp, stride](int y, std::span<float> row) {
         std::vector<float> rgb(size_t(exr.width) * 3), counts(size_t(exr.width));
         means(y, rgb);
         spp(y, counts);
@@ -98,7 +98,12 @@ int64_t WriteExr(const std::string& file, const ExrImage& exr, const RowSource& 
             for (size_t c = 4; c < stride; ++c)
                 row[stride * x + c] = exr.channels[c].values[size_t(y) * counts.size() + x];
         }
-    });
+    };
+}
+
+int64_t WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
+                 const RowSource& spp) {
+    return WriteExr(file, exr, ChannelsOf(exr, means, spp));
 }
 
 // Returns the rows of the image, which is never held as a whole beside its sums.
@@ -173,6 +178,75 @@ RowSource MeansOf(const RgbImage& image) {
     };
 }
 
+namespace {
+
+// Returns the name of the file of an eye: a.left.png for a.png.
+std::string FileOfEye(const std::string& file, const std::string& eye) {
+    const std::filesystem::path path(file);
+    return (path.parent_path() / (path.stem().string() + "." + eye + path.extension().string()))
+        .string();
+}
+
+// Takes one half of rows with so many values a pixel.
+RowSource HalfOf(const RowSource& rows, int width, int values, bool isRight) {
+    return [=](int y, std::span<float> row) {
+        std::vector<float> whole(size_t(2 * width * values));
+        rows(y, whole);
+        std::copy_n(whole.begin() + (isRight ? std::ptrdiff_t(row.size()) : 0), row.size(),
+                    row.begin());
+    };
+}
+
+// Returns the image of one eye of a pair.
+ExrImage ImageOfEye(const ExrImage& pair, const Camera& camera, const FilmSettings& film,
+                    bool isRight) {
+    ExrImage eye = pair;
+    eye.width = pair.width / 2;
+    for (size_t c = 4; c < eye.channels.size(); ++c) {
+        const std::vector<float>& values = pair.channels[c].values;
+        std::vector<float> own(size_t(eye.width) * size_t(eye.height));
+        for (int y = 0; y < eye.height; ++y)
+            std::copy_n(values.begin() + (2 * y + isRight) * eye.width, eye.width,
+                        own.begin() + y * eye.width);
+        eye.channels[c].values = std::move(own);
+    }
+    eye.attributes["view"] = isRight ? "right" : "left";
+    eye.attributes["worldToCamera"] = WorldToCamera(camera);
+    if (const auto ndc = WorldToNdc(camera, film)) eye.attributes["worldToNDC"] = *ndc;
+    return eye;
+}
+
+// Writes both eyes as the parts of an EXR, a PNG of each, and one of both.
+int64_t WritePair(const PictureFiles& files, const Scene& scene, const ExrImage& exr,
+                  const RowSource& colours, const RowSource& spp, const RowSource& shown,
+                  const PngFormat& png, ResultFiles* results) {
+    const int width = exr.width / 2, channels = png.hasAlpha ? 4 : 3;
+    std::vector<ExrImage> eyes;
+    std::vector<RowSource> rows;
+    int64_t clamped = 0;
+    eyes.reserve(2);  // rows refer to them
+    for (const bool isRight : {false, true}) {
+        eyes.push_back(
+            ImageOfEye(exr, isRight ? *scene.rightEye : scene.camera, scene.film, isRight));
+        rows.push_back(ChannelsOf(eyes.back(), HalfOf(colours, width, 3, isRight),
+                                  HalfOf(spp, width, 1, isRight)));
+    }
+    std::vector<ResultFiles::File> all = {
+        {files.exr, [&](const std::string& file) { clamped = WriteExr(file, eyes, rows); }},
+        {files.png,
+         [&](const std::string& file) { WritePng(file, shown, exr.width, exr.height, png); }}};
+    for (const bool isRight : {false, true})
+        all.push_back({FileOfEye(files.png, isRight ? "right" : "left"),
+                       [&, isRight](const std::string& file) {
+                           WritePng(file, HalfOf(shown, width, channels, isRight), width,
+                                    exr.height, png);
+                       }});
+    results->WriteAll(all);
+    return clamped;
+}
+
+}  // namespace
+
 int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Picture picture,
                    ResultFiles* results) {
     const Film& film = picture.film;
@@ -196,14 +270,16 @@ int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Pictu
                                             : MeansOf(foreground);
         exr.attributes["background"] = "left out of R, G and B, which are multiplied by A";
     }
+    const RowSource shown = format.isTransparent ? WithAlpha(colours, film) : colours;
+    const PngFormat png = MakePngFormat(format, origin.scene.film.exposure);
+    if (origin.scene.rightEye)
+        return WritePair(files, origin.scene, exr, colours, SppOf(film), shown, png, results);
     int64_t clamped = 0;
     results->WriteAll(
         {{files.exr,
           [&](const std::string& file) { clamped = WriteExr(file, exr, colours, SppOf(film)); }},
          {files.png, [&](const std::string& file) {
-              WritePng(file, format.isTransparent ? WithAlpha(colours, film) : colours,
-                       film.Region().Width(), film.Region().Height(),
-                       MakePngFormat(format, origin.scene.film.exposure));
+              WritePng(file, shown, film.Region().Width(), film.Region().Height(), png);
           }}});
     return clamped;
 }

@@ -46,6 +46,11 @@ void ReadView(const Description& description, const CompileOptions& options, Sce
     scene->camera = MakeCamera(description, scene->film, warnings, options.threads);
     ReadSampler(description.sampler, scene, warnings);
     scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
+    const Stereo stereo = ReadStereo(description.camera);
+    if (stereo.IsPair()) scene->rightEye = CameraOfEye(scene->camera, stereo, Eye::Right);
+    scene->camera =
+        CameraOfEye(scene->camera, stereo, stereo.IsPair() ? Eye::Left : stereo.alone);
+    scene->isRightAlone = stereo.alone == Eye::Right;
 }
 
 // Returns whether a material is none, so that shadow rays of volpath pass through its surfaces.
@@ -64,6 +69,7 @@ void ReadMedia(const Description& description, Scene* scene, Warnings& warnings)
 const char* WhyNotBdpt(const Description& description, const CompileOptions& options,
                        const Scene& scene) {
     if (options.lightsAsPbrtV3) return "pbrt-v3's estimator is for paths from the camera";
+    if (scene.rightEye || scene.isRightAlone) return "two eyes have paths from their cameras alone";
     if (scene.isVolumetric)
         return scene.media.media.empty() ? "the scene has surfaces without a material"
                                          : "the scene has participating media";
@@ -90,7 +96,10 @@ bool HidesShapes(const Scene& scene) {
 
 // Refuses cameras whose rays Embree would not take.
 void CheckCamera(const Scene& scene, const FileLoc& loc) {
-    if (!(Farthest(scene.camera, scene.film) <= double(scene.shapes.reach)))
+    const double farthest =
+        std::max(Farthest(scene.camera, scene.film),
+                 scene.rightEye ? Farthest(*scene.rightEye, scene.film) : 0.);
+    if (!(farthest <= double(scene.shapes.reach)))
         throw Error(loc, fmt::format("rays of the camera begin, or are aimed, farther than {:.3g} "
                                      "from the origin, where none is traced; scale the scene down",
                                      scene.shapes.reach));

@@ -21,7 +21,14 @@ namespace lull {
 struct Scene {
     FilmSettings film;
     Filter filter;
-    Camera camera;
+    Camera camera;                   // of a pair, the left eye's
+    std::optional<Camera> rightEye;  // of a pair
+    // Whether the camera is the right eye's, alone: its samples are those that it has in the pair.
+    bool isRightAlone = false;
+
+    const Camera& CameraOf(const CameraSample& sample) const {
+        return sample.isRight ? *rightEye : camera;
+    }
 
     // As the scene's directives ask; the command line can override them.
     SamplerKind sampler = SamplerKind::Sobol;

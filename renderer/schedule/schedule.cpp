@@ -25,6 +25,23 @@ PixelRect TileAt(const PixelRect& block, int tileSize, int tile) {
 }  // namespace
 
 std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& options) {
+    if (options.eyeWidth > 0) {
+        ScheduleOptions ofEye = options;
+        ofEye.eyeWidth = 0;
+        const Vec2i across(options.eyeWidth, 0);
+        std::vector<Block> blocks =
+            MakeBlocks({region.min, {region.min.x() + across.x(), region.max.y()}}, ofEye);
+        const int count = int(blocks.size());
+        for (int i = 0; i < count; ++i) {
+            Block right = blocks[size_t(i)];
+            right.pixels = {right.pixels.min + across, right.pixels.max + across};
+            if (right.leader >= 0) right.leader += count;
+            right.partner = i;
+            blocks[size_t(i)].partner = count + i;
+            blocks.push_back(right);
+        }
+        return blocks;
+    }
     const BlockGrid grid =
         CutIntoBlocks(region.Width(), region.Height(), options.blockSize, options.smallestSide);
     std::vector<Block> blocks;
@@ -71,12 +88,13 @@ Schedule::Schedule(const PixelRect& region, const ScheduleOptions& options,
         blocks[i].spp = progress[i].decidedSpp = starts[i].spp;
         blocks[i].noise = starts[i].noise;
         progress[i].mustEnd = starts[i].passEnd > 0;
+        progress[i].hasVoted = starts[i].hasVoted;
         if (starts[i].stopped) Stop(int(i), starts[i].stoppedByVote);
     }
     for (int i = 0; i < int(blocks.size()); ++i)
         if (blocks[i].leader >= 0)
             progress[blocks[i].leader].followers.push_back(i);
-        else if (!blocks[i].stopped)
+        else if (!blocks[i].stopped && !IsAhead(i))
             GoOn(i, progress[i].mustEnd ? starts[size_t(i)].passEnd
                                         : PassEndAfter(blocks[i].spp, options));
     for (int i = 0; i < int(blocks.size()); ++i)
@@ -191,11 +209,36 @@ void Schedule::Decide(int i, bool stop, double noise) {
     if (block.leader >= 0) return CatchUp(i);
 
     stop &= block.votes;
-    if (stop || block.spp >= options.cap)
+    progress[i].hasVoted |= stop;
+    if (block.partner >= 0)
+        DecidePair(i);
+    else if (stop || block.spp >= options.cap)
         Stop(i, stop);
     else
         GoOn(i, PassEndAfter(block.spp, options));
     for (const int follower : progress[i].followers) CatchUp(follower);
+}
+
+// Returns whether the block waits for the pass of the other eye's.
+bool Schedule::IsAhead(int block) const {
+    const int partner = blocks[block].partner;
+    return partner >= 0 && blocks[partner].spp < blocks[block].spp;
+}
+
+// Once both blocks of a pair have come to the end of a pass: stops them if both have voted for it,
+// now or before, or at the cap, and else begins the next of both.
+void Schedule::DecidePair(int block) {
+    const int partner = blocks[block].partner;
+    if (progress[partner].underWay || blocks[partner].spp != blocks[block].spp) return;
+    const bool stop = progress[block].hasVoted && progress[partner].hasVoted;
+    for (const int i : {std::min(block, partner), std::max(block, partner)}) {
+        if (stop || blocks[i].spp >= options.cap)
+            Stop(i, stop);
+        else
+            GoOn(i, PassEndAfter(blocks[i].spp, options));
+        if (i == partner)
+            for (const int follower : progress[i].followers) CatchUp(follower);
+    }
 }
 
 void Schedule::CatchUp(int follower) {

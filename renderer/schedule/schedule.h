@@ -24,6 +24,9 @@ struct ScheduleOptions {
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (thresholds.h)
+    // Pixels from where the right eye's image of a pair follows; 0: there is one image. Both are cut
+    // alike, and the two blocks of a place take their passes together and stop with the later.
+    int eyeWidth = 0;
     // For renders that are viewed in progress: the first pass is taken in steps of 1,
     // 2, 4, ... spp.
     bool inSteps = false;
@@ -44,7 +47,7 @@ bool IsPassEnd(int spp, const ScheduleOptions&);
 
 // Returns how a film is cut by the schedule.
 inline TileGrid GridOf(const ScheduleOptions& options) {
-    return {options.blockSize, options.tileSize};
+    return {options.blockSize, options.tileSize, options.eyeWidth};
 }
 
 // Noise not yet estimated; compares above any estimate.
@@ -55,6 +58,7 @@ struct Block {
     int spp = 0;                   // samples per pixel of all finished passes
     bool votes = true;             // false: too small for its criterion to be asked
     int leader = -1;               // of a block that does not vote: the one it stops with, if any
+    int partner = -1;              // the block of the other eye
     bool stopped = false;          // takes no more samples
     bool stoppedByVote = false;    // stopped by its own vote or its leader's, not by the cap
     double noise = kUnknownNoise;  // visible at the end of the last pass, as Decide() was told
@@ -85,6 +89,7 @@ struct BlockStart {
     bool stopped = false;
     bool stoppedByVote = false;
     double noise = kUnknownNoise;
+    bool hasVoted = false;  // for its own stop, and waits for the other eye's
     // The spp at the end of a pass that has been begun, and has to be finished though time is
     // called; 0: none.
     int passEnd = 0;
@@ -97,7 +102,7 @@ struct Tile {
     int first, count;
 };
 
-// Cuts a region into blocks, row by row.
+// Cuts a region into blocks, row by row; of a pair, all of the left eye come first.
 std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions&);
 
 // Tracks the passes of all blocks. Blocks are independent of each other: a block's next pass is
@@ -171,6 +176,7 @@ class Schedule {
         int next = 0;                           // where to look for the next tile of the share
         bool underWay = false;                  // from its start to the decision
         bool mustEnd = false;                   // though time has been called
+        bool hasVoted = false;                  // once, for its stop
         std::vector<int> followers;             // of the block
     };
 
@@ -182,6 +188,8 @@ class Schedule {
     void MakeUnready(int block);
     void GoOn(int block, int target);
     void Stop(int block, bool byVote);
+    bool IsAhead(int block) const;
+    void DecidePair(int block);
     void CatchUp(int follower);
 
     ScheduleOptions options;

@@ -15,15 +15,29 @@ struct SampleStart {
     Ray ray;
 };
 
+// Finds where an eye's own image has a pixel of a pair, and the pixel whose random numbers it gets:
+// the grain of both eyes is independent, as equal grain would be seen in the plane of the screen.
+inline void PlaceInPair(const Scene& scene, const Vec2i& pixel, bool* isRight, Vec2i* seen,
+                        Vec2i* seed) {
+    constexpr int kFarAway = 1 << 29;  // more than an image has pixels
+    *isRight = scene.rightEye && pixel.x() >= scene.film.cropMax.x();
+    if (*isRight) seen->x() -= scene.film.Size().x();
+    *seed = *seen;
+    if (*isRight || scene.isRightAlone) seed->x() += kFarAway;
+}
+
 [[gnu::always_inline]] inline SampleStart StartSample(const Scene& scene, Sampler& sampler,
                                                       const Vec2i& pixel, uint32_t index) {
     SampleStart start;
-    sampler.StartSample(pixel, index);
+    Vec2i seen = pixel, seed = pixel;
+    if (scene.rightEye || scene.isRightAlone) [[unlikely]]
+        PlaceInPair(scene, pixel, &start.camera.isRight, &seen, &seed);
+    sampler.StartSample(seed, index);
     start.filter = scene.filter.Sample(sampler.Get2D());
-    start.camera.film = pixel.cast<float>() + Vec2f(0.5f, 0.5f) + start.filter.offset;
+    start.camera.film = seen.cast<float>() + Vec2f(0.5f, 0.5f) + start.filter.offset;
     if (scene.camera.HasLens()) start.camera.lens = sampler.Get2D();
     if (scene.isMoving) start.camera.time = sampler.Get1D();
-    start.ray = scene.camera.GenerateRay(start.camera, &start.cameraWeight);
+    start.ray = scene.CameraOf(start.camera).GenerateRay(start.camera, &start.cameraWeight);
     return start;
 }
 

@@ -147,7 +147,7 @@ template <typename Media, typename Recorder>
         SurfaceInteraction hit;
         scene.shapes.Interact(path.ray, found, needs, &hit, time);
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
-            ComputeFootprint(scene.camera, context.camera, &hit);
+            ComputeFootprint(scene.CameraOf(context.camera), context.camera, &hit);
 
         // Add the emission of the surface.
         if (hit.areaLight >= 0)

@@ -41,7 +41,7 @@ Rule ReadLightnessNoise(const std::string& argument, const RuleContext& context)
 
 namespace {
 
-constexpr uint32_t kTag = 0x33534e44;  // "DNS3"
+constexpr uint32_t kTag = 0x34534e44;  // "DNS4"
 constexpr int kVotes = 1;
 constexpr int kFirstSpp = 20;
 constexpr double kGrowth = 1.25;

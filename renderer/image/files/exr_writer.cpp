@@ -5,7 +5,10 @@
 #include <ImfIO.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <fmt/core.h>
 
@@ -107,7 +110,8 @@ Half Clamped(float v, int64_t* clamped) {
 }
 
 // Returns how many values of 16 bits were clamped.
-int64_t WriteRows(const ExrImage& image, const RowSource& rows, Imf::OutputFile* file) {
+template <typename File>
+int64_t WriteRows(const ExrImage& image, const RowSource& rows, File* file) {
     const size_t count = image.channels.size(), row = size_t(image.width) * count;
     std::vector<float> strip(row * size_t(std::min(kStrip, image.height)));
     std::vector<Half> halves(std::ranges::any_of(image.channels, &ExrChannel::isHalf) ? strip.size()
@@ -148,15 +152,21 @@ int64_t WriteExr(const std::string& path, const ExrImage& image) {
     });
 }
 
-int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows) {
+namespace {
+
+void CheckSize(const std::string& path, const ExrImage& image) {
     if (image.width < 1 || image.height < 1 || image.channels.empty())
         FailToWriteExr(path, fmt::format("its size of {}x{}x{} is absurd", image.width,
                                          image.height, image.channels.size()));
+}
+
+// Calls write(stream), which returns how many values were clamped.
+template <typename Write>
+int64_t WriteStream(const std::string& path, const Write& write) {
     FileStream stream(path);
     int64_t clamped = 0;
     try {
-        Imf::OutputFile file(stream, MakeHeader(image), UseExrThreads());
-        clamped = WriteRows(image, rows, &file);
+        clamped = write(stream);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& e) {
@@ -165,6 +175,39 @@ int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource
     if (stream.failure) throw *stream.failure;
     stream.file.Commit();
     return clamped;
+}
+
+}  // namespace
+
+int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows) {
+    CheckSize(path, image);
+    return WriteStream(path, [&](FileStream& stream) {
+        Imf::OutputFile file(stream, MakeHeader(image), UseExrThreads());
+        return WriteRows(image, rows, &file);
+    });
+}
+
+int64_t WriteExr(const std::string& path, std::span<const ExrImage> parts,
+                 std::span<const RowSource> rows) {
+    std::vector<Imf::Header> headers;
+    for (const ExrImage& part : parts) {
+        CheckSize(path, part);
+        const std::string view = std::get<std::string>(part.attributes.at("view"));
+        headers.push_back(MakeHeader(part));
+        headers.back().setName(view);
+        headers.back().setView(view);
+        headers.back().setType(Imf::SCANLINEIMAGE);
+    }
+    return WriteStream(path, [&](FileStream& stream) {
+        Imf::MultiPartOutputFile file(stream, headers.data(), int(headers.size()), false,
+                                      UseExrThreads());
+        int64_t clamped = 0;
+        for (size_t i = 0; i < parts.size(); ++i) {
+            Imf::OutputPart part(file, int(i));
+            clamped += WriteRows(parts[i], rows[i], &part);
+        }
+        return clamped;
+    });
 }
 
 }  // namespace lull

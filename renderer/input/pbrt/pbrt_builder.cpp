@@ -30,12 +30,14 @@ const char* ScopeName(int kind) {
 
 }  // namespace
 
-PbrtBuilder::PbrtBuilder(const std::string& file, PbrtVersion version, Warnings& warnings)
+PbrtBuilder::PbrtBuilder(const std::string& file, std::optional<PbrtVersion> version,
+                         Warnings& warnings)
     : lexer(file), warnings(warnings) {
-    context.version = version;
-    if (IsV4()) SetV4Defaults(&description);
     description.directory = std::filesystem::path(file).parent_path().string();
     context.directory = description.directory;
+    context.version =
+        version ? *version : DetectPbrtVersion(description.directory, &lexer, warnings);
+    if (IsV4()) SetV4Defaults(&description);
 }
 
 Description PbrtBuilder::Finish() {

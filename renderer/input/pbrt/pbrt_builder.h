@@ -22,7 +22,7 @@ class PbrtBuilder {
   public:
     enum class Stage { Options, World, Done };
 
-    PbrtBuilder(const std::string& file, PbrtVersion version, Warnings& warnings);
+    PbrtBuilder(const std::string& file, std::optional<PbrtVersion> version, Warnings& warnings);
 
     // Each reads the arguments of its directive and applies it; `loc` is the place of its name.
     void Accelerator();

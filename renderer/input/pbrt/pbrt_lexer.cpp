@@ -98,9 +98,18 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     if (const std::string format = ForeignFormat(text); !format.empty())
         throw Error(loc,
                     "'" + Printable(file, 4096) + "' is not a pbrt scene file: it is " + format);
-    source.pos = text.data();
+    source.begin = source.pos = text.data();
     source.end = text.data() + text.size();
     sources.push_back(std::move(source));
+}
+
+void PbrtLexer::Rewind() {
+    sources.resize(1);
+    sources[0].pos = sources[0].begin;
+    sources[0].line = 1;
+    inclusions = {{sources[0].canonical, 1}};
+    repeatedBytes = 0;
+    hasPeeked = false;
 }
 
 std::vector<std::string> PbrtLexer::Files() const {

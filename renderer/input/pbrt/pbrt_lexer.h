@@ -35,6 +35,8 @@ class PbrtLexer {
     void Include(const std::string& file, const FileLoc& loc);
     // Returns how many files are open: one more within each that is included.
     size_t Depth() const { return sources.size(); }
+    // Begins again at the start of the first file.
+    void Rewind();
     // Returns the files that were read.
     std::vector<std::string> Files() const;
 
@@ -57,8 +59,7 @@ class PbrtLexer {
         std::shared_ptr<const std::string> name;
         std::string canonical;  // shows whether two names are the same file
         FileContents contents;
-        const char* pos = nullptr;
-        const char* end = nullptr;
+        const char *begin = nullptr, *pos = nullptr, *end = nullptr;
         int line = 1;
     };
 

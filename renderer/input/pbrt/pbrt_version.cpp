@@ -98,35 +98,42 @@ std::optional<PbrtVersion> VersionAt(const Token& token, const Token& next, bool
     return {};
 }
 
+// Returns the version of the first sign; nothing where there is none.
+std::optional<PbrtVersion> FindSign(const std::filesystem::path& directory, PbrtLexer& lexer,
+                                    bool* hasBegun, bool* hasEnded, Token* last) {
+    Token& token = *last;
+    while ((token = lexer.Take()).kind != TokenKind::End) {
+        if (token.kind == TokenKind::Open || token.kind == TokenKind::Close) continue;
+        const bool isWord = token.kind == TokenKind::Word;
+        if (isWord && std::ranges::count(kV2Directives, token.text) > 0) return {};
+        *hasBegun |= isWord && token.text == "WorldBegin";
+        const Token& next = lexer.Peek();
+        if (const auto version = VersionAt(token, next, hasEnded)) return version;
+        if (!isWord || token.text != "Include" || next.kind != TokenKind::String) continue;
+        const std::string path = (directory / lexer.Take().text).string();
+        if (ReasonNotToRead(path).empty()) lexer.Include(path, token.loc);
+    }
+    return {};
+}
+
 }  // namespace
 
-PbrtVersion DetectPbrtVersion(const std::string& file, Warnings& warnings) {
-    PbrtLexer lexer(file);
-    const std::filesystem::path directory = std::filesystem::path(file).parent_path();
-    bool hasBegun = false, hasEnded = false, isV2 = false;
-    Token token;
+PbrtVersion DetectPbrtVersion(const std::string& directory, PbrtLexer* lexer, Warnings& warnings) {
+    bool hasBegun = false, hasEnded = false;
+    Token last;
+    std::optional<PbrtVersion> version;
     try {
-        while ((token = lexer.Take()).kind != TokenKind::End) {
-            if (token.kind == TokenKind::Open || token.kind == TokenKind::Close) continue;
-            isV2 =
-                token.kind == TokenKind::Word && std::ranges::count(kV2Directives, token.text) > 0;
-            if (isV2) break;
-            hasBegun |= token.kind == TokenKind::Word && token.text == "WorldBegin";
-            const Token& next = lexer.Peek();
-            if (const auto version = VersionAt(token, next, &hasEnded)) return *version;
-            const bool includes = token.kind == TokenKind::Word && token.text == "Include";
-            if (!includes || next.kind != TokenKind::String) continue;
-            const std::string path = (directory / lexer.Take().text).string();
-            if (ReasonNotToRead(path).empty()) lexer.Include(path, token.loc);
-        }
+        version = FindSign(directory, *lexer, &hasBegun, &hasEnded, &last);
     } catch (const Error&) {
-        return PbrtVersion::V3;  // whose reader will meet the same error
+        version = PbrtVersion::V3;  // whose reader will meet the same error
     }
-    if (isV2)
-        throw Error(token.loc, "this scene is written for pbrt-v2, as its directive " + token.text +
-                                   " shows; lull reads scenes for pbrt-v3 and pbrt-v4");
+    lexer->Rewind();
+    if (version) return *version;
+    if (last.kind == TokenKind::Word)
+        throw Error(last.loc, "this scene is written for pbrt-v2, as its directive " + last.text +
+                                  " shows; lull reads scenes for pbrt-v3 and pbrt-v4");
     if (!hasBegun || hasEnded) return PbrtVersion::V3;
-    warnings.Add(token.loc, "a world without an end: the scene is read as for pbrt-v4",
+    warnings.Add(last.loc, "a world without an end: the scene is read as for pbrt-v4",
                  "--pbrt 3 reads it as for pbrt-v3");
     return PbrtVersion::V4;
 }

@@ -9,6 +9,7 @@
 #include "renderer/input/spectrum.h"
 #include "renderer/scene/cameras/lens_system.h"
 #include "renderer/scene/geometry/shape.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -265,6 +266,7 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
     } else {
         ReadPlane(entity, film.resolution, &camera);
     }
+    ReadStereo(entity);
     entity.parameters.ReportUnused("Camera \"" + entity.name + "\"", warnings);
     camera.worldFromCamera = description.cameraFromWorld.inverse();
     if (description.movingCameraFromWorld) {
@@ -285,6 +287,34 @@ Camera MakeCamera(const Description& description, const FilmSettings& film, Warn
         camera.rotation.setIdentity();
         camera.position.setZero();
     }
+    return camera;
+}
+
+Stereo ReadStereo(const Entity& entity) {
+    const Parameters& params = entity.parameters;
+    Stereo stereo{.distance = GetNonnegative(entity, "eyedistance", 0),
+                  .convergence = GetNonnegative(entity, "convergence", 0)};
+    const std::string eye = params.GetString("eye", "");
+    if (eye == "left") stereo.alone = Eye::Left;
+    if (eye == "right") stereo.alone = Eye::Right;
+    if (!eye.empty() && stereo.alone == Eye::Middle)
+        throw Error(entity.loc, fmt::format("the view \"{}\" is unknown; left and right are",
+                                            Printable(eye)));
+    if (stereo.distance > 0 && entity.name != "perspective")
+        throw Error(entity.loc, fmt::format("two eyes need a perspective camera; this one is \"{}\"",
+                                            Printable(entity.name)));
+    return stereo;
+}
+
+Camera CameraOfEye(const Camera& middle, const Stereo& stereo, Eye eye) {
+    if (eye == Eye::Middle || stereo.distance == 0) return middle;
+    Camera camera = middle;
+    const float x = (eye == Eye::Left ? -0.5f : 0.5f) * stereo.distance;
+    camera.position += camera.rotation * Vec3f(x, 0, 0);
+    camera.worldFromCamera(0, 3) += double(x) * middle.worldFromCamera(0, 0);
+    camera.worldFromCamera(1, 3) += double(x) * middle.worldFromCamera(1, 0);
+    camera.worldFromCamera(2, 3) += double(x) * middle.worldFromCamera(2, 0);
+    if (stereo.convergence > 0) camera.planeOrigin.x() -= x / stereo.convergence;
     return camera;
 }
 

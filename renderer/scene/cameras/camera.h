@@ -2,6 +2,7 @@
 // its environment camera, pbrt-v4's of equal areas, and its realistic one, with real lens systems.
 #pragma once
 
+#include "renderer/base/variant.h"
 #include "renderer/input/description.h"
 #include "renderer/scene/cameras/film_settings.h"
 #include "renderer/scene/cameras/lens_system.h"
@@ -14,6 +15,7 @@ struct CameraSample {
     Vec2f film;                      // pixels
     Vec2f lens = Vec2f(0.5f, 0.5f);  // in [0, 1)^2, chooses the point on the lens
     float time = 0;                  // from 0, where the shutter opens, to 1
+    bool isRight = false;            // of the right eye of a pair
 };
 
 enum class Projection { Perspective, Orthographic, Environment, EqualArea, Realistic };
@@ -75,6 +77,32 @@ struct Camera {
     Ray GenerateRareRay(const CameraSample&, float* weight) const;
     Ray Move(const Ray& ray, float time) const;
 };
+
+// Pairs of pictures for two eyes, apart along the camera's x.
+
+enum class Eye { Middle, Left, Right };
+template <>
+struct EnumNames<Eye> {
+    static constexpr std::pair<Eye, const char*> all[] = {
+        {Eye::Middle, "middle"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
+};
+
+// lull's own parameters of cameras.
+struct Stereo {
+    float distance = 0;     // of the eyes, in the camera's units; 0: there is one eye
+    float convergence = 0;  // distance where both see the same; 0: nowhere, their axes are parallel
+    Eye alone = Eye::Middle;  // the only eye that is rendered; Middle: both are
+
+    bool IsPair() const { return distance > 0 && alone == Eye::Middle; }
+};
+
+// Reads "eyedistance", "convergence" and "eye". Throws Error for values below 0, and for cameras
+// that are neither perspective nor in the middle of a window.
+Stereo ReadStereo(const Entity& camera);
+
+// Returns the camera of an eye: its position moved along x, and the window it is seen through moved
+// back, so that both windows are the same at the distance of convergence (off-axis).
+Camera CameraOfEye(const Camera&, const Stereo&, Eye);
 
 // Reads Camera "perspective", "orthographic", "environment", "equalarea" or "realistic", whose exit
 // pupils are

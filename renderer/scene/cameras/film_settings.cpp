@@ -79,6 +79,7 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
     if (!(film.diagonal > 0) || !std::isfinite(film.diagonal))
         throw Error(entity.loc, "\"diagonal\" has to be positive");
     params.ReportUnused("Film \"image\"", warnings);
+    film.isPair = ReadStereo(description.camera).IsPair();
     return film;
 }
 

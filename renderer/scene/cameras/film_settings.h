@@ -24,7 +24,13 @@ struct FilmSettings {
     float maxComponent = kInfinity;
     std::optional<Mat3f> colorMatrix;
 
-    Vec2i Size() const { return cropMax - cropMin; }
+    bool isPair = false;  // of two eyes, the right one's beside the left one's
+
+    Vec2i Size() const { return cropMax - cropMin; }  // of one eye
+    // Returns the pixels of the film: of a pair, those of the right eye follow to the right.
+    PixelRect Region() const {
+        return {cropMin, cropMax + Vec2i(isPair ? Size().x() : 0, 0)};
+    }
 };
 
 // Overrides of the scene's Film directive, from the command line.

@@ -64,7 +64,7 @@ TEST(VisibleError, CountsALineThatIsMissing) {
     EstimatedError error = MeasureError(denoised);
     EXPECT_LT(MeasureVisibleError(denoised, error, Whole(200)).upper, 0.01);
     for (int x = 70; x < 130; ++x) error.structure.Row(0, 100)[x] = -6;
-    EXPECT_GT(MeasureVisibleError(denoised, error, Whole(200)).upper, kAcceptedBound);
+    EXPECT_GT(MeasureVisibleError(denoised, error, Whole(200)).upper, kAcceptedDifference);
 }
 
 // One rare path, whose light is taken off and spread, leaves the bound of its block to the others;

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "renderer/input/pbrt/pbrt_lexer.h"
 #include "renderer/input/pbrt/v4_spectra.h"
 #include "tests/renderer/input/test_files.h"
 #include "tests/shared_folder.h"
@@ -29,7 +30,8 @@ class Pbrt4 : public testing::Test {
 TEST_F(Pbrt4, VersionIsTold) {
     const auto version = [&](const std::string& text) {
         Warnings warnings;
-        return DetectPbrtVersion(folder.Write("scene.pbrt", text), warnings);
+        PbrtLexer lexer(folder.Write("scene.pbrt", text));
+        return DetectPbrtVersion(folder.path.string(), &lexer, warnings);
     };
     for (const char* text : {
              "Film \"image\"\nWorldBegin",

@@ -19,15 +19,15 @@ TEST(DenoisedImage, IsAcceptedWhereTheRuleStops) {
     context.measures[kDenoisedRuleName] = [](const BlockView&, const BlockInfo&) -> Signals {
         return 0.0;
     };
-    EXPECT_EQ(ParseRule(kDenoisedRuleName, context).threshold, kAcceptedBound);
+    EXPECT_EQ(ParseRule(kDenoisedRuleName, context).threshold, kAcceptedDifference);
 }
 
 TEST(DenoisedImage, NamesTheWorstPixels) {
     const VisibleError clean{.estimate = 1, .upper = 2}, one{1, 2, 1, 7.4}, some{1, 2.5, 2, 20.6};
     const std::string most =
-        "visible difference from the true image probably at most 2 in half of the blocks and 2 in "
-        "all (accepted: " +
-        fmt::format("{}", kAcceptedBound) + ")";
+        "visible difference from the true image at most about 1 in half of the blocks and 1 in all, "
+        "probably nowhere above 2 (accepted: " +
+        fmt::format("{}", kAcceptedDifference) + ")";
     EXPECT_EQ(TextOf({clean, clean}), most);
     EXPECT_EQ(TextOf({clean, one}), most + ", except for a pixel that may be wrong by 7 in L*");
     EXPECT_TRUE(

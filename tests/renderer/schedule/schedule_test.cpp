@@ -47,6 +47,52 @@ TEST(MakeBlocks, LetsSmallBlocksFollowTheirLargestNeighbour) {
     for (int i = 2; i < 6; ++i) EXPECT_FALSE(blocks[i].votes);
 }
 
+TEST(MakeBlocks, CutsBothEyesAlike) {
+    const std::vector<Block> blocks =
+        MakeBlocks({{0, 0}, {860, 210}}, {.smallestSide = 40, .eyeWidth = 430});
+    ASSERT_EQ(blocks.size(), 12u);
+    for (int i = 0; i < 6; ++i) {
+        const Block &left = blocks[i], &right = blocks[i + 6];
+        EXPECT_EQ(right.pixels.min - left.pixels.min, Vec2i(430, 0));
+        EXPECT_EQ(right.pixels.max - left.pixels.max, Vec2i(430, 0));
+        EXPECT_EQ(left.partner, i + 6);
+        EXPECT_EQ(right.partner, i);
+        EXPECT_EQ(right.leader, left.leader < 0 ? -1 : left.leader + 6);
+    }
+}
+
+// Both blocks of a place end with the later vote, whatever the order; others do not wait.
+TEST(Schedule, PairsStopTogether) {
+    const std::vector<int> votesAt = {40, 100, 120, 60};  // two places, left eyes first
+    for (const bool restarts : {false, true}) {
+        const ScheduleOptions options{.blockSize = 16, .tileSize = 16, .eyeWidth = 32};
+        Schedule schedule({{0, 0}, {64, 16}}, options);
+        const auto stop = [&](int block, int spp) { return spp == votesAt[size_t(block)]; };
+        if (restarts) {
+            for (int tiles = 0; tiles < 13; ++tiles) {
+                const auto tile = schedule.Next();
+                if (schedule.Finish(*tile))
+                    schedule.Decide(tile->block, stop(tile->block, schedule.Blocks()[tile->block].spp));
+            }
+            std::vector<BlockStart> starts;
+            for (const Block& block : schedule.Blocks())
+                starts.push_back({.spp = block.spp,
+                                  .stopped = block.stopped,
+                                  .stoppedByVote = block.stoppedByVote,
+                                  .hasVoted = block.spp >= votesAt[starts.size()]});
+            schedule = Schedule({{0, 0}, {64, 16}}, options, starts);
+        }
+        RunAll(schedule, stop);
+        EXPECT_TRUE(schedule.Done());
+        const auto blocks = schedule.Blocks();
+        EXPECT_EQ(blocks[0].spp, 120);
+        EXPECT_EQ(blocks[2].spp, 120);
+        EXPECT_EQ(blocks[1].spp, 100);
+        EXPECT_EQ(blocks[3].spp, 100);
+        for (const Block& block : blocks) EXPECT_TRUE(block.stoppedByVote);
+    }
+}
+
 TEST(Schedule, GivesEachPixelOfAPassOnce) {
     Schedule schedule({{0, 0}, {50, 35}}, {.blockSize = 40, .tileSize = 16});
     std::map<std::pair<int, int>, int> seen;
