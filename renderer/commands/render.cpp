@@ -145,9 +145,9 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     if (!p.request.denoise) return made;
     const Messages messages = MessagesOf(settings);
     if (!isPair)
-        made.image = hasGroups ? DenoiseWithReports(std::move(groups), region, p.blocks, style, how)
-                               : DenoiseWithReports(std::move(picture), region, p.blocks, style,
-                                                    how);
+        made.image = hasGroups
+                         ? DenoiseWithReports(std::move(groups), region, p.blocks, style, how)
+                         : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int unknown = RemoveUnknownErrors(result, region, &*made.image); unknown > 0)
         messages.Warn(fmt::format(

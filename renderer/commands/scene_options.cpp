@@ -127,24 +127,25 @@ void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
 }
 
 void AddStereoOptions(CLI::App& app, SceneOptions* options) {
-    auto* stereo =
-        app.add_option_function<std::string>(
-               "--stereo",
-               [options](const std::string& text) {
-                   std::array<float, 2> both = {0, 0};
-                   std::array<float, 1> one;
-                   const bool hasOne = ParseNumbers(text, ',', &one);
-                   if (hasOne) both[0] = one[0];
-                   if ((!hasOne && !ParseNumbers(text, ',', &both)) || !(both[0] > 0) ||
-                       !(both[1] >= 0) || !(both[0] + both[1] < 1e6f))
-                       throw CLI::ValidationError(
-                           text, "is not D or D,C: the distance of the eyes, above 0, and the "
-                                 "distance where both see the same");
-                   options->stereo = {both[0], both[1]};
-               },
-               "Render a pair for two eyes, D apart, that see the same at the distance C [parallel]")
-            ->group("Scene")
-            ->type_name("D[,C]");
+    auto* stereo = app.add_option_function<std::string>(
+                          "--stereo",
+                          [options](const std::string& text) {
+                              std::array<float, 2> both = {0, 0};
+                              std::array<float, 1> one;
+                              const bool hasOne = ParseNumbers(text, ',', &one);
+                              if (hasOne) both[0] = one[0];
+                              if ((!hasOne && !ParseNumbers(text, ',', &both)) || !(both[0] > 0) ||
+                                  !(both[1] >= 0) || !(both[0] + both[1] < 1e6f))
+                                  throw CLI::ValidationError(
+                                      text,
+                                      "is not D or D,C: the distance of the eyes, above 0, and the "
+                                      "distance where both see the same");
+                              options->stereo = {both[0], both[1]};
+                          },
+                          "Render a pair for two eyes, D apart, that see the same at the distance "
+                          "C [parallel]")
+                       ->group("Scene")
+                       ->type_name("D[,C]");
     app.add_option("--eye", options->eye, "Render one eye of the pair alone")
         ->group("Scene")
         ->needs(stereo)

@@ -21,7 +21,7 @@ struct SceneOptions {
     GltfOptions view;
     std::vector<float> stereo;  // distance and convergence of two eyes; empty: the scene's
     std::string eye;            // "left" or "right": of these, one alone
-    std::string environment;  // empty: the scene's own
+    std::string environment;    // empty: the scene's own
     double environmentRotation = 0, exposure = 0;
 };
 

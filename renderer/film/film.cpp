@@ -63,7 +63,8 @@ int64_t Film::Bytes(const PixelRect& region, const FilmOptions& options) {
     };
     return region.Area() *
                ((options.withHalf ? 2 * kSumBytes : kSumBytes) + Layers::Bytes(options.layers)) +
-           tilesAlong(region.Width(), true) * tilesAlong(region.Height(), false) * int64_t(sizeof(TileSamples));
+           tilesAlong(region.Width(), true) * tilesAlong(region.Height(), false) *
+               int64_t(sizeof(TileSamples));
 }
 
 FilmPixel Film::At(const Vec2i& p) const {

@@ -62,9 +62,10 @@ DenoisedImage Beside(const DenoisedImage& left, const DenoisedImage& right) {
     const auto join = [&](const std::vector<float>& a, const std::vector<float>& b, int channels) {
         return RowsBeside(a, b, size_t(width * channels));
     };
-    DenoisedImage both{{2 * width, left.image.height, join(left.image.values, right.image.values, 3)},
-                       join(left.error, right.error, 1),
-                       left.blocks};
+    DenoisedImage both{
+        {2 * width, left.image.height, join(left.image.values, right.image.values, 3)},
+        join(left.error, right.error, 1),
+        left.blocks};
     both.blocks.insert(both.blocks.end(), right.blocks.begin(), right.blocks.end());
     for (size_t i = 0; i < left.groups.size(); ++i)
         both.groups.push_back(join(left.groups[i], right.groups[i], 3));

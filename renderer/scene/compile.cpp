@@ -48,8 +48,7 @@ void ReadView(const Description& description, const CompileOptions& options, Sce
     scene->camera.sampleSpacing = 1 / std::sqrt(float(scene->samplesPerPixel));
     const Stereo stereo = ReadStereo(description.camera);
     if (stereo.IsPair()) scene->rightEye = CameraOfEye(scene->camera, stereo, Eye::Right);
-    scene->camera =
-        CameraOfEye(scene->camera, stereo, stereo.IsPair() ? Eye::Left : stereo.alone);
+    scene->camera = CameraOfEye(scene->camera, stereo, stereo.IsPair() ? Eye::Left : stereo.alone);
     scene->isRightAlone = stereo.alone == Eye::Right;
 }
 
@@ -96,9 +95,8 @@ bool HidesShapes(const Scene& scene) {
 
 // Refuses cameras whose rays Embree would not take.
 void CheckCamera(const Scene& scene, const FileLoc& loc) {
-    const double farthest =
-        std::max(Farthest(scene.camera, scene.film),
-                 scene.rightEye ? Farthest(*scene.rightEye, scene.film) : 0.);
+    const double farthest = std::max(Farthest(scene.camera, scene.film),
+                                     scene.rightEye ? Farthest(*scene.rightEye, scene.film) : 0.);
     if (!(farthest <= double(scene.shapes.reach)))
         throw Error(loc, fmt::format("rays of the camera begin, or are aimed, farther than {:.3g} "
                                      "from the origin, where none is traced; scale the scene down",

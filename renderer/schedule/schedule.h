@@ -24,8 +24,8 @@ struct ScheduleOptions {
     // but 625 pieces of a block keep 64 threads busy where 169 leave a quarter of them waiting.
     int tileSize = 8;
     int smallestSide = 0;  // blocks with a shorter side follow a neighbour (thresholds.h)
-    // Pixels from where the right eye's image of a pair follows; 0: there is one image. Both are cut
-    // alike, and the two blocks of a place take their passes together and stop with the later.
+    // Pixels from where the right eye's image of a pair follows; 0: there is one image. Both are
+    // cut alike, and the two blocks of a place take their passes together and stop with the later.
     int eyeWidth = 0;
     // For renders that are viewed in progress: the first pass is taken in steps of 1,
     // 2, 4, ... spp.

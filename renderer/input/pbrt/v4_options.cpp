@@ -84,7 +84,8 @@ Entity TranslateCamera(V4Reader in) {
         in.Fail("Camera \"environment\" is pbrt-v3's; pbrt-v4 has \"spherical\"");
     if (name == "stereoscopic") {
         // Of the laboratory's fork: parallel eyes, both unless one is named.
-        for (const char* p : {"lensradius", "focaldistance", "fov"}) in.Copy(ParameterType::Float, p);
+        for (const char* p : {"lensradius", "focaldistance", "fov"})
+            in.Copy(ParameterType::Float, p);
         in.Set("eyedistance", in.Float("eyeDistance", 0.065f));
         in.SetString("eye", in.String("view"));
         return in.Finish("perspective", owner);

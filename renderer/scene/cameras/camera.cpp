@@ -298,11 +298,12 @@ Stereo ReadStereo(const Entity& entity) {
     if (eye == "left") stereo.alone = Eye::Left;
     if (eye == "right") stereo.alone = Eye::Right;
     if (!eye.empty() && stereo.alone == Eye::Middle)
-        throw Error(entity.loc, fmt::format("the view \"{}\" is unknown; left and right are",
-                                            Printable(eye)));
+        throw Error(entity.loc,
+                    fmt::format("the view \"{}\" is unknown; left and right are", Printable(eye)));
     if (stereo.distance > 0 && entity.name != "perspective")
-        throw Error(entity.loc, fmt::format("two eyes need a perspective camera; this one is \"{}\"",
-                                            Printable(entity.name)));
+        throw Error(entity.loc,
+                    fmt::format("two eyes need a perspective camera; this one is \"{}\"",
+                                Printable(entity.name)));
     return stereo;
 }
 

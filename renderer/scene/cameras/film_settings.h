@@ -28,9 +28,7 @@ struct FilmSettings {
 
     Vec2i Size() const { return cropMax - cropMin; }  // of one eye
     // Returns the pixels of the film: of a pair, those of the right eye follow to the right.
-    PixelRect Region() const {
-        return {cropMin, cropMax + Vec2i(isPair ? Size().x() : 0, 0)};
-    }
+    PixelRect Region() const { return {cropMin, cropMax + Vec2i(isPair ? Size().x() : 0, 0)}; }
 };
 
 // Overrides of the scene's Film directive, from the command line.

@@ -147,7 +147,7 @@ EmissionDensity LightEmission::Density(int index, const Vec3f& n, const Vec3f& w
         } else {
             const float across = 1 / (kPi * Sqr(radius));
             if constexpr (L::kType == LightType::Infinite)
-                return {pmf * l.LeAndPdf(-w).pdf, across};
+                return {pmf * l.LeAndPdf(Vec3f::Zero(), -w).pdf, across};
             else
                 return {pmf, across};
         }

@@ -137,8 +137,7 @@ TEST_F(PbrtErrors, Strings) {
 }
 
 TEST_F(PbrtErrors, BinaryFiles) {
-    Expect(std::string("\x1f\x8b\x08\x00\x01", 5),
-           "'scene.pbrt' is not a pbrt scene file: it is compressed (gzip)");
+    Expect(std::string("\x1f\x8b\x08\x00\x01", 5), "the gzip'd data are damaged or cut short");
     Expect(std::string("\0\0\0", 3), "'scene.pbrt' is not a pbrt scene file: it is a binary file");
     const std::string scene = "WorldBegin\nWorldEnd\n";
     for (const bool bigEndian : {false, true})

@@ -25,7 +25,8 @@ TEST(DenoisedImage, IsAcceptedWhereTheRuleStops) {
 TEST(DenoisedImage, NamesTheWorstPixels) {
     const VisibleError clean{.estimate = 1, .upper = 2}, one{1, 2, 1, 7.4}, some{1, 2.5, 2, 20.6};
     const std::string most =
-        "visible difference from the true image at most about 1 in half of the blocks and 1 in all, "
+        "visible difference from the true image at most about 1 in half of the blocks and 1 in "
+        "all, "
         "probably nowhere above 2 (accepted: " +
         fmt::format("{}", kAcceptedDifference) + ")";
     EXPECT_EQ(TextOf({clean, clean}), most);

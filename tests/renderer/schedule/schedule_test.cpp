@@ -72,7 +72,8 @@ TEST(Schedule, PairsStopTogether) {
             for (int tiles = 0; tiles < 13; ++tiles) {
                 const auto tile = schedule.Next();
                 if (schedule.Finish(*tile))
-                    schedule.Decide(tile->block, stop(tile->block, schedule.Blocks()[tile->block].spp));
+                    schedule.Decide(tile->block,
+                                    stop(tile->block, schedule.Blocks()[tile->block].spp));
             }
             std::vector<BlockStart> starts;
             for (const Block& block : schedule.Blocks())

@@ -22,8 +22,9 @@ constexpr const char* kWorld =
 std::unique_ptr<const Scene> SceneOfEyes(const std::vector<float>& stereo, const std::string& eye,
                                          float lens = 0) {
     Warnings warnings;
-    Description d = ParsePbrt(
-        TemporaryDirectory().Write("t.pbrt", WorldText(kWorld, fmt::format(kView, lens))), warnings);
+    Description d =
+        ParsePbrt(TemporaryDirectory().Write("t.pbrt", WorldText(kWorld, fmt::format(kView, lens))),
+                  warnings);
     if (!stereo.empty()) SetStereo(stereo, eye, &d);
     return Compile(d, {.threads = 1}, warnings);
 }
@@ -98,9 +99,10 @@ TEST(Stereo, IsForPerspectiveCameras) {
 // The laboratory's camera for pbrt-v4 names no eye, or one.
 TEST(Stereo, OfPbrt4) {
     const auto scene = [](const std::string& more) {
-        return SceneOf("Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20\n"
-                       "Camera \"stereoscopic\" \"float eyeDistance\" 2 " +
-                       more + "\nWorldBegin\nLightSource \"infinite\"");
+        return SceneOf(
+            "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20\n"
+            "Camera \"stereoscopic\" \"float eyeDistance\" 2 " +
+            more + "\nWorldBegin\nLightSource \"infinite\"");
     };
     EXPECT_TRUE(scene("")->rightEye);
     EXPECT_EQ(scene("")->camera.position.x(), -1);
