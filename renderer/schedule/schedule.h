@@ -89,10 +89,10 @@ struct BlockStart {
     bool stopped = false;
     bool stoppedByVote = false;
     double noise = kUnknownNoise;
-    bool hasVoted = false;  // for its own stop, and waits for the other eye's
     // The spp at the end of a pass that has been begun, and has to be finished though time is
     // called; 0: none.
     int passEnd = 0;
+    bool hasVoted = false;  // for its own stop, and waits for the other eye's
 };
 
 // A piece of a block's pass: `count` samples from `first` on for each of the pixels.
@@ -131,6 +131,8 @@ class Schedule {
     int PassEnd(int block) const { return progress[block].target; }
     // Returns whether the block's pass has to be finished though time is called.
     bool MustEnd(int block) const { return progress[block].mustEnd; }
+    // Returns whether it has voted for its own stop, and may wait for the other eye's.
+    bool HasVoted(int block) const { return progress[block].hasVoted; }
     // Returns whether a pass is left that has to be finished though time is called.
     bool MustGoOn() const;
 

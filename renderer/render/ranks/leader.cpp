@@ -226,7 +226,8 @@ class Leader {
             const Block& block = blocks[size_t(i)];
             const bool mustEnd = schedule.HasClock() && schedule.Unlocked().MustEnd(i);
             message.blocks.push_back({block.spp, block.stopped, block.stoppedByVote, block.noise,
-                                      mustEnd ? schedule.Unlocked().PassEnd(i) : 0});
+                                      mustEnd ? schedule.Unlocked().PassEnd(i) : 0,
+                                      schedule.Unlocked().HasVoted(i)});
             message.needs.push_back(block.stopped
                                         ? ViewNeed::Nothing
                                         : executor.criteria.NeedAt(i, NextSpp(block.spp)));
@@ -393,8 +394,9 @@ class Leader {
     void TellAnswer(int block, const BlockAnswer& answer) {
         parts[size_t(block)].clear();
         const int next = NextSpp(schedule.Unlocked().PassEnd(block));
-        const ViewNeed need =
-            answer.stop ? ViewNeed::Nothing : executor.criteria.NeedAt(block, next);
+        const bool isAlone = schedule.BlockAt(block).partner < 0;
+        const ViewNeed need = answer.stop && isAlone ? ViewNeed::Nothing
+                                                     : executor.criteria.NeedAt(block, next);
         channel.PostToAll(Pack(AnswerMessage{block, answer.stop, answer.noise, need}));
     }
 

@@ -79,7 +79,7 @@ Ray Camera::GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* we
 }
 
 Ray Camera::GenerateRareRay(const CameraSample& sample, float* weight) const {
-    const auto& [film, lens, time] = sample;
+    const auto& [film, lens, time, isRight] = sample;
     const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
                     : lenses                              ? GenerateRealisticRay(film, lens, weight)
                                                           : GenerateOtherRay(film, lens);

@@ -44,7 +44,7 @@ void BM_Image(benchmark::State& state) {
     for (size_t i = 0; i < texels.size(); ++i) texels[i] = Stored(float(i * 7919 % 251));
     const Image image{size, size, channels, texels};
     const auto stored = std::make_shared<const TextureImage>(
-        MakeTextureImage(image, std::is_same_v<Stored, uint8_t>,
+        MakeTextureImage(image, std::is_same_v<Stored, uint8_t> ? kSrgb : 1,
                          channels == 1 ? TextureChannels::Luminance : TextureChannels::Rgb));
     Measure(state, ImageMap<Value>{UvMapping{}, stored, 1, wrap, wrap}, state.range(1));
 }

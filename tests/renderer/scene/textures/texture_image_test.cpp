@@ -237,27 +237,32 @@ TEST(ImageMap, AcceptsFilteringParameters) {
 
 TEST(MakeTextureImage, ReducesToOneChannel) {
     const Image grey{2, 1, 3, std::vector<float>{1, 1, 1, 2, 2, 2}};
-    EXPECT_TRUE(MakeTextureImage(grey, false, TextureChannels::Rgb).IsGrey());
+    EXPECT_TRUE(MakeTextureImage(grey, 1, TextureChannels::Rgb).IsGrey());
     const Image greyAlpha{2, 1, 2, std::vector<uint8_t>{51, 9, 102, 8}};
-    const TextureImage stripped = MakeTextureImage(greyAlpha, false, TextureChannels::Rgb);
+    const TextureImage stripped = MakeTextureImage(greyAlpha, 1, TextureChannels::Rgb);
     EXPECT_EQ(std::get<0>(stripped.texels).values, (std::vector<uint8_t>{51, 102}));
     const Image rgba{1, 1, 4, std::vector<uint8_t>{1, 2, 3, 0}};
-    EXPECT_EQ(MakeTextureImage(rgba, true, TextureChannels::Rgb).Bytes(), 3u);
-    EXPECT_EQ(MakeTextureImage(rgba, true, TextureChannels::Luminance).Bytes(), 4u);
+    EXPECT_EQ(MakeTextureImage(rgba, kSrgb, TextureChannels::Rgb).Bytes(), 3u);
+    EXPECT_EQ(MakeTextureImage(rgba, kSrgb, TextureChannels::Luminance).Bytes(), 4u);
 }
 
 TEST(MakeTextureImage, TakesOneChannelAsItIs) {
     const Image rgba{1, 1, 4, std::vector<uint8_t>{10, 20, 30, 40}};
     const Image grey{1, 1, 1, std::vector<float>{0.25f}};
-    const auto value = [](const Image& image, TextureChannels channel, bool gamma = false) {
+    const auto value = [](const Image& image, TextureChannels channel, float gamma = 1) {
         return MakeTextureImage(image, gamma, channel).uniform->x();
     };
     EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Red), 10 / 255.f);
     EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Green), 20 / 255.f);
     EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Blue), 30 / 255.f);
-    EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Alpha, true), 40 / 255.f);
+    EXPECT_FLOAT_EQ(value(rgba, TextureChannels::Alpha, kSrgb), 40 / 255.f);
     EXPECT_FLOAT_EQ(value(grey, TextureChannels::Green), 0.25f);
     EXPECT_FLOAT_EQ(value(grey, TextureChannels::Alpha), 1);
+    // pbrt-v4's number of an image: alpha, if there is any, or the mean.
+    EXPECT_FLOAT_EQ(value(rgba, TextureChannels::MeanOrAlpha), 40 / 255.f);
+    const Image opaque{1, 1, 4, std::vector<uint8_t>{10, 20, 30, 255}};
+    EXPECT_FLOAT_EQ(value(opaque, TextureChannels::MeanOrAlpha), 20 / 255.f);
+    EXPECT_FLOAT_EQ(value(opaque, TextureChannels::MeanOrAlpha, 2), 1400 / 3.f / (255 * 255));
 }
 
 TEST(BilinearFootprint, MirrorsEveryOtherCopy) {
