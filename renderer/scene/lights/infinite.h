@@ -5,12 +5,13 @@
 #include "renderer/base/block_distribution.h"
 #include "renderer/image/image.h"
 #include "renderer/scene/lights/light_sample.h"
+#include "renderer/scene/textures/imagemap.h"
 
 namespace lull {
 
 // Radiance from all directions as an image, sampled by its brightness.
 
-// Interpolates bilinearly and repeats in both directions, as pbrt-v3 does. The density is constant
+// Interpolates bilinearly; columns repeat, rows end at the poles. The density is constant
 // over cells of half a texel a side, in proportion to the brightness at their centres.
 class EnvironmentMap {
   public:
@@ -19,8 +20,9 @@ class EnvironmentMap {
 
     // Multiplies the texels by `scale`. The products must be from 0 to kMaxTexel. Rows run from
     // theta = 0; the density follows the solid angle of a row. Not compensated, it is pbrt-v3's
-    // (3rd ed., 14.2.4). A compensated map leaves texels darker than the mean to BSDF sampling,
-    // which suffices there (Karlik et al. 2019), and samples nearly constant maps uniformly.
+    // (3rd ed., 14.2.4), whose rows repeat over the poles. A compensated map leaves texels darker
+    // than the mean to BSDF sampling, which suffices there (Karlik et al. 2019), and samples nearly
+    // constant maps uniformly.
     EnvironmentMap(Image image, const Rgb& scale, bool isCompensated = false);
 
     // Returns the radiance at a point of the unit square.
@@ -38,6 +40,7 @@ class EnvironmentMap {
     void Brightness(int row, std::span<float> cells) const;
 
     Image image;
+    Wrap wrapRows;
     Rgb scale;
     BlockDistribution cells;
 };
