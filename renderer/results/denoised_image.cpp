@@ -56,7 +56,7 @@ DenoisedImage DenoisePreview(const Film& film, int64_t mostPixels) {
             {}};
 }
 
-std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
+std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks, double accepted) {
     std::vector<double> upper;
     int64_t worstPixels = 0;
     double worst = 0;
@@ -74,9 +74,9 @@ std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
     const bool isKnown = upper.size() == blocks.size();
     std::string text = fmt::format(
         "visible difference from the true image probably at most {:.2g} in half of the {}blocks{} "
-        "and {:.2g} in all (accepted: {})",
+        "and {:.2g} in all (accepted: {:.2g})",
         upper[upper.size() / 2], isKnown ? "" : fmt::format("{} ", upper.size()),
-        isKnown ? "" : " of which it is known", upper.back(), kAcceptedBound);
+        isKnown ? "" : " of which it is known", upper.back(), accepted);
     if (worstPixels == 1)
         text += fmt::format(", except for a pixel that may be wrong by {:.0f} in L*", worst);
     if (worstPixels > 1)

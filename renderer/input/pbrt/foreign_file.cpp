@@ -1,6 +1,7 @@
 #include "renderer/input/pbrt/foreign_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "stopping/base/input_file.h"
@@ -31,6 +32,16 @@ constexpr std::pair<std::string_view, const char*> kFormats[] = {
     {"<scene"sv, "an XML file, as Mitsuba's scenes are; export the scene for pbrt-v3 or as glTF"},
 };
 
+constexpr std::pair<std::string_view, const char*> kExtensions[] = {
+    {".blend", "a Blender file; render it in Blender with the add-on, or export it as glTF"},
+    {".obj", "a Wavefront OBJ mesh; export the scene as glTF"},
+    {".mtl", "a Wavefront material; export the scene as glTF"},
+    {".stl", "an STL mesh; export the scene as glTF"},
+    {".dae", "a COLLADA file; export the scene as glTF"},
+    {".fbx", "an FBX file; export the scene as glTF"},
+    {".usda", "a USD file; export the scene as glTF"},
+};
+
 constexpr std::string_view kV2Directives[] = {"Renderer", "SurfaceIntegrator", "Volume",
                                               "VolumeIntegrator"};
 constexpr std::string_view kV4Directives[] = {"Attribute", "ColorSpace", "Import", "Option"};
@@ -51,7 +62,12 @@ constexpr std::pair<std::string_view, std::string_view> kV4Kinds[] = {
 
 }  // namespace
 
-std::string ForeignFormat(std::string_view bytes) {
+std::string ForeignFormat(std::string_view name, std::string_view bytes) {
+    std::string lower(name);
+    std::ranges::transform(lower, lower.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    for (const auto& [extension, what] : kExtensions)
+        if (lower.ends_with(extension)) return what;
     for (const auto& [magic, what] : kFormats)
         if (bytes.starts_with(magic)) return what;
     if (const std::string_view wide = WideEncoding(bytes); !wide.empty())
