@@ -130,8 +130,8 @@ TEST_F(PbrtErrors, Numbers) {
     for (const std::string number : {"1.#INF", "-1.#IND", "1.#QNAN0", "1.#INF000"})
         for (const std::string type : {"float", "integer"})
             ExpectInWorld("Shape \"sphere\" \"" + type + " radius\" [ " + number + " ]",
-                          number.substr(0, number.find('0')) + "' is not a finite number");
-    ExpectInWorld("Shape \"sphere\" \"float radius\" 2#INF\nShape 3", "there is '3'");
+                          "'" + number.substr(0, number.find('0')) + "' is not a finite number");
+    Expect("WorldBegin\nShape \"sphere\" \"float radius\" 2#INF\nShape 3", "scene.pbrt:3: ");
 }
 
 TEST_F(PbrtErrors, Strings) {
