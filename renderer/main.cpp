@@ -90,6 +90,11 @@ std::string ProblemOfRemoved(std::span<const char* const> words) {
     return "";
 }
 
+// Names that other programs have for options.
+constexpr std::pair<const char*, const char*> kElsewhere[] = {
+    {"--samples", "--spp"}, {"--res", "--resolution"}, {"--size", "--resolution"},
+    {"--max-spp", "--cap"}, {"--tile", "--block"},     {"--noise-threshold", "--caution"}};
+
 // Returns which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
@@ -122,7 +127,9 @@ std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
     std::vector<std::string> names;
     for (const CLI::Option* known : command.get_options())
         for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
-    const std::string nearest = NearestName(word, names);
+    std::string nearest = NearestName(word, names);
+    for (const auto& [elsewhere, here] : kElsewhere)
+        if (word == elsewhere && std::ranges::count(names, here) > 0) nearest = here;
     return "there is no option " + word +
            (nearest.empty() ? help : "; did you mean " + nearest + "?");
 }
@@ -152,11 +159,16 @@ ExitCode Main(MpiJob* job, int argc, char** argv) {
     study::AddCommand(app, &command);
     for (CLI::App* each : app.get_subcommands({})) SetHelp(each);
     std::vector<const char*> words(argv, argv + argc);
-    std::string problem = argc > 1 ? ProblemOfRemoved(words) : "";
-    if (argc > 1 && problem.empty()) problem = ProblemOfCommand(app, words[1]);
+    if (argc == 1) words.push_back("--help");
+    if (argc > 1 && std::string_view(words[1]) == "help") {
+        words.erase(words.begin() + 1);
+        words.push_back("--help");
+    }
+    std::string problem = ProblemOfRemoved(words);
+    if (problem.empty()) problem = ProblemOfCommand(app, words[1]);
     if (!problem.empty()) return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
     try {
-        app.parse(argc, words.data());
+        app.parse(int(words.size()), words.data());
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) {
             app.exit(e);

@@ -28,24 +28,35 @@ class StoredInterface {
     uint16_t f0, f90;
 };
 
-// Returns the fraction that a clear coat of weight `coat`, with an index of 1.5, leaves of light
-// that goes through it on its way in and out, by the cosines of both directions.
-inline float ThroughCoat(float coat, float cosO, float cosI) {
-    if (coat == 0) return 1;
-    const InterfaceAbove above{0.04f * coat, coat};
-    return above.Through(cosO) * above.Through(cosI);
-}
+// A clear coat with an index of 1.5, in 4 bytes. By the direction of view alone it takes what it
+// reflects there from all that is below, as KHR_materials_clearcoat mixes them: no light is lost or
+// made, but f is not reciprocal.
+class CoatAbove {
+  public:
+    CoatAbove(float weight, float alpha = 0)
+        : weight(uint16_t(weight * 65535 + 0.5f)), alpha(uint16_t(alpha * 65535 + 0.5f)) {}
 
-// Follows Schlick's approximation from f0 to f90, below a clear coat. Of the coat only the half
-// vector is known, which is near to the normal where it counts.
+    float Through(float cosO) const {
+        if (weight == 0) return 1;
+        const float reflected = alpha == 0
+                                    ? 0.04f + 0.96f * SchlickWeight(cosO)
+                                    : DirectionalAlbedo(cosO, float(alpha) / 65535)(0.04f, 1);
+        return 1 - float(weight) / 65535 * reflected;
+    }
+
+  private:
+    uint16_t weight, alpha;  // in units of 1 / 65535
+};
+
+// Follows Schlick's approximation from f0 to f90, below a clear coat.
 struct CoatedInterface {
     StoredRgb f0;
-    float f90, coat;
+    float f90;
+    CoatAbove coat;
 
     Rgb operator()(float cosI) const {
-        const float cosine = std::abs(cosI);
         const Rgb r = f0;
-        return (r + SchlickWeight(cosine) * (f90 - r)) * ThroughCoat(coat, cosine, cosine);
+        return r + SchlickWeight(std::abs(cosI)) * (f90 - r);
     }
 };
 
@@ -63,12 +74,12 @@ struct LayeredReflection {
     float f90;
     float alpha;
     StoredInterface stored;          // above the base
-    float coat;                      // weight of the clear coat over all, in [0, 1]
+    CoatAbove coat;                  // over all
     StoredRgb scale = Rgb(1, 1, 1);  // sampling does not depend on it
 
     // Takes the albedo of the base, in [0, 1], and the rest as the members.
     LayeredReflection(const Rgb& base, const Rgb& f0, float f90, float alpha,
-                      const InterfaceAbove& above, float coat)
+                      const InterfaceAbove& above, CoatAbove coat)
         : diffuse(base), f0(f0), f90(f90), alpha(alpha), stored(above), coat(coat) {
         const float left = 1 - MeanAlbedo(alpha)(above.f0, above.f90);
         diffuse *= Rgb::Constant(left > 1e-3f ? 1 / left : 0);
@@ -97,7 +108,7 @@ struct LayeredReflection {
             value.f += reflectance * (0.5f * d / (cosI * so + cosO * si));
             value.pdf += (1 - split.diffuseShare) * (0.5f * d / (cosO + so));
         }
-        value.f *= Rgb(scale) * ThroughCoat(coat, cosO, cosI);
+        value.f *= Rgb(scale) * coat.Through(cosO);
         if (!SameHemisphere(wo, wi)) value.pdf = 0;
         return value;
     }
@@ -139,7 +150,7 @@ struct ThinTransmission {
     StoredRgb t;
     float alpha;
     InterfaceAbove above;
-    float coat;
+    CoatAbove coat;
 
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {
         const float cosO = std::abs(wo.z()), cosI = std::abs(wi.z());
@@ -150,7 +161,7 @@ struct ThinTransmission {
         const TrowbridgeReitz distribution(alpha, alpha);
         const float d = distribution.D(h, h2);
         const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
-        const float through = above.Through(0.5f * std::sqrt(h2)) * ThroughCoat(coat, cosO, cosI);
+        const float through = above.Through(0.5f * std::sqrt(h2)) * coat.Through(cosO);
         return {Rgb(t) * (through * (0.5f * d / (cosI * so + cosO * si))), 0.5f * d / (cosO + so)};
     }
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {
@@ -171,14 +182,13 @@ struct ThinSpecular {
     float f90;
     StoredRgb t;
     StoredInterface stored;
-    float coat;
+    CoatAbove coat;
     StoredRgb scale = Rgb(1, 1, 1);  // sampling does not depend on it
 
     // Returns the share of light that goes straight through at this cosine, > 0.
     Rgb StraightThrough(float cosine) const {
         const InterfaceAbove above = stored;
-        return Rgb(t) * Rgb(scale) *
-               (std::max(0.f, above.Through(cosine)) * ThroughCoat(coat, cosine, cosine));
+        return Rgb(t) * Rgb(scale) * (std::max(0.f, above.Through(cosine)) * coat.Through(cosine));
     }
 
     bool Sample(const Vec3f& wo, const Vec2f& u, SpecularSample* s) const {
@@ -190,7 +200,7 @@ struct ThinSpecular {
         const float sum = reflected.sum() + through.sum();
         if (!(sum > 0)) return false;
         const float share = reflected.sum() / sum;
-        const Rgb f = Rgb(scale) * (ThroughCoat(coat, cosO, cosO) / cosO);
+        const Rgb f = Rgb(scale) * (coat.Through(cosO) / cosO);
         if (u.x() < share)
             *s = {reflected * f, share, {-wo.x(), -wo.y(), wo.z()}, false};
         else

@@ -86,11 +86,12 @@ typename To::Value Albedo(const LayeredReflection& lobe, const Vec3f& wo, To to)
     const GgxAlbedo albedo = DirectionalAlbedo(cosO, lobe.alpha);
     const Rgb base = Rgb(lobe.diffuse) * std::max(0.f, 1 - albedo(above.f0, above.f90));
     const Rgb interface = Rgb(lobe.f0) * albedo.ofF0 + lobe.f90 * albedo.ofF90;
-    return to(Rgb(lobe.scale) * (base + interface)) * ThroughCoat(lobe.coat, cosO, 1);
+    return to(Rgb(lobe.scale) * (base + interface)) * lobe.coat.Through(cosO);
 }
 template <typename To>
 typename To::Value Albedo(const ThinTransmission& lobe, const Vec3f& wo, To to) {
-    return to(lobe.t) * std::max(0.f, lobe.above.Through(std::abs(wo.z())));
+    return to(lobe.t) * (std::max(0.f, lobe.above.Through(std::abs(wo.z()))) *
+                         lobe.coat.Through(std::abs(wo.z())));
 }
 template <typename To>
 typename To::Value Albedo(const ThinSpecular& lobe, const Vec3f& wo, To to) {
@@ -98,7 +99,7 @@ typename To::Value Albedo(const ThinSpecular& lobe, const Vec3f& wo, To to) {
     const InterfaceAbove above = lobe.stored;
     const Rgb f0 = lobe.f0, reflected = f0 + SchlickWeight(cosO) * (lobe.f90 - f0);
     const Rgb through = Rgb(lobe.t) * std::max(0.f, above.Through(cosO));
-    return to(Rgb(lobe.scale) * (reflected + through));
+    return to(Rgb(lobe.scale) * (reflected + through)) * lobe.coat.Through(cosO);
 }
 template <typename To>
 typename To::Value Albedo(const CoatedDiffuseLobe& lobe, const Vec3f& wo, To to) {

@@ -119,8 +119,8 @@ struct MicrofacetReflection {
         // wi . h / |h| is half of |h|; the interface expects it to be signed by the side of the
         // normal.
         const float cosH = std::copysign(0.5f * std::sqrt(h2), h.z());
-        const Rgb f =
-            Rgb(r) * (interface(cosH) * (0.5f * d / Masking::Divisor(cosO, so, cosI, si)));
+        Rgb f = Rgb(r) * (interface(cosH) * (0.5f * d / Masking::Divisor(cosO, so, cosI, si)));
+        if constexpr (requires { interface.coat; }) f *= interface.coat.Through(cosO);
         return {f, SameHemisphere(wo, wi) ? 0.5f * d / (cosO + so) : 0};
     }
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const {

@@ -37,11 +37,11 @@ int RemoveUnknownErrors(const RenderResult& result, const PixelRect& region,
     return count;
 }
 
-void PrintDenoised(const DenoisedImage& image, double seconds, bool quiet,
-                   const Messages& messages) {
+void PrintDenoised(const DenoisedImage& image, double seconds, bool quiet, const Messages& messages,
+                   double accepted) {
     if (quiet) return;
     const std::string text =
-        fmt::format("denoised in {}; {}", FormatDuration(seconds), TextOf(image.blocks));
+        fmt::format("denoised in {}; {}", FormatDuration(seconds), TextOf(image.blocks, accepted));
     if (messages.isJson)
         messages.Note(text);
     else

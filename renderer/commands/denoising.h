@@ -35,7 +35,8 @@ void KeepDecisions(const RenderResult&, DenoisedImage*);
 int RemoveUnknownErrors(const RenderResult&, const PixelRect& region, DenoisedImage*);
 
 // Prints how long denoising took and how clean the picture is, unless `quiet`.
-void PrintDenoised(const DenoisedImage&, double seconds, bool quiet, const Messages& = {});
+void PrintDenoised(const DenoisedImage&, double seconds, bool quiet, const Messages& = {},
+                   double accepted = kAcceptedDifference);
 
 // Shows the denoiser and the rules a render as graded pictures do.
 

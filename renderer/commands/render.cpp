@@ -154,7 +154,9 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
             "{} of {} blocks have fewer than {} samples per pixel; how far they are from "
             "the true image is unknown",
             unknown, result.blocks.size(), kLeastDenoisedSpp));
-    PrintDenoised(*made.image, SecondsSince(start), settings.quiet, messages);
+    PrintDenoised(*made.image, SecondsSince(start), settings.quiet, messages,
+                  IsRule(p.rule.text, kDenoisedRuleName) ? p.rule.threshold
+                                                         : kAcceptedDifference / settings.caution);
     if (p.display) p.display->ShowDenoised(region, made.image->image.values);
     return made;
 }

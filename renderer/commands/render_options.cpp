@@ -26,7 +26,7 @@ constexpr const char* kFooter =
 Examples:
   lull render scene.pbrt -o image.exr
   lull render scene.pbrt --stop lnoise:0.3 --cap 2000 --report report.html
-  lull render scene.pbrt --spp 64 --resolution 400x300 --sampler sobol
+  lull render scene.pbrt --spp 64 --resolution 400x300
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
   lull render scene.pbrt --checkpoint c.h5 --resume --keep-checkpoint --cap 20000    # and more
   lull render scene.pbrt --preview 60                  # writes the current image every minute
@@ -35,7 +35,7 @@ Examples:
 
 With --time or --until, the noisiest blocks are sampled first. Every pixel gets one sample, even past
 the deadline. The sample counts depend on the machine; --stop thresholds:OUT.thresholds.csv repeats
-the image. A checkpoint is kept.
+the image. A file of --checkpoint is kept.
 
 Ctrl-C ends the render and writes the current image; a second Ctrl-C ends it at once.
 Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
@@ -86,7 +86,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
                        "Choose the stopping rule, listed below [learned; --denoise: denoised]")
             ->group(kCommonOptions)
             ->type_name("RULE");
-    AddCautionOption(app, &o->render.caution)->group("Stopping");
+    AddCautionOption(app, &o->render.caution)->group(kCommonOptions);
     app.add_option("--graded-by", o->gradedBy,
                    "Judge the image brightened by EV stops as well; the noisier counts")
         ->group("Stopping")

@@ -98,7 +98,7 @@ Rule ReadRuleOption(const std::string& option, const std::string& rule,
                     const RenderSettings& settings, const PixelRect& region,
                     std::map<std::string, SignalMeasure> measures) try {
     if (IsRule(rule, kDenoisedRuleName) && measures.empty())
-        throw Error(
+        throw UsageError(
             option + " " + rule +
             ": needs --denoise of lull render; lull compare --denoise adds a denoised image");
     const ScheduleOptions& schedule = settings.schedule;

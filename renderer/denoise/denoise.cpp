@@ -17,6 +17,7 @@ constexpr float kLeastVariance = 1e-10f;
 // Lamps are small where this share of the pixels within the radius shows them.
 constexpr int kLampRadius = 3;
 constexpr float kMostOfLamps = 0.3f;
+constexpr float kGlint = 4;  // times the brightest neighbour
 
 // Writes nothing where nothing changes, which would take memory.
 void MakeSane(Halves* halves) {
@@ -59,6 +60,13 @@ void KeepSmallLamps(Halves* emission) {
                 if (half->Plane(c)[i] != 0) half->Plane(c)[i] = 0;
 }
 
+// Lowers the variance of the mean, where it is known, to that of what is left of a pixel.
+void ForgetVariance(const Halves& rest, size_t pixel, Planes* ofMean) {
+    if (ofMean->count == 0) return;
+    const float difference = LuminanceOf(rest.a, pixel) - LuminanceOf(rest.b, pixel);
+    ofMean->values[pixel] = std::min(ofMean->values[pixel], Sqr(difference) / 4);
+}
+
 // Removes the emission of small lamps from the colours, with its share of their variance.
 void TakeEmission(NoisyPicture* picture) {
     Halves &colour = picture->colour, &emission = picture->emission;
@@ -71,8 +79,51 @@ void TakeEmission(NoisyPicture* picture) {
     subtract(emission.b, &colour.b);
     for (size_t i = 0; i < picture->variance.values.size(); ++i) {
         if (!(LuminanceOf(emission.a, i) + LuminanceOf(emission.b, i) > 0)) continue;
-        const float rest = LuminanceOf(colour.a, i) - LuminanceOf(colour.b, i);
-        picture->variance.values[i] = std::min(picture->variance.values[i], Sqr(rest) / 4);
+        ForgetVariance(colour, i, &picture->variance);
+    }
+}
+
+float BrightestBeside(const Halves& colour, int x, int y) {
+    const int width = colour.a.width, height = colour.a.height;
+    float most = 0;
+    for (int v = std::max(0, y - 1); v < std::min(height, y + 2); ++v)
+        for (int u = std::max(0, x - 1); u < std::min(width, x + 2); ++u) {
+            if (u == x && v == y) continue;
+            const size_t i = size_t(v) * size_t(width) + size_t(u);
+            most = std::max({most, LuminanceOf(colour.a, i), LuminanceOf(colour.b, i)});
+        }
+    return most;
+}
+
+// Moves what single pixels have above their neighbours in both halves to the emission, which is not
+// filtered: no other patch resembles those with such a pixel, which would stay noisy.
+void TakeGlints(NoisyPicture* picture) {
+    Halves& colour = picture->colour;
+    const int width = colour.a.width, height = colour.a.height;
+    std::vector<std::pair<size_t, float>> glints;  // and their brightest neighbours
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const size_t i = size_t(y) * size_t(width) + size_t(x), beside = x > 0 ? i - 1 : i + 1;
+            const float least = std::min(LuminanceOf(colour.a, i), LuminanceOf(colour.b, i));
+            if (width < 2 || !(least > kGlint * LuminanceOf(colour.a, beside))) continue;
+            const float most = BrightestBeside(colour, x, y);
+            if (least > kGlint * most) glints.emplace_back(i, most);
+        }
+    if (glints.empty()) return;
+    if (picture->emission.a.count == 0)
+        picture->emission = {Planes(width, height, kColours), Planes(width, height, kColours)};
+    for (const auto& [i, most] : glints) {
+        const auto take = [&](Planes* from, Planes* to) {
+            const float above = 1 - most / LuminanceOf(*from, i);
+            for (int c = 0; c < kColours; ++c) {
+                const float taken = from->Plane(c)[i] * above;
+                from->Plane(c)[i] -= taken;
+                to->Plane(c)[i] += taken;
+            }
+        };
+        take(&colour.a, &picture->emission.a);
+        take(&colour.b, &picture->emission.b);
+        ForgetVariance(colour, i, &picture->variance);
     }
 }
 
@@ -126,18 +177,14 @@ Planes EstimateVariance(const Halves& colour, const Planes& ofMean) {
 }
 
 void ForgetFireflies(const std::vector<Firefly>& fireflies, const Halves& without, Planes* ofMean) {
-    if (ofMean->count == 0) return;
-    for (const Firefly& f : fireflies) {
-        const float rest = LuminanceOf(without.a, f.pixel) - LuminanceOf(without.b, f.pixel);
-        float& variance = ofMean->values[f.pixel];
-        variance = std::min(variance, Sqr(rest) / 4);
-    }
+    for (const Firefly& f : fireflies) ForgetVariance(without, f.pixel, ofMean);
 }
 
 DenoisedPicture Denoise(NoisyPicture in, Effort effort, const ShareListener& onShare) {
-    const bool hasEmission = in.emission.a.count > 0;
-    if (hasEmission) TakeEmission(&in);
+    if (in.emission.a.count > 0) TakeEmission(&in);
     MakeSane(&in.colour);
+    TakeGlints(&in);
+    const bool hasEmission = in.emission.a.count > 0;
     DenoisedPicture result;
     result.noisy = std::move(in.colour);
     result.fireflies = TakeFireflies(kFireflyLimit, &result.noisy);

@@ -12,9 +12,9 @@ namespace {
 constexpr int kScaleRadius = 4;    // pixels, over which differences are measured
 constexpr int kSpreadRadius = 20;  // of each of two box filters, one after the other
 constexpr int kSpreadReach = 2 * kSpreadRadius;
-constexpr int kBandRows = 256;         // over which what is taken is returned at a time
-constexpr int kRounds = 2;             // as fireflies hide each other
-constexpr float kMostReturned = 0.5f;  // of a pixel's brightness, by one firefly
+constexpr int kBandRows = 256;          // over which what is taken is returned at a time
+constexpr int kRounds = 2;              // as fireflies hide each other
+constexpr float kMostReturned = 0.05f;  // of a pixel's brightness, by one firefly
 
 // The extremes of the luminance of a pixel and its eight neighbours.
 struct Around {

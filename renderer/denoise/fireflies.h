@@ -24,9 +24,10 @@ std::vector<Firefly> TakeFireflies(float limit, Halves*);
 
 // Adds them to a picture: each over the 81 x 81 pixels around, in proportion to their brightness
 // (up to white), where it is seen least. The sum over the picture grows by theirs, unless a few of
-// them would change it too much: a pixel gets at most half of its brightness from one, and more of
-// as many more. Returns the standard deviation of what they brought, in luminance and at most that
-// of the pixel, with that of what was not added: one event says as little of how many there are.
+// them would change it too much: a pixel gets at most a 20th of its brightness from one, and more
+// of as many more. Returns the standard deviation of what they brought, in luminance and at most
+// that of the pixel, with that of what was not added: one event says as little of how many there
+// are.
 Planes GiveBack(const std::vector<Firefly>&, Planes* picture);
 
 // Keeps fits from overshooting.

@@ -195,6 +195,9 @@ class OpenImageIoFile final : public lull::ImageFile {
             return std::string(beginning.begin(), beginning.end());
         };
         input = OIIO::ImageInput::open(path, &config);
+        if (header().starts_with("#?") && header().substr(0, 80).find("\r\n") != std::string::npos)
+            throw std::runtime_error(
+                "the lines of its header end in CR LF, as those of a text; copy it as binary");
         if (!input && header().starts_with("#?")) (void)RadianceHeader(header());
         if (!input) throw std::runtime_error(OIIO::geterror());
         const OIIO::ImageSpec& spec = input->spec();
@@ -229,7 +232,14 @@ class OpenImageIoFile final : public lull::ImageFile {
         const OIIO::TypeDesc type = shape.type == TexelType::Byte   ? OIIO::TypeDesc::UINT8
                                     : shape.type == TexelType::Half ? OIIO::TypeDesc::HALF
                                                                     : OIIO::TypeDesc::FLOAT;
-        if (!input->read_image(0, 0, 0, shape.channels, type, texels)) throw FailureOf(*input);
+        if (!input->read_image(0, 0, 0, shape.channels, type, texels)) {
+            if (std::string_view(input->format_name()) == "hdr")
+                throw std::runtime_error(
+                    FailureOf(*input).what() +
+                    std::string("; it is cut short, or has run lengths of the old kind: save it "
+                                "with Radiance's new ones, or as OpenEXR"));
+            throw FailureOf(*input);
+        }
         if (!radiance.IsPlain()) FinishRadiance(static_cast<float*>(texels));
         if (webp.empty()) return;
         const std::vector<uint8_t> colors = ReadColors(std::move(webp), shape.width, shape.height);

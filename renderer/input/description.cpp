@@ -172,10 +172,35 @@ std::vector<std::string> FilesOf(const Description& d) {
     return files;
 }
 
+namespace {
+
+// Returns a name with the backslashes that it had before they were read as escapes.
+std::string WithBackslashes(const std::string& name) {
+    constexpr std::string_view kRead = "\b\f\n\r\t", kWritten = "bfnrt";
+    std::string written;
+    for (const char c : name) {
+        const size_t at = kRead.find(c);
+        if (at != kRead.npos) written += '\\';
+        written += at != kRead.npos ? kWritten[at] : c;
+    }
+    return written;
+}
+
+}  // namespace
+
 std::string ResolvePath(const Description& description, const std::string& file) {
-    if (file.empty() || description.directory.empty()) return file;
     // An absolute path replaces the directory.
-    return (std::filesystem::path(description.directory) / file).string();
+    const auto resolved = [&](const std::string& name) {
+        if (name.empty() || description.directory.empty()) return name;
+        return (std::filesystem::path(description.directory) / name).string();
+    };
+    std::error_code ignored;
+    const std::string written = WithBackslashes(file);
+    if (written.find('\\') == written.npos || std::filesystem::exists(resolved(file), ignored))
+        return resolved(file);
+    std::string slashed = written;
+    std::ranges::replace(slashed, '\\', '/');
+    return resolved(std::filesystem::exists(resolved(slashed), ignored) ? slashed : written);
 }
 
 }  // namespace lull

@@ -157,7 +157,9 @@ struct ShapeEntity : Entity {
     bool reverseOrientation = false;
     int material = -1;                // into Description::materials
     std::optional<Entity> areaLight;  // of AreaLightSource, in force at the shape
-    // Of MediumInterface, into Description::media; -1: vacuum.
+    // Of MediumInterface, into Description::media; -1: vacuum. kSurrounding outside: whatever the
+    // shape lies in, as volumes of glTF do.
+    static constexpr int kSurrounding = -2;
     int insideMedium = -1, outsideMedium = -1;
     // Of a curve: further directives that differ only in points, widths and the like. Hair comes
     // with one directive per strand, and becomes one shape.
@@ -234,6 +236,7 @@ bool IntegratorSeesMedia(const std::string& name);
 std::vector<std::string> FilesOf(const Description& description);
 
 // Returns `file` as named in a parameter, made relative to the description's directory.
+// Backslashes, and what came of them as escapes, separate folders where there is such a file alone.
 std::string ResolvePath(const Description& description, const std::string& file);
 
 }  // namespace lull

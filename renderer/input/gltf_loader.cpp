@@ -78,8 +78,11 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
         ShapeEntity shape = MakeShapeEntity(std::move(triangles), loc);
         shape.material = material.index;
         shape.areaLight = material.emission;
-        if (shape.areaLight) ParameterWriter(&shape.parameters, loc).Bool("frontbywinding", true);
+        const bool hasFront =
+            shape.areaLight || material.coverage.Find(ParameterType::Bool, "singlesided");
+        if (hasFront) ParameterWriter(&shape.parameters, loc).Bool("frontbywinding", true);
         shape.insideMedium = material.medium;
+        if (material.isVolume) shape.outsideMedium = ShapeEntity::kSurrounding;
         for (const Parameter& parameter : material.coverage.All()) shape.parameters.Add(parameter);
         Hide(posed.visibility, &shape.parameters);
         result.shapes.push_back(std::move(shape));

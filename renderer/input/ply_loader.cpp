@@ -164,8 +164,8 @@ int64_t ReadTrianglesInBulk(const PlyElement& element, int64_t most, PlyCursor& 
     return rows;
 }
 
-uint32_t ReadIndex(PlyType type, PlyCursor& cursor) {
-    const double written = cursor.Read(type), index = std::round(written);
+uint32_t IndexOf(double written, const PlyCursor& cursor) {
+    const double index = std::round(written);
     if (!(index >= 0 && index <= double(kMostElements)) ||
         !(std::abs(written - index) <= kRounding))
         throw Error(cursor.loc, "a face has the vertex index " + std::to_string(written));
@@ -201,7 +201,7 @@ void ReadIndices(const PlyProperty& list, PlyCursor& cursor, Face* face) {
     const bool isModelled = face->corners <= kMostPolygonCorners;
     for (size_t i = 0; i < face->corners; ++i)
         if (isModelled)
-            face->vertices.push_back(ReadIndex(list.type, cursor));
+            face->vertices.push_back(IndexOf(cursor.Read(list.type), cursor));
         else
             cursor.Read(list.type);
 }
@@ -256,6 +256,33 @@ void AddFace(const Face& face, const FileLoc& loc, MeshData* mesh, WedgeUvs* uvs
     }
 }
 
+// Adds the triangles of strips, every other one of which is turned. -1 begins another strip, and
+// triangles without area join some.
+void ReadStrips(const PlyElement& element, PlyCursor& cursor, MeshData* mesh) {
+    const auto readStrip = [&](const PlyProperty& list) {
+        std::vector<uint32_t> strip;
+        for (size_t left = cursor.ReadListCount(list); left > 0; --left) {
+            const double written = cursor.Read(list.type);
+            if (written == -1 || written == double(std::numeric_limits<uint32_t>::max())) {
+                strip.clear();
+                continue;
+            }
+            strip.push_back(IndexOf(written, cursor));
+            if (strip.size() < 3) continue;
+            const auto [a, b, c] = std::to_array(
+                {strip[strip.size() - 3], strip[strip.size() - 2], strip[strip.size() - 1]});
+            if (a == b || b == c || c == a) continue;
+            mesh->triangles.push_back(strip.size() % 2 ? std::array{a, b, c} : std::array{b, a, c});
+        }
+    };
+    for (int64_t i = 0; i < element.count; ++i)
+        for (const PlyProperty& property : element.properties)
+            if (IsIndices(property))
+                readStrip(property);
+            else
+                cursor.SkipProperty(property);
+}
+
 // Returns the uvs of the corners, one entry a triangle, where faces have lists of them.
 WedgeUvs ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh,
                    Warnings& warnings) {
@@ -264,9 +291,9 @@ WedgeUvs ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh,
     // Kept to the triangles below, since a face may become two of them or none.
     const bool hasFaceIndices = std::ranges::any_of(element.properties, IsFaceIndex);
     const bool hasUvs = std::ranges::any_of(element.properties, IsWedgeUvs);
-    WedgeUvs uvs;
+    WedgeUvs uvs(hasUvs ? mesh->triangles.size() : 0);  // those of strips have none
     Face face;
-    mesh->triangles.reserve(size_t(element.count));
+    mesh->triangles.reserve(mesh->triangles.size() + size_t(element.count));
     for (int64_t i = 0; i < element.count; ++i) {
         i += ReadTrianglesInBulk(element, element.count - i, cursor, mesh);
         if (i == element.count) break;
@@ -320,8 +347,6 @@ void WarnOfOmissions(const PlyElement& element, const FileLoc& loc, Warnings& wa
                element.properties.end();
     };
     if (element.count == 0) return;
-    if (element.name == "tristrips")
-        warnings.Add(loc, "triangle strips of a PLY file are left out; save them as faces");
     const bool isVertex = element.name == "vertex";
     const bool isOfMesh = isVertex || element.name == "face";
     if (isOfMesh && (has("red") || has("diffuse_red") || has("r")))
@@ -353,15 +378,22 @@ void ReplaceNonFinite(std::vector<T>* values, const char* kind, const FileLoc& l
 void CheckMesh(MeshData* mesh, const FileLoc& loc, Warnings& warnings) {
     if (mesh->positions.empty() || mesh->triangles.empty())
         throw Error(loc, "the PLY file has no vertices or no triangles");
-    for (size_t i = 0; i < mesh->positions.size(); ++i)
-        if (!mesh->positions[i].allFinite())
-            throw Error(loc, "vertex " + std::to_string(i) + " of the PLY file is not finite");
     for (size_t i = 0; i < mesh->triangles.size(); ++i)
-        for (const uint32_t index : mesh->triangles[i])
+        for (const uint32_t index : mesh->triangles[i]) {
             if (index >= mesh->positions.size())
                 throw Error(loc, "triangle " + std::to_string(i) + " refers to vertex " +
                                      std::to_string(index) + ", but there are " +
                                      std::to_string(mesh->positions.size()));
+            if (!mesh->positions[index].allFinite())
+                throw Error(loc,
+                            "vertex " + std::to_string(index) + " of the PLY file is not finite");
+        }
+    // The others are of no triangle; they must not widen the mesh.
+    for (Vec3f& position : mesh->positions)
+        if (!position.allFinite()) {
+            position = mesh->positions[mesh->triangles[0][0]];
+            warnings.Add(loc, "unused vertex of a PLY file that is not finite");
+        }
     ReplaceNonFinite(&mesh->normals, "normal in a PLY file that is not finite", loc, warnings);
 }
 
@@ -398,11 +430,16 @@ MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc
             ReadVertices(element, cursor, &mesh);
         else if (isFace)
             wedgeUvs = ReadFaces(element, cursor, &mesh, warnings);
+        else if (element.name == "tristrips")
+            ReadStrips(element, cursor, &mesh);
         else
             SkipElement(element, cursor);
         WarnOfOmissions(element, place, warnings);
     }
     CheckMesh(&mesh, place, warnings);
+    // Strips may follow the faces, and have no such values.
+    if (!mesh.faceIndices.empty()) mesh.faceIndices.resize(mesh.triangles.size());
+    if (!wedgeUvs.empty()) wedgeUvs.resize(mesh.triangles.size());
     SplitVertices(wedgeUvs, &mesh);
     ReplaceNonFinite(&mesh.uvs, "uv in a PLY file that is not finite", place, warnings);
     return mesh;

@@ -87,7 +87,7 @@ DenoisedImage DenoisePreview(const Film& film, int64_t mostPixels) {
             {}};
 }
 
-std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
+std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks, double accepted) {
     std::vector<double> estimate;
     double upper = 0;
     int64_t worstPixels = 0;
@@ -107,9 +107,9 @@ std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks) {
     const bool isKnown = estimate.size() == blocks.size();
     std::string text = fmt::format(
         "visible difference from the true image at most about {:.2g} in half of the {}blocks{} and "
-        "{:.2g} in all, probably nowhere above {:.2g} (accepted: {})",
+        "{:.2g} in all, probably nowhere above {:.2g} (accepted: {:.2g})",
         estimate[estimate.size() / 2], isKnown ? "" : fmt::format("{} ", estimate.size()),
-        isKnown ? "" : " of which it is known", estimate.back(), upper, kAcceptedDifference);
+        isKnown ? "" : " of which it is known", estimate.back(), upper, accepted);
     if (worstPixels == 1)
         text += fmt::format(", except for a pixel that may be wrong by {:.0f} in L*", worst);
     if (worstPixels > 1)

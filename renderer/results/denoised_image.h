@@ -40,7 +40,8 @@ inline constexpr int kPreviewBytes = 48;
 DenoisedImage DenoisePreview(const Film&, int64_t mostPixels = 2'000'000);
 
 // Returns how large the visible errors of blocks probably are at most.
-std::string TextOf(const std::vector<std::optional<VisibleError>>&);
+std::string TextOf(const std::vector<std::optional<VisibleError>>&,
+                   double accepted = kAcceptedDifference);
 
 // Description of R, G, B in the header of an EXR.
 inline constexpr const char* kDenoisedNote =

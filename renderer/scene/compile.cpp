@@ -93,6 +93,54 @@ bool HidesShapes(const Scene& scene) {
                        [](const Shape& s) { return (s.hiddenFrom & kCameraRay) != 0; });
 }
 
+// Returns the share of the picture in which the camera looks through single-sided shapes from
+// behind.
+double ShareOpenBehind(const Scene& scene) {
+    const auto isSingleSided = [](const Shape& s) { return s.coverage && s.coverage->singleSided; };
+    const std::vector<Shape>& shapes = scene.shapes.shapes;
+    if (std::none_of(shapes.begin(), shapes.end(), isSingleSided)) return 0;
+    constexpr int kSide = 64;
+    int count = 0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+        const Vec2f at((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+        const Ray ray =
+            scene.camera.GenerateRay({at.cwiseProduct(scene.film.resolution.cast<float>())});
+        Hit first, seen;
+        if (!scene.accelerator.Intersect(ray, &first) || !isSingleSided(shapes[first.shape]) ||
+            (shapes[first.shape].hiddenFrom & kCameraRay))
+            continue;
+        count += !scene.accelerator.Intersect(ray, &seen, 0, kCameraRay) || seen.t != first.t;
+    }
+    return double(count) / (kSide * kSide);
+}
+
+// Returns the volumes that a point lies in: those that a ray from there leaves without having
+// entered them, the innermost first.
+MediumStack VolumesAbout(const Scene& scene, const Vec3f& point) {
+    constexpr int kMostHits = 1000;
+    std::vector<int> left;
+    std::map<int, int> entered;                                            // shapes, how often
+    Ray ray{point, Vec3f(0.302f, 0.534f, 0.79f).normalized(), kInfinity};  // along no edge
+    Hit found;
+    for (int i = 0; i < kMostHits && scene.accelerator.Intersect(ray, &found); ++i) {
+        SurfaceInteraction hit;
+        scene.shapes.Interact(ray, found, kNeedsNothing, &hit, 0);
+        const MediumTable::Sides& sides = scene.media.ofShapes[size_t(found.shape)];
+        if (sides.outside == ShapeEntity::kSurrounding) {
+            if (int& count = entered[found.shape]; ray.d.dot(hit.n) < 0)
+                ++count;
+            else if (count > 0)
+                --count;
+            else
+                left.push_back(sides.inside);
+        }
+        ray = hit.SpawnRay(ray.d);
+    }
+    MediumStack media;
+    for (auto medium = left.rbegin(); medium != left.rend(); ++medium) media.Enter(*medium);
+    return media;
+}
+
 // Refuses cameras whose rays Embree would not take.
 void CheckCamera(const Scene& scene, const FileLoc& loc) {
     const double farthest = std::max(Farthest(scene.camera, scene.film),
@@ -136,6 +184,18 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     scene->acceleratorSeconds =
         Timed([&] { scene->accelerator = Accelerator(scene->shapes, scene->textures); });
 
+    const auto isVolume = [](const MediumTable::Sides& sides) {
+        return sides.outside == ShapeEntity::kSurrounding;
+    };
+    if (std::any_of(scene->media.ofShapes.begin(), scene->media.ofShapes.end(), isVolume))
+        scene->media.ofCamera = VolumesAbout(
+            *scene, scene->camera.GenerateRay({scene->film.resolution.cast<float>() / 2}).o);
+    if (const double share = ShareOpenBehind(*scene); share > 0) {
+        scene->hidesShapes = true;
+        warnings.Add({},
+                     "single-sided surfaces are not shown from behind; set doubleSided for them",
+                     fmt::format("in {:.1f} % of the image", 100 * share));
+    }
     scene->isMoving = scene->camera.motion || !scene->shapes.motions.empty();
 
     // A black picture would be the first sign of it.

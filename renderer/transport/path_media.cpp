@@ -8,14 +8,14 @@ namespace {
 // Follows a ray through interfaces and panes, and multiplies the transmittances of their media.
 class Beam {
   public:
-    Beam(const PathContext<Media>& context, RayKind kind, const Ray& ray, int medium)
-        : ray(ray), medium(medium), context(context), kind(kind) {}
+    Beam(const PathContext<Media>& context, RayKind kind, const Ray& ray, const MediumStack& media)
+        : ray(ray), media(media), context(context), kind(kind) {}
 
     // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
     bool Advance() {
         const Scene& scene = context.scene;
         const bool isHit = scene.accelerator.Intersect(ray, &found, context.camera.time, kind);
-        if (medium != kVacuum) {
+        if (const int medium = media.Top(); medium != kVacuum) {
             Ray segment = ray;
             if (isHit) segment.tMax = found.t;
             transmittance *= scene.media.Transmittance(medium, segment, context.sampler);
@@ -29,7 +29,7 @@ class Beam {
         else
             scene.shapes.Interact(ray, found, kNeedsNothing, &hit, context.camera.time);
         isPane = (needs & kLetsThrough) && !IsBlack(through);
-        medium = scene.media.Beyond(found.shape, ray.d.dot(hit.n) > 0, medium);
+        media = scene.media.Beyond(found.shape, ray.d.dot(hit.n) > 0, true, media);
         return true;
     }
     // Goes through the surface. Returns false where no light does.
@@ -44,7 +44,7 @@ class Beam {
     bool isInterface = false, isPane = false;
     Hit found;
     SurfaceInteraction hit;
-    int medium;  // beyond it
+    MediumStack media;  // beyond it
 
   private:
     const PathContext<Media>& context;
@@ -55,7 +55,7 @@ class Beam {
 }  // namespace
 
 Media::Visibility Media::Look(const Context& context, const Vec3f& origin, const Vec3f& target,
-                              int from, bool isAtInfinity) {
+                              const MediumStack& from, bool isAtInfinity) {
     const auto rayFrom = [&](const Vec3f& o) { return Ray{o, target - o, 1 - 0.0001f}; };
     Beam beam(context, kShadowRay, rayFrom(origin), from);
     while (beam.Advance()) {
@@ -63,11 +63,11 @@ Media::Visibility Media::Look(const Context& context, const Vec3f& origin, const
         beam.ray = rayFrom(beam.hit.SpawnRay(beam.ray.d).o);
     }
     Visibility visibility{.share = beam.transmittance};
-    if (isAtInfinity) visibility.isOutOfReach = context.scene.media.Swallows(beam.medium);
+    if (isAtInfinity) visibility.isOutOfReach = context.scene.media.Swallows(beam.media.Top());
     return visibility;
 }
 
-bool Media::Follow(const Context& context, const Ray& ray, int from, int index,
+bool Media::Follow(const Context& context, const Ray& ray, const MediumStack& from, int index,
                    LightHit* lightHit) {
     Beam beam(context, kOtherRay, ray, from);
     while (beam.Advance()) {

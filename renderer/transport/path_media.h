@@ -124,14 +124,15 @@ class Media {
     using Context = PathContext<Media>;
 
     // Starts where the camera is.
-    explicit Media(const Scene& scene) : table(&scene.media), medium(scene.media.ofCamera) {}
+    explicit Media(const Scene& scene) : table(&scene.media), media(scene.media.ofCamera) {}
 
     // Samples where the medium scatters the ray before it has gone t.
     MediumSample Sample(Ray ray, float t, Sampler& sampler) const {
         ray.tMax = t;
+        const int medium = media.Top();
         return medium == kVacuum ? MediumSample{} : table->Sample(medium, ray, sampler);
     }
-    float PhaseParameter() const { return table->PhaseParameter(medium); }
+    float PhaseParameter() const { return table->PhaseParameter(media.Top()); }
 
     // How a vertex sees a sample of a light.
     struct Visibility {
@@ -171,31 +172,31 @@ class Media {
     static bool LooksBehind(SurfaceNeeds needs) { return needs & (kIsInterface | kLetsThrough); }
     bool GoThrough(const SurfaceInteraction& hit, int shape, bool isLast, Path* path) {
         if (isLast && path->seesLights) return false;
-        medium = table->Beyond(shape, path->ray.d.dot(hit.n) > 0, medium);
+        media = table->Beyond(shape, path->ray.d.dot(hit.n) > 0, true, media);
         path->ray = hit.SpawnRay(path->ray.d);
         path->wentThrough = true;
         return true;
     }
-    void Leave(const SurfaceVertex& v, const Vec3f& wi) { medium = Towards(v, wi); }
+    void Leave(const SurfaceVertex& v, const Vec3f& wi) { media = Towards(v, wi); }
 
   private:
     static constexpr int kNothing = -2;  // in place of an area light
 
-    // Return the medium on the side of a vertex that a direction points to.
-    int Towards(const SurfaceVertex& v, const Vec3f& wi) const {
-        return table->Beyond(v.shape, wi.dot(v.hit.n) > 0, medium);
+    // Return the media on the side of a vertex that a direction points to.
+    MediumStack Towards(const SurfaceVertex& v, const Vec3f& wi) const {
+        return table->Beyond(v.shape, wi.dot(v.hit.n) > 0, !v.IsSameSide(wi, v.hit.wo), media);
     }
-    int Towards(const MediumVertex&, const Vec3f&) const { return medium; }
+    const MediumStack& Towards(const MediumVertex&, const Vec3f&) const { return media; }
 
-    // Looks along a segment that starts in medium `from`.
-    static Visibility Look(const Context&, const Vec3f& origin, const Vec3f& target, int from,
-                           bool isAtInfinity);
-    // Follows a ray that starts in medium `from` through interfaces and panes. Returns whether it
+    // Looks along a segment that starts in media `from`.
+    static Visibility Look(const Context&, const Vec3f& origin, const Vec3f& target,
+                           const MediumStack& from, bool isAtInfinity);
+    // Follows a ray that starts in media `from` through interfaces and panes. Returns whether it
     // meets area light `index`.
-    static bool Follow(const Context&, const Ray&, int from, int index, LightHit*);
+    static bool Follow(const Context&, const Ray&, const MediumStack& from, int index, LightHit*);
 
     const MediumTable* table;
-    int medium;  // that the path's next ray is in
+    MediumStack media;  // that the path's next ray is in
 };
 
 }  // namespace lull

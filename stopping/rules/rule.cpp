@@ -123,7 +123,11 @@ Decision RuleCriterion::Observe(const BlockView& view) {
     CheckView(view, Need(view.spp));
     if (!IsDue(view.spp)) return Decide(view.spp, {});
     const bool showsPeak = rule->peak.most > 0 && !view.halfMean.empty();
-    const double noise = showsPeak ? PeakNoise(ComputeLightnessNoise(view)) : 0;
+    double noise = 0;
+    if (showsPeak) {
+        const LightnessNoise pixels = ComputeLightnessNoise(view);
+        noise = std::max(PeakNoise(pixels), LocalPeakNoise(pixels, view.width, view.height));
+    }
     return Decide(view.spp,
                   rule->inputs ? MeasureBlock(view, *rule->inputs) : rule->measure(view, block),
                   PeakOverLimit(*rule, noise, view.spp));

@@ -23,6 +23,8 @@ struct LightnessNoise {
     // Standard deviation of L in the surrounding 13 x 13 pixels (within the block), after smoothing
     // L by 5 x 5 averages, which masks noise. Written t.
     std::vector<float> texture;
+    // The same, from pixels with noise alone: the edge of a lit window in a black wall hides none.
+    std::vector<float> textureOfNoisy;
 };
 
 // Returns the lightness, in [0, 100], of each pixel of linear R, G, B as a display shows it, but
@@ -42,7 +44,13 @@ inline float MaskedNoise(float noise, float texture) { return noise / (1 + textu
 // Quick 1974, Watson 1979). 0 for no pixels.
 double PeakNoise(const LightnessNoise& pixels);
 
-// Returns the peak noise of a block from that of sub-blocks of equal size; 0 for none.
+// Returns the noise of those neighbourhoods of 20 x 20 pixels that have most of it, however small
+// their share of the block is, times the ratio of the limits of both: below PeakNoise() where noise
+// is even. Pixels without noise count neither as such nor as texture.
+double LocalPeakNoise(const LightnessNoise& pixels, int width, int height);
+
+// Returns the larger of both from the peak noise of sub-blocks of equal size, taken as
+// neighbourhoods; 0 for none.
 double PeakOf(std::span<const float> subBlocks);
 
 // Returns the peak noise of sub-blocks from root mean squares alone, as if noise were bell-shaped

@@ -20,6 +20,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <map>
+#include <numeric>
 #include <stdexcept>
 #include <thread>
 
@@ -46,17 +49,20 @@ Vec2i ExtentOf(const Imath::Box2i& box) {
     return {side(box.min.x, box.max.x), side(box.min.y, box.max.y)};
 }
 
-// Returns whether the file has the channel, of this type.
-bool HasChannel(const Imf::Header& header, const std::string& name, Imf::PixelType type) {
-    const Imf::Channel* channel = header.channels().findChannel(name.c_str());
-    return channel && channel->type == type;
-}
-
 std::vector<std::string> NamesOf(const Imf::Header& header) {
     std::vector<std::string> names;
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
         names.push_back(c.name());
     return names;
+}
+
+// Returns why the part cannot be read, "" if it can.
+std::string ProblemOf(const Imf::Header& header) {
+    if (header.hasType() && Imf::isDeepData(header.type())) return "deep images are not supported";
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
+            return std::string("subsampled channels are not supported (") + c.name() + ")";
+    return "";
 }
 
 // Returns chromaticities as text, "" for Rec. 709.
@@ -119,33 +125,77 @@ struct ExrFile::Parts {
         uint64_t position = 0;
     };
 
+    // Where a channel is.
+    struct Place {
+        int part;
+        std::string name;
+    };
+
     MemoryStream stream;
     Imf::MultiPartInputFile file;
-    int part = 0;
+    std::map<std::string, Place> places;
+    int part = 0;  // of the picture
 
     // Of a header that was checked.
     explicit Parts(std::span<const std::byte> bytes)
         : stream(bytes), file(stream, UseExrThreads()) {
-        for (int i = file.parts() - 1; i >= 0; --i)
-            if (HasPlainColours(NamesOf(file.header(i)))) part = i;
+        std::vector<int> order(size_t(file.parts()));
+        std::iota(order.begin(), order.end(), 0);
+        std::ranges::stable_sort(order, std::greater(),
+                                 [&](int i) { return HasPlainColours(NamesOf(file.header(i))); });
+        std::string problem = "it has no channels";
+        for (const int i : order) {
+            const Imf::Header& header = file.header(i);
+            const std::vector<std::string> names = NamesOf(header);
+            const std::string reason = ProblemOf(header);
+            if (!reason.empty()) problem = reason;
+            const bool isTaken = std::ranges::any_of(
+                names, [&](const std::string& name) { return places.contains(name); });
+            for (size_t k = 0; reason.empty() && k < names.size(); ++k)
+                places.try_emplace(isTaken ? header.name() + "." + names[k] : names[k],
+                                   Place{i, names[k]});
+        }
+        if (places.empty()) throw std::runtime_error(problem);
+        part = PicturePart();
+        std::erase_if(places, [&](const auto& place) {  // all have the same display window
+            return file.header(place.second.part).dataWindow() != Header().dataWindow();
+        });
     }
     const Imf::Header& Header() const { return file.header(part); }
+    std::vector<std::string> SortedNames() const {
+        std::vector<std::string> names;
+        for (const auto& [name, place] : places) names.push_back(name);
+        SortChannels(&names);
+        return names;
+    }
+    int PicturePart() const {
+        std::vector<std::string> names = SortedNames();
+        try {
+            names = PictureChannels(names);
+        } catch (const std::runtime_error&) {  // those who want a picture will be told
+        }
+        return PlaceOf(*std::ranges::find_if(
+                           names, [&](const std::string& name) { return places.contains(name); }))
+            .part;
+    }
+    Place PlaceOf(const std::string& channel) const {
+        const auto found = places.find(channel);
+        return found == places.end() ? Place{part, channel} : found->second;
+    }
+    // Returns whether the file has the channel, of this type.
+    bool Has(const std::string& name, Imf::PixelType type) const {
+        const auto found = places.find(name);
+        return found != places.end() && file.header(found->second.part)
+                                                .channels()
+                                                .findChannel(found->second.name.c_str())
+                                                ->type == type;
+    }
 };
 
 ExrFile::ExrFile(std::span<const std::byte> bytes) try {
     CheckExrHeader(bytes);
     parts = std::make_unique<Parts>(bytes);
-    const Imf::Header& header = parts->Header();
-    if (header.hasType() && Imf::isDeepData(header.type()))
-        throw std::runtime_error("deep images are not supported");
-    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-        if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
-            throw std::runtime_error(std::string("subsampled channels are not supported (") +
-                                     c.name() + ")");
-        channels.push_back(c.name());
-    }
-    if (channels.empty()) throw std::runtime_error("it has no channels");
-    SortChannels(&channels);
+    channels = parts->SortedNames();
 } catch (const std::exception& e) {
     throw WithoutName(e);
 }
@@ -165,9 +215,7 @@ ExrImage ExrFile::Header() const {
     return image;
 }
 
-bool ExrFile::IsHalf(const std::string& channel) const {
-    return HasChannel(parts->Header(), channel, Imf::HALF);
-}
+bool ExrFile::IsHalf(const std::string& channel) const { return parts->Has(channel, Imf::HALF); }
 
 std::optional<std::array<float, 8>> ExrFile::Chromaticities() const {
     const Imf::Header& header = parts->Header();
@@ -180,22 +228,25 @@ std::optional<std::array<float, 8>> ExrFile::Chromaticities() const {
 
 // Reads rows `first` to `last` of the data window, by their numbers in the file.
 void ExrFile::ReadRows(TexelType type, size_t count, int first, int last, char* texels) {
-    const Imf::Header& header = parts->Header();
-    Imath::Box2i window = header.dataWindow();
+    Imath::Box2i window = parts->Header().dataWindow();
     window.min.y = first;
     window.max.y = last;
     const Vec2i size = ExtentOf(window);
     const size_t bytes = SizeOf(type), pixel = bytes * count, row = pixel * size_t(size.x());
-    const auto isInteger = [&](size_t c) { return HasChannel(header, channels[c], Imf::UINT); };
-    Imf::FrameBuffer frame;
-    for (size_t c = 0; c < count; ++c)
-        frame.insert(channels[c], Imf::Slice::Make(type == TexelType::Half ? Imf::HALF
+    const auto isInteger = [&](size_t c) { return parts->Has(channels[c], Imf::UINT); };
+    std::map<int, Imf::FrameBuffer> frames;
+    for (size_t c = 0; c < count; ++c) {
+        const auto [part, name] = parts->PlaceOf(channels[c]);
+        frames[part].insert(name, Imf::Slice::Make(type == TexelType::Half ? Imf::HALF
                                                    : isInteger(c)          ? Imf::UINT
                                                                            : Imf::FLOAT,
                                                    texels + bytes * c, window, pixel, row));
-    Imf::InputPart part(parts->file, parts->part);
-    part.setFrameBuffer(frame);
-    part.readPixels(first, last);
+    }
+    for (const auto& [number, frame] : frames) {
+        Imf::InputPart part(parts->file, number);
+        part.setFrameBuffer(frame);
+        part.readPixels(first, last);
+    }
 
     for (size_t c = 0; c < count; ++c) {
         if (!isInteger(c)) continue;

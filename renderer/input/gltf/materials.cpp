@@ -146,6 +146,7 @@ void GltfMaterials::AddVolume(const MaterialUse& use, GltfMaterial* result, Warn
     const bool isSolid = solidGlass || Number(volume, "thicknessFactor", 0) > 0;
     use.write.Bool("solid", isSolid);
     if (TransmissionFactor(use.material) <= 0) return;
+    result->isVolume = isSolid;
     if (isSolid)
         result->medium = AddMedium(
             volume, document.At(use.path + "/extensions/KHR_materials_volume"), description);
@@ -220,6 +221,11 @@ std::optional<Entity> GltfMaterials::EmissionOfSurface(const MaterialUse& use, W
                    textures.Add(texture, GltfTexels::EncodedColor, warnings), texture.uvSet, loc);
     if (const double spread = SpreadOf(material, document, use.path); spread < 180)
         ParameterWriter(&light.parameters, loc).Float("spread", spread);
+    const tinygltf::Value& coat = Extension(material, "KHR_materials_clearcoat");
+    if (!coat.Has("clearcoatTexture") &&
+        !OwnFlag(document, material.extras, "addedInterface", use.path))
+        ParameterWriter(&light.parameters, loc)
+            .Float("clearcoat", Number(coat, "clearcoatFactor", 0));
     return light;
 }
 
@@ -278,6 +284,11 @@ GltfMaterial GltfMaterials::Make(int index, bool hasColors, Warnings& warnings) 
 
     const ParameterWriter cover(&result.coverage, loc);
     if (OwnFlag(document, material.extras, "openBehind", path)) cover.Bool("openbehind", true);
+    // The back of what light passes is seen through its front (3.9.6, KHR_materials_transmission).
+    const bool transmits = TransmissionFactor(material) > 0 ||
+                           Number(Extension(material, "KHR_materials_diffuse_transmission"),
+                                  "diffuseTransmissionFactor", 0) > 0;
+    if (!material.doubleSided && !transmits) cover.Bool("singlesided", true);
     Hide(VisibilityOf(document, material.extras, path), &result.coverage);
     if (material.alphaMode != "OPAQUE") {
         AddTexture(cover, "coverage", color, GltfTexels::Alpha, warnings);

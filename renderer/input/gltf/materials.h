@@ -58,6 +58,7 @@ struct GltfMaterial {
     std::optional<Entity> emission;   // an area light
     Parameters coverage;              // of the shape: its alpha mode, and rays that pass it
     int medium = -1;                  // inside the shape, into Description::media; -1: vacuum
+    bool isVolume = false;            // light goes into the shape
     std::array<bool, 2> uvSets = {};  // TEXCOORD_0 and 1: those that its textures use
     int tangentUvSet = -1;  // the texture coordinates that its tangents follow; -1: it needs none
 };

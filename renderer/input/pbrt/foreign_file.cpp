@@ -1,6 +1,7 @@
 #include "renderer/input/pbrt/foreign_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "stopping/base/input_file.h"
@@ -30,9 +31,24 @@ constexpr std::pair<std::string_view, const char*> kFormats[] = {
     {"<scene"sv, "an XML file, as Mitsuba's scenes are; export the scene for pbrt or as glTF"},
 };
 
+constexpr std::pair<std::string_view, const char*> kExtensions[] = {
+    {".blend", "a Blender file; render it in Blender with the add-on, or export it as glTF"},
+    {".obj", "a Wavefront OBJ mesh; export the scene as glTF"},
+    {".mtl", "a Wavefront material; export the scene as glTF"},
+    {".stl", "an STL mesh; export the scene as glTF"},
+    {".dae", "a COLLADA file; export the scene as glTF"},
+    {".fbx", "an FBX file; export the scene as glTF"},
+    {".usda", "a USD file; export the scene as glTF"},
+};
+
 }  // namespace
 
-std::string ForeignFormat(std::string_view bytes) {
+std::string ForeignFormat(std::string_view name, std::string_view bytes) {
+    std::string lower(name);
+    std::ranges::transform(lower, lower.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    for (const auto& [extension, what] : kExtensions)
+        if (lower.ends_with(extension)) return what;
     for (const auto& [magic, what] : kFormats)
         if (bytes.starts_with(magic)) return what;
     if (const std::string_view wide = WideEncoding(bytes); !wide.empty())

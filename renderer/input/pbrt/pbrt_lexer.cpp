@@ -1,5 +1,7 @@
 #include "renderer/input/pbrt/pbrt_lexer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -95,7 +97,7 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     const std::string_view bytes = source.contents.View();
     const bool isWide = !WideEncoding(bytes).empty();
     const std::string_view text = isWide ? bytes : CleanText(bytes, loc);
-    if (const std::string format = ForeignFormat(text); !format.empty())
+    if (const std::string format = ForeignFormat(file, text); !format.empty())
         throw Error(loc,
                     "'" + Printable(file, 4096) + "' is not a pbrt scene file: it is " + format);
     source.begin = source.pos = text.data();
@@ -219,6 +221,11 @@ bool PbrtLexer::AtNumber() {
 template <typename T>
 T PbrtLexer::ParseNumber() {
     Source& s = sources.back();
+    // As old programs of Microsoft's print numbers that are not finite; # would begin a comment.
+    const std::string_view word = WordAt(s.pos), rest(word.end(), s.end);
+    for (const char* sign : {"#INF", "#IND", "#QNAN", "#SNAN"})
+        if (word.ends_with('.') && rest.starts_with(sign))
+            throw Error(Loc(), fmt::format("'{}{}' is not a finite number", Printable(word), sign));
     // Accept a plus sign, which from_chars does not.
     const char* begin = *s.pos == '+' && s.pos + 1 < s.end && s.pos[1] != '-' ? s.pos + 1 : s.pos;
     T value = 0;

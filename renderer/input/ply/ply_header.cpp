@@ -20,12 +20,12 @@ struct PlyTypeName {
 };
 
 constexpr PlyTypeName kPlyTypeNames[] = {
-    {"char", PlyType::Int8},       {"int8", PlyType::Int8},       {"uchar", PlyType::Uint8},
-    {"uint8", PlyType::Uint8},     {"short", PlyType::Int16},     {"int16", PlyType::Int16},
-    {"ushort", PlyType::Uint16},   {"uint16", PlyType::Uint16},   {"int", PlyType::Int32},
-    {"int32", PlyType::Int32},     {"uint", PlyType::Uint32},     {"uint32", PlyType::Uint32},
-    {"float", PlyType::Float32},   {"float32", PlyType::Float32}, {"double", PlyType::Float64},
-    {"float64", PlyType::Float64},
+    {"char", PlyType::Int8},       {"int8", PlyType::Int8},      {"uchar", PlyType::Uint8},
+    {"uint8", PlyType::Uint8},     {"short", PlyType::Int16},    {"int16", PlyType::Int16},
+    {"ushort", PlyType::Uint16},   {"uint16", PlyType::Uint16},  {"int", PlyType::Int32},
+    {"int32", PlyType::Int32},     {"uint", PlyType::Uint32},    {"uint32", PlyType::Uint32},
+    {"int64", PlyType::Int64},     {"uint64", PlyType::Uint64},  {"float", PlyType::Float32},
+    {"float32", PlyType::Float32}, {"double", PlyType::Float64}, {"float64", PlyType::Float64},
 };
 
 PlyType ParseType(std::string_view name, const FileLoc& loc) {

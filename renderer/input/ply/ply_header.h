@@ -20,7 +20,7 @@ namespace lull {
 
 enum class PlyFormat { Ascii, LittleEndian, BigEndian };
 
-enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
+enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Int64, Uint64, Float32, Float64 };
 
 // Returns use(T()), where T is the C++ type of such values in binary files.
 template <typename Use>
@@ -38,6 +38,10 @@ auto WithTypeOf(PlyType type, const Use& use) {
             return use(int32_t());
         case PlyType::Uint32:
             return use(uint32_t());
+        case PlyType::Int64:
+            return use(int64_t());
+        case PlyType::Uint64:
+            return use(uint64_t());
         case PlyType::Float32:
             return use(float());
         default:
@@ -113,8 +117,8 @@ struct PlyCursor {
         return {begin, size_t(pos - begin)};
     }
 
-    // Reads a value. In double every type keeps its exact value. In ASCII files NaN and infinity
-    // pass as such.
+    // Reads a value. In double every type but 64-bit integers keeps its exact value. In ASCII files
+    // NaN and infinity pass as such.
     double Read(PlyType type) {
         if (format == PlyFormat::Ascii) {
             std::string_view word = Word();

@@ -16,7 +16,8 @@ class Option:
         self.name, self.value, self.text = name, value, ""
 
     def arguments(self, given):
-        """Returns the command-line arguments for a Python value."""
+        """Returns the command-line arguments for a Python value, or one of numpy."""
+        given = given.tolist() if hasattr(given, "tolist") else given
         if given is None or given is False:
             return []
         flag = "--" + self.name
@@ -38,7 +39,7 @@ def _keyword(name):
 
 
 def _text(value):
-    return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+    return os.fsdecode(value) if isinstance(value, (os.PathLike, bytes)) else str(value)
 
 
 def read(help_text):

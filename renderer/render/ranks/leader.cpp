@@ -395,8 +395,8 @@ class Leader {
         parts[size_t(block)].clear();
         const int next = NextSpp(schedule.Unlocked().PassEnd(block));
         const bool isAlone = schedule.BlockAt(block).partner < 0;
-        const ViewNeed need = answer.stop && isAlone ? ViewNeed::Nothing
-                                                     : executor.criteria.NeedAt(block, next);
+        const ViewNeed need =
+            answer.stop && isAlone ? ViewNeed::Nothing : executor.criteria.NeedAt(block, next);
         channel.PostToAll(Pack(AnswerMessage{block, answer.stop, answer.noise, need}));
     }
 

@@ -87,7 +87,9 @@ bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     if (IsHidden(user, ray)) return true;
     const Shape& shape = user.shapes->shapes[user.shape];
     if (!shape.coverage) return false;
-    if (shape.coverage->openBehind && IsFromBehind(shape, ray, hit)) return true;
+    const bool opens =
+        shape.coverage->openBehind || (shape.coverage->singleSided && (ray.id & kCameraRay));
+    if (opens && IsFromBehind(shape, ray, hit)) return true;
     const Vec3f p(ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,
                   ray.org_z + ray.tfar * ray.dir_z);
     const float share = CoverageAt(shape, *user.textures, p, hit.primID, hit.u, hit.v);
@@ -122,6 +124,15 @@ void FilterByCoverage(const RTCFilterFunctionNArguments* args) {
     if (IsUncovered(*static_cast<const ShapeUser*>(args->geometryUserPtr),
                     *reinterpret_cast<const RTCRay*>(args->ray),
                     *reinterpret_cast<const RTCHit*>(args->hit)))
+        args->valid[0] = 0;
+}
+
+void FilterSingleSided(const RTCFilterFunctionNArguments* args) {
+    const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
+    if (!(ray.id & kCameraRay)) return;
+    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    if (IsFromBehind(user.shapes->shapes[user.shape], ray,
+                     *reinterpret_cast<const RTCHit*>(args->hit)))
         args->valid[0] = 0;
 }
 
@@ -168,7 +179,11 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
     if (mesh && shape.alpha) rtcSetGeometryIntersectFilterFunction(geometry, FilterNearestByAlpha);
     if (mesh && (shape.alpha || shape.shadowAlpha))
         rtcSetGeometryOccludedFilterFunction(geometry, FilterOcclusionByAlpha);
-    if (mesh && (shape.coverage || shape.hiddenFrom)) {
+    const bool isUsual = !shape.hiddenFrom && shape.coverage && shape.coverage->IsWhole() &&
+                         !shape.coverage->openBehind;
+    if (mesh && isUsual) {  // as most meshes of glTF: shadow rays need no filter
+        rtcSetGeometryIntersectFilterFunction(geometry, FilterSingleSided);
+    } else if (mesh && (shape.coverage || shape.hiddenFrom)) {
         rtcSetGeometryIntersectFilterFunction(geometry, FilterByCoverage);
         rtcSetGeometryOccludedFilterFunction(geometry, FilterByCoverage);
     }

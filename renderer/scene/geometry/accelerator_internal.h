@@ -47,6 +47,7 @@ struct MovingUser {
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args);
 void FilterByCoverage(const RTCFilterFunctionNArguments* args);
+void FilterSingleSided(const RTCFilterFunctionNArguments* args);
 
 struct Accelerator::Implementation {
     Device device;

@@ -96,7 +96,8 @@ struct Coverage {
     float factor = 1;
     float cutoff = -1;  // negative: none
     bool secondUv = false, vertexAlpha = false;
-    bool openBehind = false;  // rays from behind pass
+    bool openBehind = false;   // rays from behind pass
+    bool singleSided = false;  // the camera's rays from behind pass
 
     // Returns whether rays from the front meet all of it: a factor of 1 that was rounded is no
     // reason to let light through.

@@ -11,7 +11,6 @@
 #include "renderer/base/variant.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/lights/light_sample.h"
-#include "renderer/scene/textures/imagemap.h"
 
 namespace lull {
 namespace {
@@ -23,13 +22,19 @@ constexpr float kTolerance = 0.02f;
 // sampled, which shading normals cause, need it.
 constexpr float kLeast = 0.1f;
 
-// Returns the texel beside that of a cell, on the side of the cell, of n in a ring.
-int NeighbourOf(int cell, int n) { return (cell / 2 + (cell % 2 == 0 ? n - 1 : 1)) % n; }
+// Returns the texel beside that of a cell, on the side of the cell, of n in a ring or a row.
+int NeighbourOf(int cell, int n, Wrap wrap) {
+    const int beside = cell / 2 + (cell % 2 == 0 ? -1 : 1);
+    return wrap == Wrap::Repeat ? (beside + n) % n : std::clamp(beside, 0, n - 1);
+}
 
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated, MapProjection p)
-    : image(std::move(i)), scale(s), projection(p) {
+    : image(std::move(i)),
+      wrapRows(isCompensated ? Wrap::Clamp : Wrap::Repeat),
+      scale(s),
+      projection(p) {
     const bool isEqualArea = projection == MapProjection::EqualArea;
     const int perTexel = isEqualArea ? 1 : 2;
     const int columns = perTexel * image.width, rows = perTexel * image.height;
@@ -57,11 +62,11 @@ EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated, MapPro
 
 Rgb EnvironmentMap::Radiance(const Vec2f& st) const {
     if (projection == MapProjection::EqualArea) return scale * NearestRgb(image, st);
-    return scale * BilinearRgb(image, st, Wrap::Repeat);
+    return scale * BilinearRgb(image, st, Wrap::Repeat, wrapRows);
 }
 
 void EnvironmentMap::Prefetch(const Vec2f& st) const {
-    const Footprint f = BilinearFootprint(st, image.width, image.height, Wrap::Repeat);
+    const Footprint f = BilinearFootprint(st, image.width, image.height, Wrap::Repeat, wrapRows);
     Visit(image.texels, [&](const auto& texels) {
         for (const int y : {f.y0, f.y1})
             lull::Prefetch(
@@ -80,7 +85,7 @@ void EnvironmentMap::Brightness(int row, std::span<float> cells) const {
         return;
     }
     // Interpolate between the centres of the texels, down and then across.
-    const int near = row / 2, far = NeighbourOf(row, image.height);
+    const int near = row / 2, far = NeighbourOf(row, image.height, wrapRows);
     std::vector<float> column(image.width);
     std::visit(
         [&](const auto& texels) {
@@ -90,7 +95,8 @@ void EnvironmentMap::Brightness(int row, std::span<float> cells) const {
         },
         image.texels);
     for (int u = 0; u < int(cells.size()); ++u)
-        cells[u] = 0.75f * column[u / 2] + 0.25f * column[NeighbourOf(u, image.width)];
+        cells[u] =
+            0.75f * column[u / 2] + 0.25f * column[NeighbourOf(u, image.width, Wrap::Repeat)];
 }
 
 Rgb EnvironmentMap::MeanTexel() const {

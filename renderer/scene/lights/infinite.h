@@ -8,6 +8,7 @@
 #include "renderer/base/block_distribution.h"
 #include "renderer/image/image.h"
 #include "renderer/scene/lights/light_sample.h"
+#include "renderer/scene/textures/imagemap.h"
 
 namespace lull {
 
@@ -16,7 +17,7 @@ namespace lull {
 // How the unit square of an image shows all directions.
 enum class MapProjection { LatitudeLongitude, EqualArea };
 
-// Interpolates bilinearly and repeats in both directions, as pbrt-v3 does. The density is constant
+// Interpolates bilinearly; columns repeat, rows end at the poles. The density is constant
 // over cells of half a texel a side, in proportion to the brightness at their centres. Of equal
 // areas, texels are not interpolated and are the cells, as in pbrt-v4.
 class EnvironmentMap {
@@ -26,8 +27,9 @@ class EnvironmentMap {
 
     // Multiplies the texels by `scale`. The products must be from 0 to kMaxTexel. Rows run from
     // theta = 0; the density follows the solid angle of a row. Not compensated, it is pbrt-v3's
-    // (3rd ed., 14.2.4). A compensated map leaves texels darker than the mean to BSDF sampling,
-    // which suffices there (Karlik et al. 2019), and samples nearly constant maps uniformly.
+    // (3rd ed., 14.2.4), whose rows repeat over the poles. A compensated map leaves texels darker
+    // than the mean to BSDF sampling, which suffices there (Karlik et al. 2019), and samples nearly
+    // constant maps uniformly.
     EnvironmentMap(Image image, const Rgb& scale, bool isCompensated = false,
                    MapProjection projection = MapProjection::LatitudeLongitude);
 
@@ -48,6 +50,7 @@ class EnvironmentMap {
     void Brightness(int row, std::span<float> cells) const;
 
     Image image;
+    Wrap wrapRows;
     Rgb scale;
     MapProjection projection;
     BlockDistribution cells;

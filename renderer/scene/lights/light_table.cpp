@@ -108,8 +108,9 @@ bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
     return false;
 }
 
-// Reads the cone of a spot, or "spread", degrees across the cone about each normal that the light
-// leaves into. Returns null where the radiance is the same to all sides.
+// Reads the cone of a spot, "spread", degrees across the cone about each normal that the light
+// leaves into, or "clearcoat", the weight of a coat above. Returns null where the radiance is the
+// same to all sides.
 std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
                                                    const Mat4d& worldFromShape) {
     if (entity.name == kAreaSpot)
@@ -120,6 +121,8 @@ std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
         throw Error(entity.loc, fmt::format("the area light's \"spread\" is {:g}; it has to be "
                                             "above 0 and at most 180 degrees",
                                             given));
+    if (const float coat = entity.parameters.GetFloat("clearcoat", 0); coat > 0 && *degrees == 180)
+        return std::make_unique<const EmissionProfile>(BelowCoat{std::min(coat, 1.f)});
     if (*degrees == 180) return {};
     return std::make_unique<const EmissionProfile>(Spread::Make(*degrees));
 }

@@ -12,12 +12,14 @@
 
 namespace lull {
 
-Rgb LightImage::Lookup(const Vec2f& st) const { return BilinearRgb(image, st, Wrap::Repeat); }
+Rgb LightImage::Lookup(const Vec2f& st) const { return BilinearRgb(image, st, wrapS, wrapT); }
 
-std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in) {
+std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in, bool isRound) {
     const std::string file = in.entity.parameters.GetString("mapname", "");
     if (file.empty()) return nullptr;
     auto made = std::make_shared<LightImage>();
+    if (in.isCompensated) made->wrapT = Wrap::Clamp;
+    if (in.isCompensated && !isRound) made->wrapS = Wrap::Clamp;
     try {
         made->image = ReadImage(ResolvePath(in.description, file));
         if (in.entity.parameters.GetBool("decode", false)) DecodeBytes(&made->image);
@@ -76,6 +78,8 @@ Spread Spread::Make(double degrees) {
 }
 
 float PowerFraction(const EmissionProfile& profile) {
+    if (const auto* coat = std::get_if<BelowCoat>(&profile))
+        return 1 - coat->weight * (0.04f + 0.96f / 21);
     const auto* cone = std::get_if<SpotCone>(&profile);
     return cone ? cone->SolidAngle() / (4 * kPi) : 1;
 }
@@ -145,7 +149,7 @@ float FactorOfPower(const Entity& entity, float whole) {
 
 GoniometricLight GoniometricLight::Make(const LightReader& in) {
     Rgb I = LightColor(in.entity, "I", in.warnings);
-    const auto image = ReadLightImage(in);
+    const auto image = ReadLightImage(in, true);
     if (image) I *= FactorOfPower(in.entity, 4 * kPi * image->mean.mean());
     return {TransformPoint(in.entity.worldFromLight, Vec3f::Zero()), I,
             in.entity.worldFromLight.inverse().topLeftCorner<3, 3>().cast<float>(), image,
@@ -211,7 +215,7 @@ ProjectionLight ProjectionLight::Make(const LightReader& in) {
                                 "to lie between 0 and 180",
                                 fov));
     light.perTangent = 1 / std::tan(float(*known) * kPi / 360);
-    light.image = ReadLightImage(in);
+    light.image = ReadLightImage(in, false);
     const float aspect =
         light.image ? float(light.image->image.width) / float(light.image->image.height) : 1;
     light.screen = aspect > 1 ? Vec2f(aspect, 1) : Vec2f(1, 1 / aspect);

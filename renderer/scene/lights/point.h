@@ -6,10 +6,12 @@
 
 #include "renderer/base/sampling.h"
 #include "renderer/base/variant.h"
+#include "renderer/bsdf/fresnel.h"
 #include "renderer/image/image.h"
 #include "renderer/input/description.h"
 #include "renderer/scene/geometry/shape.h"
 #include "renderer/scene/lights/light_sample.h"
+#include "renderer/scene/textures/imagemap.h"
 
 namespace lull {
 
@@ -17,17 +19,18 @@ namespace lull {
 
 struct LightImage {
     Image image;
-    Rgb mean;  // of all texels
+    Rgb mean;                                         // of all texels
+    Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;  // pbrt-v3's
 
-    // Returns the texels around st, interpolated; they repeat. The first row is at st.y() = 0.
+    // Returns the texels around st, interpolated. The first row is at st.y() = 0.
     Rgb Lookup(const Vec2f& st) const;
 };
 
 // Reads "mapname"; null where there is none. As in pbrt-v3, 8-bit texels are taken as linear,
 // unless "decode" says that they are sRGB.
 // Texels that are negative or not finite count as black, with a counted warning. Null substitutes
-// an image that cannot be read.
-std::shared_ptr<const LightImage> ReadLightImage(const LightReader&);
+// an image that cannot be read. `isRound`: columns are longitudes, which repeat.
+std::shared_ptr<const LightImage> ReadLightImage(const LightReader&, bool isRound);
 
 // Varies the emission of a mesh over its surface.
 
@@ -134,7 +137,12 @@ struct Spread {
     bool Has(const Vec3f& n, const Vec3f& w) const { return n.cross(w).norm() < sine; }
 };
 
-using EmissionProfile = std::variant<SpotCone, Spread>;
+// Emission below a clear coat, which reflects the rest back (KHR_materials_clearcoat).
+struct BelowCoat {
+    float weight;
+};
+
+using EmissionProfile = std::variant<SpotCone, Spread, BelowCoat>;
 
 // Return the factor of the radiance that leaves a point with normal n towards w, both unit. The
 // normal's side is for callers to check.
@@ -143,6 +151,9 @@ inline float Falloff(const Spread& spread, const Vec3f& n, const Vec3f& w) {
     // The cross product keeps small angles, which the cosine rounds away.
     const float tangent = n.cross(w).norm() / std::abs(n.dot(w));
     return spread.scale * std::max(0.f, spread.tangent - tangent);
+}
+inline float Falloff(const BelowCoat& coat, const Vec3f& n, const Vec3f& w) {
+    return 1 - coat.weight * (0.04f + 0.96f * SchlickWeight(std::min(1.f, std::abs(n.dot(w)))));
 }
 inline float Falloff(const EmissionProfile& profile, const Vec3f& n, const Vec3f& w) {
     return Visit(profile, [&](const auto& p) { return Falloff(p, n, w); });

@@ -98,8 +98,9 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     });
     if (vertexColors) traits.Need(kNeedsColor);
     if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
-    // The light that sheen or the interface leaves to the rest depends on the view.
-    if (hasSheen || diffuseTransmissionFactor > 0) traits.isConstant = false;
+    // The light that sheen, the interface, or a coat on one side leaves to the rest depends on the
+    // view.
+    if (hasSheen || diffuseTransmissionFactor > 0 || IsCoatedSolid()) traits.isConstant = false;
     if (CanLetThrough()) traits.needs = traits.needs | kLetsThrough;
     return traits;
 }
@@ -144,7 +145,8 @@ Vec2f MetallicRoughness::Alphas(const MaterialInputs& in, float alpha, Bsdf* bsd
 
 // By the specification the layers below get the fraction that sheen, taken as a whole, does not
 // reflect: here by the view alone, of which exactly as much is left as the sheen adds.
-void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const {
+void MetallicRoughness::AddSheen(const MaterialInputs& in, const CoatAbove& coat,
+                                 Bsdf* bsdf) const {
     const Rgb color = (Look(sheenColor, in) * sheenColorFactor).max(0.f).min(1.f);
     if (IsBlack(color)) return;
     const float roughness =
@@ -155,34 +157,30 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, float coat, Bsdf* bsd
     const float kept = std::min(1.f, 1 / std::max(albedo, 1e-6f));  // it reflects all at the most
     bsdf->Scale(0, bsdf->LobeCount(LobeSet::All),
                 Rgb::Constant(1 - color.maxCoeff() * std::min(albedo, 1.f)));
-    bsdf->Add(CharlieSheen{Rgb(color * (kept * ThroughCoat(coat, cosine, 1))), alpha});
+    bsdf->Add(CharlieSheen{Rgb(color * (kept * coat.Through(cosine))), alpha});
 }
 
 // The interface above takes what it reflects to the view.
 void MetallicRoughness::AddDiffuseTransmission(const MaterialInputs& in, float share,
-                                               const InterfaceAbove& above, float alpha, float coat,
-                                               Bsdf* bsdf) const {
+                                               const InterfaceAbove& above, float alpha,
+                                               const CoatAbove& coat, Bsdf* bsdf) const {
     const Rgb color = Look(diffuseTransmissionColor, in) * diffuseTransmissionColorFactor;
     const float cosine = CosineTowards(in, *bsdf);
     const float reflected = DirectionalAlbedo(cosine, alpha)(above.f0, above.f90);
-    const float left = ThroughCoat(coat, cosine, 1) * std::max(0.f, 1 - reflected);
+    const float left = coat.Through(cosine) * std::max(0.f, 1 - reflected);
     if (!IsBlack(color))
         bsdf->Add(LambertianTransmission{Rgb(share * left * color.max(0.f).min(1.f))});
 }
 
-void MetallicRoughness::AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const {
-    const float roughness =
-        clearcoatRoughnessFactor > 0 ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in) : 0;
+void MetallicRoughness::AddClearcoat(float coat, float alpha, Bsdf* bsdf) const {
     // A mirror shows no lamp that has no size. Surfaces not meant as mirrors, such as Blender's
     // usual coat of roughness 0.03, keep such highlights.
-    const float coatAlpha = AlphaOf(roughness);  // the distribution has its own least
-    if (!(roughness > 0))
+    if (!(alpha > 0))
         bsdf->Add(ThinSpecular{Rgb(Rgb::Constant(0.04f * coat)), coat, Rgb(Rgb::Zero()),
                                InterfaceAbove{}, 0});
-    else
-        bsdf->Add(MicrofacetReflection<SchlickInterface>{Rgb(Rgb::Constant(coat)),
-                                                         TrowbridgeReitz(coatAlpha, coatAlpha),
-                                                         SchlickInterface{0.04f}});
+    else  // the distribution has its own least alpha
+        bsdf->Add(MicrofacetReflection<SchlickInterface>{
+            Rgb(Rgb::Constant(coat)), TrowbridgeReitz(alpha, alpha), SchlickInterface{0.04f}});
 }
 
 void MetallicRoughness::AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth,
@@ -221,7 +219,12 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const InterfaceAbove aboveBase = addedInterface ? InterfaceAbove{} : above;
     const float dielectric = 1 - metallic;
     const float transmitting = dielectric * Weight(transmission, transmissionFactor, in);
-    const float coat = Weight(clearcoat, clearcoatFactor, in);
+    // A coat lies on the outside of a solid, and on both sides of all else.
+    const bool isInside = IsCoatedSolid() && in.hit->wo.dot(in.hit->n) < 0;
+    const float coatWeight = isInside ? 0 : Weight(clearcoat, clearcoatFactor, in);
+    const float coatAlpha = AlphaOf(
+        clearcoatRoughnessFactor > 0 ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in) : 0);
+    const CoatAbove coat(addedInterface ? 0 : coatWeight, coatAlpha);
     const bool isSmooth = alpha < kSmoothAlpha && !isAnisotropic;
     const float toOtherSide = Weight(diffuseTransmission, diffuseTransmissionFactor, in);
     const Rgb diffuse = (dielectric - transmitting) * (1 - toOtherSide) * color;
@@ -239,7 +242,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const bool isApart = isSmooth || isAnisotropic;
     const Rgb glossy = isApart ? Rgb(Rgb::Zero()) : r0;
     const float glossy90 = isApart ? 0 : r90;
-    if (glossy90 > 0 || ((r90 > 0 || coat > 0) && !IsBlack(base)))
+    if (glossy90 > 0 || ((r90 > 0 || coatWeight > 0) && !IsBlack(base)))
         bsdf->Add(LayeredReflection(base, glossy, glossy90, alpha, aboveBase, coat));
     else if (!IsBlack(base))
         bsdf->Add(LambertianReflection{base});
@@ -249,8 +252,9 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 
     const Rgb through = transmitting * color;
     if (transmitting > 0 && solid) {
-        AddSolid((transmitting * strength * tint).max(0.f).min(1.f), through, isSmooth, alphas,
-                 bsdf);
+        const float left = IsCoatedSolid() ? coat.Through(CosineTowards(in, *bsdf)) : 1;
+        AddSolid(left * (transmitting * strength * tint).max(0.f).min(1.f), left * through,
+                 isSmooth, alphas, bsdf);
     } else if (transmitting > 0 && isSmooth) {
         bsdf->Add(
             ThinSpecular{Rgb(transmitting * f0), transmitting * strength, through, above, coat});
@@ -261,7 +265,7 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     if (const float share = (dielectric - transmitting) * toOtherSide; share > 0)
         AddDiffuseTransmission(in, share, aboveBase, isSmooth ? 0 : alpha, coat, bsdf);
     AddSheen(in, coat, bsdf);
-    if (coat > 0) AddClearcoat(in, coat, bsdf);
+    if (coatWeight > 0) AddClearcoat(coatWeight, coatAlpha, bsdf);
 }
 
 }  // namespace lull

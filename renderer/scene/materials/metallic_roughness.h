@@ -47,6 +47,7 @@ struct MetallicRoughness {
   private:
     // Returns whether it is a smooth thin sheet anywhere, which light goes straight through.
     bool CanLetThrough() const;
+    bool IsCoatedSolid() const { return solid && transmissionFactor > 0 && clearcoatFactor > 0; }
     template <typename F>
     void VisitSlots(F&& f) const {
         for (const auto* slot : {&baseColor, &metallicRoughness, &specularColor, &sheenColor,
@@ -60,11 +61,11 @@ struct MetallicRoughness {
     // frame to where it is anisotropic.
     Vec2f Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const;
     // Adds sheen over all lobes that there are, below a coat.
-    void AddSheen(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
+    void AddSheen(const MaterialInputs& in, const CoatAbove& coat, Bsdf* bsdf) const;
     // Adds the `share` of the base's light that leaves on the other side, below an interface.
     void AddDiffuseTransmission(const MaterialInputs& in, float share, const InterfaceAbove& above,
-                                float alpha, float coat, Bsdf* bsdf) const;
-    void AddClearcoat(const MaterialInputs& in, float coat, Bsdf* bsdf) const;
+                                float alpha, const CoatAbove& coat, Bsdf* bsdf) const;
+    void AddClearcoat(float coat, float alpha, Bsdf* bsdf) const;
     // Adds the interface of a solid that reflects and transmits so much.
     void AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth, const Vec2f& alphas,
                   Bsdf* bsdf) const;

@@ -129,7 +129,7 @@ MediumTable::MediumTable(const Description& description, Warnings& warnings) {
     for (const MediumEntity& entity : description.media)
         media.push_back(MakeMedium(entity, warnings));
     if (media.empty()) return;
-    ofCamera = description.cameraMedium;
+    ofCamera = MediumStack(description.cameraMedium);
     const auto add = [&](const ShapeEntity& shape) {
         ofShapes.push_back({shape.insideMedium, shape.outsideMedium});
     };

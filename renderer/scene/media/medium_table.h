@@ -1,6 +1,9 @@
 // Owns the participating media of a scene, and which lies on either side of each shape.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <variant>
 #include <vector>
 
@@ -14,6 +17,33 @@ using Medium = std::variant<HomogeneousMedium, GridMedium>;
 
 constexpr int kVacuum = -1;
 
+// The media that a point lies in, of which the one entered last counts.
+class MediumStack {
+  public:
+    MediumStack() = default;
+    explicit MediumStack(int medium) : media{medium}, count(1) {}
+
+    int Top() const { return count > 0 ? media[size_t(count - 1)] : kVacuum; }
+    // Forgets the outermost where there are too many.
+    void Enter(int medium) {
+        if (count == kMost) std::shift_left(media.begin(), media.end(), 1), --count;
+        media[size_t(count++)] = medium;
+    }
+    // Leaves the medium, if it has been entered.
+    void Leave(int medium) {
+        const auto end = media.begin() + count;
+        const auto found = std::find(std::reverse_iterator(end), media.rend(), medium);
+        if (found == media.rend()) return;
+        std::copy(found.base(), end, found.base() - 1);
+        --count;
+    }
+
+  private:
+    static constexpr int kMost = 7;
+    std::array<int, kMost> media{};
+    int count = 0;
+};
+
 struct MediumTable {
     // The media on both sides of a shape; if they are the same, the ray stays in its own medium
     // (pbrt-v3).
@@ -23,7 +53,7 @@ struct MediumTable {
 
     std::vector<Medium> media;
     std::vector<Sides> ofShapes;  // by the shapes of the scene; empty where there are no media
-    int ofCamera = kVacuum;
+    MediumStack ofCamera;
 
     MediumTable() = default;
     // Throws Error with file and line for unknown kinds, grids whose counts do not agree, negative
@@ -31,13 +61,19 @@ struct MediumTable {
     // dense that rays could not be traced through them.
     MediumTable(const Description&, Warnings&);
 
-    // Returns the medium of a ray that leaves the shape on the side of its normal or on the other;
-    // `current` is the medium of the ray that hit it.
-    int Beyond(int shape, bool onNormalSide, int current) const {
+    // Returns the media of a ray that leaves the shape on the side of its normal or on the other;
+    // `current` are those of the ray that hit it, which came from the other side if it `crosses`.
+    MediumStack Beyond(int shape, bool onNormalSide, bool crosses, MediumStack current) const {
         if (ofShapes.empty()) return current;
         const Sides& sides = ofShapes[shape];
         if (sides.inside == sides.outside) return current;
-        return onNormalSide ? sides.outside : sides.inside;
+        if (sides.outside != ShapeEntity::kSurrounding)
+            return MediumStack(onNormalSide ? sides.outside : sides.inside);
+        if (crosses && onNormalSide)
+            current.Leave(sides.inside);
+        else if (crosses)
+            current.Enter(sides.inside);
+        return current;
     }
 
     // Returns in which channels nothing gets through the medium if it is infinite.

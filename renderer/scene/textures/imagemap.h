@@ -120,8 +120,8 @@ Rgb TexelRgb(const Image& image, const std::vector<T>& texels, int x, int y) {
 
 // Looks up an image whose first row is at st.y = 0, as environment maps are; texels count as
 // linear, alpha is ignored. The image must not be empty.
-inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrap) {
-    const Footprint f = BilinearFootprint(st, image.width, image.height, wrap);
+inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrapS, Wrap wrapT) {
+    const Footprint f = BilinearFootprint(st, image.width, image.height, wrapS, wrapT);
     return Visit(image.texels, [&]<typename T>(const std::vector<T>& texels) -> Rgb {
         if (image.channels < 3)
             return Rgb::Constant(

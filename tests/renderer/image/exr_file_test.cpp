@@ -227,14 +227,14 @@ TEST(ExrFile, ConvertsOtherPrimaries) {
     EXPECT_NEAR(texels[2], -0.0182 * 0.25 - 0.1006 * 0.5 + 1.1187 * 0.75, 1e-3);
 }
 
-// Of several parts the first with colours is the picture.
-TEST(ExrFile, ReadsThePartWithColours) {
-    const TemporaryDirectory directory;
+// Writes parts that show one pixel, with data of `wider[i]` more; the value of part i is i / 4.
+std::string WriteParts(const TemporaryDirectory& directory, const std::vector<Names>& channels,
+                       const std::vector<int>& wider = {}) {
     const std::string path = directory.File("parts.exr");
-    const std::vector<Names> channels = {{"Z"}, {"R", "G", "B"}, {"R", "G", "B"}};
     std::vector<Imf::Header> headers;
     for (size_t i = 0; i < channels.size(); ++i) {
-        headers.emplace_back(1, 1);
+        const int right = wider.empty() ? 0 : wider[i];
+        headers.emplace_back(Imath::Box2i({0, 0}, {0, 0}), Imath::Box2i({0, 0}, {right, 0}));
         headers.back().setName("part" + std::to_string(i));
         headers.back().setType(Imf::SCANLINEIMAGE);
         for (const std::string& name : channels[i])
@@ -243,18 +243,46 @@ TEST(ExrFile, ReadsThePartWithColours) {
     {
         Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
         for (int i = 0; i < int(headers.size()); ++i) {
-            const float value = float(i) / 4;
+            const std::vector<float> values(9, float(i) / 4);
             Imf::FrameBuffer frame;
             for (const std::string& name : channels[size_t(i)])
-                frame.insert(name, Imf::Slice::Make(Imf::FLOAT, &value, headers[0].dataWindow()));
+                frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(),
+                                                    headers[size_t(i)].dataWindow()));
             Imf::OutputPart part(file, i);
             part.setFrameBuffer(frame);
             part.writePixels(1);
         }
     }
-    EXPECT_EQ(std::get<std::vector<float>>(ReadImage(path).texels),
-              (std::vector<float>{0.25f, 0.25f, 0.25f}));
-    EXPECT_EQ(ReadExr(path).channels.size(), 3u);
+    return path;
+}
+
+// The rules for layers hold over all parts.
+TEST(ExrFile, ReadsPartsAsLayers) {
+    const TemporaryDirectory directory;
+    const Names colours = {"R", "G", "B"}, albedo = {"albedo.R", "albedo.G", "albedo.B"},
+                combined = {"L.Combined.R", "L.Combined.G", "L.Combined.B"};
+    const auto texelsOf = [&](const std::vector<Names>& parts) {
+        return std::get<std::vector<float>>(ReadImage(WriteParts(directory, parts)).texels);
+    };
+    const std::vector<float> second = {0.25f, 0.25f, 0.25f};
+    EXPECT_EQ(texelsOf({{"Z"}, colours, colours}), second);
+    EXPECT_EQ(texelsOf({{"L.Depth.Z"}, combined, {"L.Noisy.R", "L.Noisy.G", "L.Noisy.B"}}), second);
+    EXPECT_EQ(texelsOf({albedo, colours}), second);
+    EXPECT_EQ(texelsOf({{"R", "G"}, colours}), second);
+    EXPECT_TRUE(
+        Contains(ErrorOf([&] {
+                     texelsOf({{"left.R", "left.G", "left.B"}, {"right.R", "right.G", "right.B"}});
+                 }),
+                 "in several layers"));
+    // All are there, but for those of another size.
+    const ExrImage exr = ReadExr(
+        WriteParts(directory, {{"Z"}, colours, albedo, {"X", "Y", "Z"}, {"id"}}, {0, 0, 0, 0, 2}));
+    const auto valueOf = [&](const char* name) { return exr.Find(name)->values; };
+    EXPECT_EQ(exr.channels.size(), 10u);
+    EXPECT_EQ(valueOf("Z"), (std::vector<float>{0}));
+    EXPECT_EQ(valueOf("G"), (std::vector<float>{0.25f}));
+    EXPECT_EQ(valueOf("albedo.B"), (std::vector<float>{0.5f}));
+    EXPECT_EQ(valueOf("part3.Z"), (std::vector<float>{0.75f}));
 }
 
 // Writes Y = 1, 2, ... over the data window, of which a picture shows the display window.

@@ -140,7 +140,7 @@ TEST(GltfMaterials, AbsorbInTheirVolume) {
     EXPECT_EQ(absorption.z(), 0);
     EXPECT_TRUE(IsBlack(d.media[0].parameters.GetSpectrum("sigma_s", Rgb::Ones())));
     EXPECT_EQ(d.shapes.at(0).insideMedium, 0);
-    EXPECT_EQ(d.shapes.at(0).outsideMedium, -1);
+    EXPECT_EQ(d.shapes.at(0).outsideMedium, ShapeEntity::kSurrounding);
     EXPECT_TRUE(IntegratorSeesMedia(d.integrator.name));
 
     // A sheet has no inside; opaque and clear surfaces need none.

@@ -126,6 +126,12 @@ TEST_F(PbrtErrors, Numbers) {
     ExpectInWorld("Shape \"sphere\" \"integer i\" [1 99999999999999999999]",
                   "'99999999999999999999' is beyond the range of an integer");
     ExpectInWorld("Shape \"sphere\" \"integer i\" 12ab", "'12ab' is not a number");
+    // As Microsoft's printf has them, of which # begins a comment.
+    for (const std::string number : {"1.#INF", "-1.#IND", "1.#QNAN0", "1.#INF000"})
+        for (const std::string type : {"float", "integer"})
+            ExpectInWorld("Shape \"sphere\" \"" + type + " radius\" [ " + number + " ]",
+                          "'" + number.substr(0, number.find('0')) + "' is not a finite number");
+    Expect("WorldBegin\nShape \"sphere\" \"float radius\" 2#INF\nShape 3", "scene.pbrt:3: ");
 }
 
 TEST_F(PbrtErrors, Strings) {
@@ -221,8 +227,26 @@ TEST_F(PbrtErrors, Files) {
     EXPECT_EQ(parse("room"), "cannot read 'room': it is a directory; name a file in it");
     ASSERT_EQ(mkfifo(folder.File("pipe").c_str(), 0600), 0);
     EXPECT_EQ(parse("pipe"), "cannot read 'pipe': it is not a regular file");
+    folder.Write("a.OBJ", "v 0 0 0\n");
+    EXPECT_TRUE(Contains(parse("a.OBJ"), "it is a Wavefront OBJ mesh; export the scene as glTF"));
     ExpectInWorld("Include \"none.pbrt\"", "cannot read 'none.pbrt': No such file or directory");
     ExpectInWorld("Include \"room\"", "cannot read 'room': it is a directory");
+}
+
+// Where there is such a file alone, also if the backslash was read as an escape.
+TEST_F(PbrtErrors, BackslashesSeparateFolders) {
+    std::filesystem::create_directory(folder.File("new"));
+    folder.Write("new/tile.pbrt", "");
+    const auto named = [&](const std::string& name) {
+        return folder.MessageOf([&] {
+            Warnings warnings;
+            ParsePbrt(folder.Write("scene.pbrt", "WorldBegin Include \"" + name + "\" WorldEnd"),
+                      warnings);
+        });
+    };
+    EXPECT_EQ(named("new\\\\tile.pbrt"), "");
+    EXPECT_EQ(named("new\\tile.pbrt"), "");
+    EXPECT_TRUE(Contains(named("\\new\\tile.pbrt"), "cannot read '\\new\\tile.pbrt'"));
 }
 
 TEST_F(PbrtErrors, RecursiveInclude) {

@@ -153,18 +153,53 @@ TEST_F(Ply, ConcavePolygonsAreDividedWithin) {
                 1e-6);
 }
 
-// Marks that old programs end texts by, colours, and triangles that are no faces.
+// Their first triangle tells the front, -1 begins another; faces may come before and after.
+TEST_F(Ply, TriangleStrips) {
+    for (const std::string format : kFormats)
+        for (const bool isFirst : {false, true}) {
+            const std::string strips =
+                                  "element tristrips 2\nproperty list int int vertex_indices\n",
+                              face = "element face 1\n" + std::string(kFaces) +
+                                     "property list uchar float texcoord\nproperty int "
+                                     "face_indices\n";
+            PlyWriter ply(format);
+            ply.Header("element vertex 4\n" + std::string(kPositions) +
+                       (isFirst ? strips + face : face + strips));
+            for (int i = 0; i < 4; ++i) ply.Put<float>({double(i), 0, 0});
+            const auto putFace = [&] {
+                ply.Put<uint8_t>({3}).Put<int>({3, 2, 1}).Put<uint8_t>({0}).Put<int>({7});
+            };
+            if (!isFirst) putFace();
+            ply.Put<int>({4, 0, 1, 3, 2}).Put<int>({9, 0, 1, 2, -1, 0, 2, 2, 3, 1});
+            if (isFirst) putFace();
+            const MeshData mesh = Load(ply.text);
+            std::vector<Triangle> expected = {{0, 1, 3}, {3, 1, 2}, {0, 1, 2}, {2, 3, 1}};
+            expected.insert(isFirst ? expected.end() : expected.begin(), {3, 2, 1});
+            EXPECT_EQ(mesh.triangles, expected) << format;
+            EXPECT_EQ(mesh.faceIndices.size(), 5u);
+        }
+    EXPECT_EQ(ErrorOf("ply\nformat ascii 1.0\nelement vertex 1\n" + std::string(kPositions) +
+                      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+                      "0 0 0\n3 0 0 -2\n"),
+              "a.ply:11: a face has the vertex index -2.000000");
+}
+
+TEST_F(Ply, UnusedVerticesNeedNotBeFinite) {
+    const MeshData mesh = Load("ply\nformat ascii 1.0\n" + Header("4", "1") +
+                               "end_header\n1 2 3\nnan 0 inf\n1 0 0\n0 1 0\n3 0 2 3\n");
+    EXPECT_EQ(mesh.positions[1], Vec3f(1, 2, 3));
+    EXPECT_EQ(warnings.Counts().at("unused vertex of a PLY file that is not finite"), 1);
+}
+
+// Marks that old programs end texts by, and colours.
 TEST_F(Ply, WarnsOfWhatIsLeftOut) {
     const std::string vertices = "0 0 0 9\n1 0 0 9\n0 1 0 9\n";
     PlyWriter ply("ascii");
     ply.Header("element vertex 3\n" + std::string(kPositions) +
-               "property uchar red\nelement face 1\n" + kFaces +
-               "element tristrips 1\nproperty list int int vertex_indices\n");
+               "property uchar red\nelement face 1\n" + kFaces);
     for (const char* end : {"", "\n", "\x1a", "\n\x1a", "\n\x1a garbage"})
-        Load(ply.text + vertices + "3 0 1 2\n3 0 1 2" + end);
-    EXPECT_EQ(warnings.Counts().size(), 2u);
-    EXPECT_EQ(
-        warnings.Counts().at("triangle strips of a PLY file are left out; save them as faces"), 5);
+        Load(ply.text + vertices + "3 0 1 2" + end);
+    EXPECT_EQ(warnings.Counts().size(), 1u);
     EXPECT_EQ(warnings.Counts().at("colours of a PLY file are left out; glTF files can have them"),
               5);
 }

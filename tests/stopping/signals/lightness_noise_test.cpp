@@ -211,6 +211,32 @@ TEST(PeakNoise, IsThatOfTheSubBlocks) {
     EXPECT_NEAR(PeakNoise(noise) / Rms(masked), std::pow(3, 0.25), 0.15);
 }
 
+// A lit square, with noise, in a block without any: it may be no noisier than where it fills the
+// block, wherever it is, however small and beside whatever level.
+TEST(LocalPeakNoise, IsThatOfTheLitPixelsAlone) {
+    const auto peakOf = [](int side, int at, double noise, double dark) {
+        BlockImage block(200, 200, float(dark));
+        const BlockImage noisy = NoisyBlock(200, 200, noise, 40, 11);
+        for (int y = at; y < at + side; ++y)
+            for (int x = at; x < at + side; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    block.Mean(x, y)[c] = noisy.mean[size_t(3 * (200 * y + x) + c)];
+                    block.HalfMean(x, y)[c] = noisy.halfMean[size_t(3 * (200 * y + x) + c)];
+                }
+        return LocalPeakNoise(ComputeLightnessNoise(block.At(40)), 200, 200);
+    };
+    for (const double noise : {0.05, 0.3}) {
+        const double whole = peakOf(200, 0, noise, 0);
+        for (const double dark : {0., 0.8})
+            for (const int at : {0, 77, 100}) {
+                for (const int side : {12, 24, 48, 100})
+                    EXPECT_NEAR(peakOf(side, at, noise, dark) / whole, 1, 0.4)
+                        << noise << " " << dark << " " << at << " " << side;
+                EXPECT_GT(peakOf(6, at, noise, dark) / whole, 0.5) << noise << " " << dark;
+            }
+    }
+}
+
 TEST(LightnessNoise, RefusesOtherSizes) {
     const BlockImage image(20, 20, 1);
     BlockView view = image.At(20);

@@ -117,7 +117,7 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     Mesh mesh;
     mesh.reverseOrientation = entity.reverseOrientation;
     mesh.flipNormals = entity.reverseOrientation != Mirrors(m);
-    mesh.frontByWinding = entity.parameters.GetBool("frontbywinding", false);  // of glTF's emitters
+    mesh.frontByWinding = entity.parameters.GetBool("frontbywinding", false);  // as in glTF
     for (Vec3f& p : data.positions) {
         p = TransformPoint(m, p);
         if (!p.allFinite()) throw Error(entity.loc, "a vertex is not finite once transformed");
@@ -219,7 +219,8 @@ std::optional<FloatTexture> ReadAlpha(const TextureTable& textures, const ShapeE
 
 // Reads "coverage", the share of the mesh that is there, times "coveragefactor" and, with
 // "coveragecolors", the alpha of the vertices' colours; "alphacutoff" makes it all or nothing. With
-// "openbehind" rays from behind pass. Nothing is returned where all of it is there.
+// "openbehind" rays from behind pass, with "singlesided" those of the camera. Nothing is returned
+// where all of it is there.
 std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
     // An alpha that was rounded to just below the cutoff is not below it.
@@ -229,9 +230,10 @@ std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEn
                       cutoff,
                       params.GetInt("coverageuv", 0) == 1,
                       params.GetBool("coveragecolors", false),
-                      params.GetBool("openbehind", false)};
+                      params.GetBool("openbehind", false),
+                      params.GetBool("singlesided", false)};
     if (!coverage.IsWhole()) return coverage;
-    if (!coverage.openBehind) return {};
+    if (!coverage.openBehind && !coverage.singleSided) return {};
     coverage.factor = 1;
     return coverage;
 }

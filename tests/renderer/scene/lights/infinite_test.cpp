@@ -66,6 +66,16 @@ TEST(EnvironmentMap, DensityFollowsBrightnessAndSolidAngle) {
     EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
 }
 
+// Compensated maps end at the poles, as all others have them; pbrt-v3's rows repeat.
+TEST(EnvironmentMap, EndsAtThePoles) {
+    for (const bool isCompensated : {false, true}) {
+        const EnvironmentMap map({1, 2, 1, std::vector<float>{3, 1}}, Rgb::Ones(), isCompensated);
+        EXPECT_FLOAT_EQ(map.Radiance({0.5f, 0}).x(), isCompensated ? 3 : 2);
+        EXPECT_NEAR(map.Radiance({0.5f, 0.999f}).x(), isCompensated ? 1 : 2, 0.01);
+        EXPECT_FLOAT_EQ(map.Radiance({0.5f, 0.5f}).x(), 2);
+    }
+}
+
 // A compensated map takes the mean brightness off the density, but nothing that is bright away.
 TEST(EnvironmentMap, CompensatedLeavesTheDarkToOthers) {
     const EnvironmentMap plain(TestImage(), Rgb::Ones()), map(TestImage(), Rgb::Ones(), true);

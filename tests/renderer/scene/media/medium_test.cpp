@@ -216,12 +216,32 @@ TEST(MediumTable, RefusesNonsense) {
 
 TEST(MediumTable, KnowsWhatLiesBeyond) {
     MediumTable table;
-    EXPECT_EQ(table.Beyond(0, true, 3), 3);
+    const auto beyond = [&](int shape, bool onNormalSide, int current) {
+        return table.Beyond(shape, onNormalSide, true, MediumStack(current)).Top();
+    };
+    EXPECT_EQ(beyond(0, true, 3), 3);
     table.ofShapes = {{0, 1}, {2, 2}, {kVacuum, 0}};
-    EXPECT_EQ(table.Beyond(0, true, 5), 1);
-    EXPECT_EQ(table.Beyond(0, false, 5), 0);
-    EXPECT_EQ(table.Beyond(1, false, 5), 5);
-    EXPECT_EQ(table.Beyond(2, false, 0), kVacuum);
+    EXPECT_EQ(beyond(0, true, 5), 1);
+    EXPECT_EQ(beyond(0, false, 5), 0);
+    EXPECT_EQ(beyond(1, false, 5), 5);
+    EXPECT_EQ(beyond(2, false, 0), kVacuum);
+}
+
+TEST(MediumStack, LeavesTheLatestOfAMedium) {
+    MediumStack stack;
+    EXPECT_EQ(stack.Top(), kVacuum);
+    stack.Leave(3);
+    for (const int medium : {1, 2, 1, 3}) stack.Enter(medium);
+    stack.Leave(1);
+    EXPECT_EQ(stack.Top(), 3);
+    stack.Leave(3);
+    EXPECT_EQ(stack.Top(), 2);
+    stack.Leave(2);
+    EXPECT_EQ(stack.Top(), 1);
+    for (int medium = 10; medium < 30; ++medium) stack.Enter(medium);
+    EXPECT_EQ(stack.Top(), 29);
+    for (int medium = 29; medium >= 10; --medium) stack.Leave(medium);
+    EXPECT_EQ(stack.Top(), kVacuum);
 }
 
 TEST(HenyeyGreenstein, IsSampledAsItIs) {

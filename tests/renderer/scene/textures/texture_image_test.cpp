@@ -281,22 +281,22 @@ TEST(BilinearFootprint, MirrorsEveryOtherCopy) {
 
 TEST(BilinearRgb, DoesNotFlipAndRepeats) {
     const Image image{2, 2, 3, std::vector<float>{1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0}};
-    EXPECT_EQ(BilinearRgb(image, {0.25f, 0.25f}, Wrap::Repeat).x(), 1);
-    EXPECT_EQ(BilinearRgb(image, {0.75f, 0.25f}, Wrap::Repeat).x(), 2);
-    EXPECT_EQ(BilinearRgb(image, {0.25f, 0.75f}, Wrap::Repeat).x(), 3);
-    EXPECT_EQ(BilinearRgb(image, {0.5f, 0.5f}, Wrap::Repeat).x(), 2.5f);
-    EXPECT_EQ(BilinearRgb(image, {0, 0.25f}, Wrap::Repeat).x(), 1.5f);
-    EXPECT_EQ(BilinearRgb(image, {1, 1}, Wrap::Repeat).x(), 2.5f);
-    EXPECT_EQ(BilinearRgb(image, {-0.25f, 1.25f}, Wrap::Repeat).x(), 2);
+    EXPECT_EQ(BilinearRgb(image, {0.25f, 0.25f}, Wrap::Repeat, Wrap::Repeat).x(), 1);
+    EXPECT_EQ(BilinearRgb(image, {0.75f, 0.25f}, Wrap::Repeat, Wrap::Repeat).x(), 2);
+    EXPECT_EQ(BilinearRgb(image, {0.25f, 0.75f}, Wrap::Repeat, Wrap::Repeat).x(), 3);
+    EXPECT_EQ(BilinearRgb(image, {0.5f, 0.5f}, Wrap::Repeat, Wrap::Repeat).x(), 2.5f);
+    EXPECT_EQ(BilinearRgb(image, {0, 0.25f}, Wrap::Repeat, Wrap::Repeat).x(), 1.5f);
+    EXPECT_EQ(BilinearRgb(image, {1, 1}, Wrap::Repeat, Wrap::Repeat).x(), 2.5f);
+    EXPECT_EQ(BilinearRgb(image, {-0.25f, 1.25f}, Wrap::Repeat, Wrap::Repeat).x(), 2);
 }
 
 TEST(BilinearRgb, ReadsEveryForm) {
     const Image bytes{1, 1, 4, std::vector<uint8_t>{51, 102, 255, 7}};
-    ExpectRgb(BilinearRgb(bytes, {0.1f, 0.9f}, Wrap::Repeat), {0.2f, 0.4f, 1});
+    ExpectRgb(BilinearRgb(bytes, {0.1f, 0.9f}, Wrap::Repeat, Wrap::Repeat), {0.2f, 0.4f, 1});
     const Image halves{1, 1, 3, std::vector<Half>{Half(0.5f), Half(1000), Half(6e-8f)}};
-    ExpectRgb(BilinearRgb(halves, {0.1f, 0.9f}, Wrap::Clamp), {0.5f, 1000, 0x1p-24f});
+    ExpectRgb(BilinearRgb(halves, {0.1f, 0.9f}, Wrap::Clamp, Wrap::Clamp), {0.5f, 1000, 0x1p-24f});
     const Image grey{1, 1, 1, std::vector<float>{3}};
-    ExpectRgb(BilinearRgb(grey, {0.1f, 0.9f}, Wrap::Repeat), {3, 3, 3});
+    ExpectRgb(BilinearRgb(grey, {0.1f, 0.9f}, Wrap::Repeat, Wrap::Repeat), {3, 3, 3});
 }
 
 }  // namespace
