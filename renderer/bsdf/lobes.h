@@ -187,7 +187,8 @@ using Lobe =
                  FresnelBlend, DisneyDiffuse, DisneyReflection, DisneyTransmission, DisneyClearcoat,
                  HairLobe, FourierLobe, LayeredReflection, MicrofacetReflection<SchlickInterface>,
                  ThinTransmission, ThinSpecular, DiffuseExit, CharlieSheen,
-                 MicrofacetReflection<CoatedInterface>>;
+                 MicrofacetReflection<CoatedInterface>, SpecularReflection<StretchedInterface>,
+                 MicrofacetReflection<StretchedInterface, SeparableMasking>>;
 static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);
 
 // Returns the lobe with f multiplied by `scale`; its sampling is the same.
