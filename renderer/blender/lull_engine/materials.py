@@ -95,21 +95,17 @@ class _Writing:
                 self.through["diffuseTransmissionColorTexture"] = pbr["baseColorTexture"]
         if s.is_air:
             _of_air(self.made)
-        if s.brightens and "baseColorTexture" not in pbr:
-            *colour, alpha = pbr["baseColorFactor"]
-            pbr["baseColorFactor"] = [*(min(max(0, c + s.brightens), 1) for c in colour), alpha]
         if even['Transmission'] > 0 and not s.is_thin:
             volume = extensions["KHR_materials_volume"] = {"thicknessFactor": 1}  # without it, glass would be a thin sheet
+            own["keepsRadiance"] = True
             if s.absorbs and max(s.absorbs) > 0:
                 distance = 1 / max(s.absorbs)
                 volume.update(attenuationDistance=distance, attenuationColor=[math.exp(-a * distance) for a in s.absorbs])
         if is_output(self.p['Shine']) or self.p['Shine'] > 0:
-            colour = self._pixels('Shine Color').reshape(-1, 3).mean(0)
-            own["addedInterface"] = True
+            if "evenInterface" not in own:
+                own["addedInterface"] = True
             extensions.pop("KHR_materials_ior", None)  # with the usual one, normal incidence has 0.04
-            # An interface that reflects a share in a colour, white at grazing angles.
-            extensions["KHR_materials_specular"] = {"specularFactor": self._even('Shine'),
-                                                    "specularColorFactor": [float(c) / 0.04 for c in colour]}
+            extensions["KHR_materials_specular"] = self._shine(self._pixels('Shine'), self._pixels('Shine Color'))
         if own:
             self.made["extras"] = {"lull": own}
         return self.made
@@ -132,6 +128,13 @@ class _Writing:
         if sheen.max() > 0:
             e["KHR_materials_sheen"] = {"sheenColorFactor": [float(min(c, 1)) for c in sheen],
                                         "sheenRoughnessFactor": even['Sheen Roughness']}
+
+    def _shine(self, share, colour):
+        """Returns an interface that reflects a share in a colour; unless it is even, white at grazing angles."""
+        if share.ndim == colour.ndim == 1:
+            return {"specularFactor": float(share[0]), "specularColorFactor": [float(c) / 0.04 for c in colour]}
+        both = self._image(_packed(colour, share), 'shine', True)
+        return {"specularTexture": both, "specularColorTexture": both, "specularColorFactor": [1 / 0.04] * 3}
 
     def _write_metal(self):
         metallic, roughness = self.p['Metallic'], self.p['Roughness']
