@@ -8,6 +8,7 @@ import os
 import bpy
 import numpy as np
 
+from .images import numbers_of
 from .nodes import described
 from .process import Failure, run
 
@@ -20,8 +21,8 @@ _NOTHING = np.zeros((4, 4, 3))
 class Baker:
     """`size` is that of images that have no size of their own, in pixels; `view` tells the camera's (see camera.View)."""
 
-    def __init__(self, size, view, notes):
-        self.size, self._view, self._notes = size, view, notes
+    def __init__(self, size, view):
+        self.size, self._view = size, view
         self._known, self._bakes, self._bodies, self._blocks = {}, {}, {}, {}
         self.world, self.suns = None, []
         self.is_lacking = False  # set where something is not known; for others to reset
@@ -92,14 +93,13 @@ class Baker:
         """Finds out what was asked. Returns false if `stopped` has returned true. Raises: Failure."""
         if not self.is_asked:
             return True
-        self._warn_of_changes()
         blocks = set(self._blocks.values())
         blend = os.path.join(folder, "nodes.blend")
         bpy.data.libraries.write(blend, {scene.original} if any(b.library for b in blocks) else blocks, path_remap='ABSOLUTE')
         used = {bake.get("body") for bake in self._bakes.values()}
         bodies = {n: self._written(n, *body, folder) for n, body in self._bodies.items() if n in used or body[2]}
         what = {"blend": blend, "frame": scene.frame_current, "subframe": scene.frame_subframe, "bakes": list(self._bakes.values()),
-                "bodies": bodies, "world": self.world}
+                "bodies": bodies, "world": self.world, "images": _changed(folder)}
         request = os.path.join(folder, "request.json")
         with open(request, "w", encoding="utf-8") as f:
             json.dump(what, f)
@@ -143,10 +143,15 @@ class Baker:
                 self._bodies[number][2].clear()
         self.world = None
 
-    def _warn_of_changes(self):
-        for image in bpy.data.images:
-            if image.is_dirty and image.users and image.source in ('FILE', 'GENERATED') and image.type in ('IMAGE', 'UV_TEST'):
-                self._notes.add("baked as stored, without the changes since", image.name, "images")
+
+def _changed(folder):
+    """Writes the pixels of images that are in the session alone, and those of files that have changed there. Returns the files by name."""
+    found = {}
+    for image in bpy.data.images:
+        if image.is_dirty and image.users and image.source in ('FILE', 'GENERATED') and image.type in ('IMAGE', 'UV_TEST'):
+            found[image.name_full] = f"image{len(found)}.npy"
+            np.save(os.path.join(folder, found[image.name_full]), numbers_of(image))
+    return found
 
 
 def _object(shown):

@@ -3,23 +3,20 @@ import math
 
 from mathutils import Matrix
 
+from .process import Failure
 from .shown import is_sheared
 
 
-class Failed(Exception):
-    """A scene that cannot be rendered, with the reason."""
-
-
 class View:
-    """What the camera of an evaluated scene sees. Raises: Failed."""
+    """What the camera of an evaluated scene sees. Raises: Failure."""
 
     def __init__(self, scene, graph, notes):
         camera = self._camera = scene.camera
         if camera is None:
-            raise Failed("the scene has no camera")
+            raise Failure("the scene has no camera")
         self.data = data = camera.data
         if data.type == 'PANO':
-            raise Failed(f"camera '{camera.name}' is panoramic, which glTF does not support")
+            raise Failure(f"camera '{camera.name}' is panoramic, which glTF does not support")
         self.name, self.matrix, self._graph, self._notes = camera.name, camera.matrix_world.copy(), graph, notes
         r = scene.render
         self.width, self.height = r.resolution_x, r.resolution_y

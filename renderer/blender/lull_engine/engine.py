@@ -4,12 +4,12 @@ import os
 import re
 import tempfile
 import time
+import traceback
 
 import bpy
 import numpy as np
 
 from . import exr, passes
-from .camera import Failed
 from .export import export
 from .process import Failure, Render
 from .program import find_lull
@@ -61,21 +61,30 @@ class LullEngine(bpy.types.RenderEngine):
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as folder:
                 _Job(self, depsgraph, folder).run()
-        except (Failure, Failed, OSError) as e:
-            self.error_set(str(e))  # in the window
-            self.report({'ERROR'}, str(e))  # and in the terminal
+        except Exception as e:
+            told = str(_told(e))
+            self.error_set(told)  # in the window
+            self.report({'ERROR'}, told)  # and in the terminal
+
+
+def _told(e):
+    """Returns an exception as one to show to the user."""
+    if isinstance(e, (Failure, OSError)):
+        return e
+    traceback.print_exception(type(e), e, e.__traceback__)
+    return Failure(f"The scene cannot be rendered: {type(e).__name__}: {e}")
 
 
 def export_scene(scene, layer, folder, name="scene", suffix=".gltf"):
-    """Writes a view layer as a render would, and renders nothing. Returns Exported. Raises: Failure, Failed."""
+    """Writes a view layer as a render would, and renders nothing. Returns Exported. Raises: Failure."""
     found, r = [], scene.render
 
     def instead(engine, graph):
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as scratch:
                 found.append(export(graph, engine.frame_set, folder, scratch, name, suffix, False, lambda: False, lambda said: None))
-        except (Failure, Failed, OSError) as e:
-            found.append(e)
+        except Exception as e:
+            found.append(_told(e))
 
     kept = {n: getattr(r, n) for n in ("engine", "use_compositing", "use_sequencer")}
     slots = getattr(bpy.data.images.get("Render Result"), "render_slots", None)

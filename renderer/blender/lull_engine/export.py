@@ -42,7 +42,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     evaluates it at another time. `is_render`: the file is read once, and the background has a picture of its own. `heard` is called with
     what a second Blender prints.
 
-    Returns: Exported; None if `stopped` has returned true. Raises: Failure, Failed.
+    Returns: Exported; None if `stopped` has returned true. Raises: Failure.
     """
     scene, notes = graph.scene_eval, Notes()
     layer = scene.original.view_layers[graph.view_layer_eval.name]
@@ -53,7 +53,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     view = View(scene, graph, notes)
     note_film(scene.original, layer, notes)
     found = Collector(graph, layer, moving, notes)
-    baker = Baker(scene.lull.texture, view, notes)
+    baker = Baker(scene.lull.texture, view)
     pictures = Images(_FAST if is_render else _SMALL, notes)
     dresser = dress.Dresser(found.shown, baker, pictures, notes)
     lamps = lights.Lights(found.lamps, scene, base, baker, notes)
@@ -81,7 +81,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     path = base + suffix
     shutter = nodes.write(path, moving.shutter)
     groups = nodes.groups
-    if world.light and scene.world.lightgroup in layer.lightgroups:
+    if world.light and scene.world and scene.world.lightgroup in layer.lightgroups:
         groups[scene.world.lightgroup] = "environment"
     materials = {m.original for s in found.shown for m in s.mesh.materials if m}
     return Exported(path, world.light, world.backdrop, groups, shutter, _indices(s.original for s in found.shown), _indices(materials),
@@ -93,9 +93,11 @@ def _move_flat(shown, parts, notes):
     for s in shown:
         if is_flat(s.matrix) and s.mesh in parts:
             moved = s.mesh.moved(np.array(s.matrix))
-            parts[moved] = parts[s.mesh]
+            has_area = moved.normals.any()
+            parts[moved] = parts[s.mesh] if has_area else []
             s.mesh, s.matrix, s.moves = moved, Matrix(), None
-            notes.add("shown in its colours though it is scaled to no height, where Cycles has black", s.name)
+            if has_area:
+                notes.add("scaled to no height and shown in full colours, where Cycles has black", s.name)
 
 
 def _indices(blocks):

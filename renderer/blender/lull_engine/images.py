@@ -50,7 +50,7 @@ def _bytes_of(pixels):
     return values[:, :, :3] if values.shape[2] == 4 and values[:, :, 3].min() == 255 else values
 
 
-def _numbers_of(image):
+def numbers_of(image):
     """Returns the stored numbers of an image."""
     width, height = image.size
     values = np.empty(width * height * 4, np.float32)
@@ -77,7 +77,7 @@ class Images:
         return Picture(name, suffix, self._pool.submit(data))
 
     def numbers_of(self, image):
-        return self._once(("numbers", image), lambda: _numbers_of(image))
+        return self._once(("numbers", image), lambda: numbers_of(image))
 
     def is_grey(self, image):
         """Returns whether the channels of an image are the same, as far as it can be read."""
@@ -102,7 +102,7 @@ class Images:
     def _of_file(self, image):
         stored = _stored(image)
         if stored is None:
-            return self.of_pixels(image.name, _numbers_of(image))
+            return self.of_pixels(image.name, numbers_of(image))
         return self._picture(image.name, lambda: stored, next(s for start, s in _SUFFIXES.items() if stored.startswith(start)))
 
     def _once(self, key, make):
@@ -114,7 +114,7 @@ class Images:
         across = max(image.size)
         if image.is_float or image.colorspace_settings.name != 'sRGB' or across > _READ:
             return self.data(image)
-        pixels = _numbers_of(image)
+        pixels = numbers_of(image)
         has_alpha = image.alpha_mode in ('STRAIGHT', 'PREMUL') and image.depth == 32 and pixels[:, :, 3].min() < 1
         if has_alpha:
             pixels[:, :, :3] *= pixels[:, :, 3:]

@@ -1,7 +1,7 @@
 """Bakes nodes and renders the world, in a Blender of its own; see baking.py, which writes the request.
 
-The last argument is the path of a JSON file: `blend` (materials, worlds, lights and cameras), frame, subframe, `bakes`, `bodies` and
-`world`. Answers are .npy files beside it, and said.json: the suns of the world.
+The last argument is the path of a JSON file: `blend` (materials, worlds, lights and cameras), frame, subframe, `bakes`, `bodies`,
+`world` and `images`. Answers are .npy files beside it, and said.json: the suns of the world.
 """
 import importlib
 import json
@@ -27,12 +27,25 @@ def load(path):
             setattr(wanted, kind, getattr(there, kind))
 
 
+def change(name, pixels):
+    """Gives an image these pixels."""
+    old = next((i for i in bpy.data.images if i.name_full == name), None)
+    if old is None:  # no node has it
+        return
+    made = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0], alpha=True, float_buffer=old.is_float)
+    made.colorspace_settings.name, made.alpha_mode = old.colorspace_settings.name, old.alpha_mode
+    made.pixels.foreach_set(pixels.ravel())
+    old.user_remap(made)
+
+
 def main():
     request = sys.argv[-1]
     with open(request, encoding="utf-8") as f:
         what = json.load(f)
     folder = os.path.dirname(request)
     load(what["blend"])
+    for name, file in what["images"].items():
+        change(name, np.load(os.path.join(folder, file)))
     baker = bake.Baker(what["frame"], what["subframe"])
     bodies = {}
     for number, body in what["bodies"].items():

@@ -47,11 +47,13 @@ class Collector:
         # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
         listed = {i.parent.original for i in graph.object_instances if i.is_instance}
         for instance in graph.object_instances:
-            self._add(instance, listed)
+            with notes.of(instance.object.name):
+                self._add(instance, listed)
         if self._override is None:
             self._note_copies()
         for original in {s.original: None for s in self.shown}:
-            _note_of(original, notes)
+            with notes.of(original.name):
+                _note_of(original, notes)
 
     def _add(self, instance, listed):
         o, original = instance.object, instance.object.original
