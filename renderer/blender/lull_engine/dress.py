@@ -20,6 +20,7 @@ class Dresser:
     def __init__(self, shown, baker, pictures, notes):
         self._shown, self._baker, self._pictures = shown, baker, pictures
         self._first = {}  # place of each mesh
+        baker.see(shown)
         for s in shown:
             self._first.setdefault(s.mesh, s)
         users = {}

@@ -199,6 +199,8 @@ class _Job:
             engine.end_result(result)
 
     def _show_export(self, said):
+        if found := re.match(r"lull: (baking .*)\n$", said):
+            self.engine.update_stats("", found[1].capitalize())
         if time.monotonic() - self.shown < (_SECONDS_BETWEEN_LINES if bpy.app.background else _SECONDS_BETWEEN_VIEWS):
             return
         self.shown = time.monotonic()

@@ -53,7 +53,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     view = View(scene, graph, notes)
     note_film(scene.original, layer, notes)
     found = Collector(graph, layer, moving, notes)
-    baker = Baker(scene.lull.texture, view)
+    baker = Baker(scene.lull.texture, view, notes)
     pictures = Images(_FAST if is_render else _SMALL, notes)
     dresser = dress.Dresser(found.shown, baker, pictures, notes)
     lamps = lights.Lights(found.lamps, scene, base, baker, notes)

@@ -25,6 +25,14 @@ class Picture(NamedTuple):
     data: Future
 
 
+def missing(image):
+    """Returns where the file of an image should be, if nothing is known of it; "" without an image, else None."""
+    if image is None or image.source != 'FILE' or image.packed_file or image.is_dirty:
+        return "" if image is None else None
+    path = os.path.normpath(bpy.path.abspath(image.filepath, library=image.library))
+    return None if os.path.isfile(path) else path
+
+
 def _stored(image):
     """Returns the PNG or JPEG that an image was read from; None without one, or if it has been changed."""
     if image.is_dirty or image.source != 'FILE':

@@ -293,7 +293,7 @@ class _Writing:
     def _over_mesh(self, value, kind='EMIT'):
         mesh, shown, slots = self.over
         pixels = self.baker.over_mesh(self.surface.material, value, mesh, shown, slots, kind)
-        if abs(np.diff(pixels, axis=1)).mean() > _FINE and self.baker.is_coarse(mesh, shown.matrix):
+        if abs(np.diff(pixels, axis=1)).mean() > _FINE and self.baker.is_coarse(mesh):
             self.note(f"blurred, by images of {self.baker.size} pixels over whole meshes (Texture Size)")
         return pixels
 

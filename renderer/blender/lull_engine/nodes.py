@@ -79,6 +79,19 @@ class Made:
         return object.__getattribute__(self, "properties")[name]
 
 
+class Constant(Made):
+    """A node of a plain value: a number, or a colour as three."""
+
+    def __init__(self, value):
+        if isinstance(value, tuple):
+            super().__init__('MixRGB', 'RGB', 0.0, (*value, 1.0), (*value, 1.0), blend_type='MIX')
+        else:
+            super().__init__('Math', 'VALUE', value, 0.0, operation='ADD')
+
+    def plain_output(self):
+        return self.inputs[1 if self.type == 'RGB' else 0].default_value
+
+
 class Tree:
     """Reads the evaluated node tree of `owner`, a material, light or world. `replaced(node, name)` returns another output for that of a
     Node of this name, or None."""

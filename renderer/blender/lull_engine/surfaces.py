@@ -1,8 +1,8 @@
 """Materials as parameters of a surface: plain values, or outputs of nodes."""
-from . import displacement, values
+from . import displacement, images, values
 from .bsdfs import DEFAULTS, READERS, bounced
 from .mixtures import added, mixed
-from .nodes import Tree, is_output, upstream, value_of
+from .nodes import Constant, Tree, is_output, upstream, value_of
 from .versions import HAS_ADDED_INTERFACE, displacement_method
 
 EVEN = ('IOR', 'Specular', 'Clearcoat', 'Clearcoat Roughness', 'Transmission', 'Sheen Roughness')  # of one number for a whole material
@@ -17,7 +17,7 @@ class Surface:
         """`solid()` returns whether faces of the material form a closed body. `side`: the input of a node that mixes the sides."""
         self.name, self.material, self.is_solid, self._notes = material.name, material, solid, notes
         self.own, self.is_thin, self.is_air, self._numbers = {}, False, False, {}
-        tree = Tree(material, values.strand)
+        tree = Tree(material, self._replaced)
         surface = tree.output.inputs['Surface']
         self.root = surface.source.node if surface.source is not None else None
         self.has_sides = side is None and self.root is not None and _mixes_sides(self.root)
@@ -36,6 +36,15 @@ class Surface:
         if moves is not None and not displacement.moves(material):
             self.parameters['Normal'], self.kind = moves, 'BUMP'
         self._note_what_holds_of_the_whole(moves)
+
+    def _replaced(self, node, name):
+        """Lets nodes have what is known of strands, and of images without a file; see nodes.Tree."""
+        path = images.missing(node.image) if node.type == 'TEX_IMAGE' else None
+        if path is None:
+            return values.strand(node, name)
+        if path:
+            self._notes.add("magenta, as in Cycles, as there is no such file", f"{node.image.name} ({path})", "images")
+        return Constant((1., 0., 1.)).output(0, 'RGBA') if name == 'Color' else Constant(1.).output()
 
     def note(self, consequence):
         self._notes.add(consequence, self.name, "materials")
