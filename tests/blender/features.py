@@ -137,7 +137,7 @@ def consequences(lines, kinds="Warning|Error"):
 def judge(out, name, lines):
     """Returns the verdict, and the differences of means, of blocks and of the worst block; without a picture the verdict alone."""
     a, b = (picture(out / f"{name}.{engine}.exr") for engine in ("cycles", "lull"))
-    remarks = [line for line in consequences(lines, "Info") if line.startswith("differs: ")]
+    remarks = [line for line in consequences(lines, "Info") if line.startswith("settings of Cycles without effect: ")]
     warnings = [line for line in consequences(lines) if line not in remarks]
     if b is None:
         return ("refused: " + "; ".join(warnings),)

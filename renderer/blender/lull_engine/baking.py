@@ -11,7 +11,7 @@ import numpy as np
 
 from .images import numbers_of
 from .nodes import described
-from .process import Failure, run
+from .process import Failure, ended as how_ended, run
 
 _SECOND = os.path.join(os.path.dirname(os.path.abspath(__file__)), "second.py")
 _USED = 0.6  # of an image, by the faces of an unwrapped mesh
@@ -133,7 +133,7 @@ class Baker:
         said = os.path.join(folder, "said.json")
         if code != 0 or not os.path.exists(said):
             lines = [line for line in output.splitlines() if line.strip() and not line.startswith(("Blender quit", "Error: script failed"))]
-            raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "exit code %d" % code))
+            raise Failure("The scene cannot be exported: " + (lines[-1] if lines else "the second Blender " + how_ended(code)))
         self._read(folder, bodies)
         with open(said, encoding="utf-8") as f:
             told = json.load(f)

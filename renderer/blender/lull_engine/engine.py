@@ -11,7 +11,7 @@ import numpy as np
 
 from . import exr, passes
 from .export import export
-from .process import Failure, Render
+from .process import Failure, Render, ended
 from .program import find_lull
 from .versions import IS_RECT_FLAT
 
@@ -189,12 +189,12 @@ class _Job:
         render = Render(command)
         result = engine.begin_result(0, 0, *self.size, layer=self.layer)
         try:
-            self._watch(render, result)
+            self._watch(render, result, exported)
             if os.path.exists(picture):
                 self._fill(result, picture, exported)
             elif render.code != 130:
                 raise Failure("lull: " + (" ".join(render.errors) or
-                                          "ended with exit code %d" % render.code))
+                                          ended(render.code)))
         finally:
             engine.end_result(result)
 
@@ -207,7 +207,16 @@ class _Job:
         if found := re.findall(r"^lull: (image \d+ of \d+)$", said, re.M):
             self.engine.update_stats("", "Baking " + found[-1])
 
-    def _watch(self, render, result):
+    @staticmethod
+    def _named(text, exported):
+        """Returns a message with the names of what it finds in the file, such as "node 'lamp'" for /nodes/6."""
+        def name(found):
+            names = exported.names.get(found[1], ())
+            return f"{'object' if found[1] == 'nodes' else found[1][:-1]} '{names[int(found[2])]}': " if int(found[2]) < len(names) else found[0]
+
+        return re.sub(r"\S*scene\.glb: /(\w+)/(\d+)\S*: (?:warning: )?", name, text)
+
+    def _watch(self, render, result, exported):
         """Shows the progress of the render until it ends."""
         view = np.zeros((self.size[1], self.size[0], 4), np.float32)
         changed, shown, said = False, time.monotonic(), -_SECONDS_BETWEEN_LINES
@@ -226,7 +235,7 @@ class _Job:
                 said = time.monotonic()
                 self.engine.update_stats("", (_step if kind == "step" else _progress)(what))
             elif kind in ("warning", "note") and _ADVICE not in what:
-                self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + what)
+                self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + self._named(what, exported))
             if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:
                 _set(result.layers[0].passes["Combined"], view)
                 self.engine.update_result(result)

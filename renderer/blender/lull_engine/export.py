@@ -25,7 +25,7 @@ _ROUNDS = 3  # of questions to a second Blender, at most
 @dataclass
 class Exported:
     """`groups` are the names of light groups for lull; `shutter` is the time that it is open, in seconds, 0 where nothing moves;
-    `objects` and `materials` are pass indices by their names."""
+    `objects` and `materials` are pass indices by their names; `names` are those of what the file has, by kinds such as "nodes"."""
     gltf: str
     environment: str = None
     backdrop: str = None
@@ -33,6 +33,7 @@ class Exported:
     shutter: float = 0
     objects: dict = field(default_factory=dict)
     materials: dict = field(default_factory=dict)
+    names: dict = field(default_factory=dict)
     warnings: list = field(default_factory=list)
     remarks: list = field(default_factory=list)
 
@@ -85,7 +86,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
         groups[scene.world.lightgroup] = "environment"
     materials = {m.original for s in found.shown for m in s.mesh.materials if m}
     return Exported(path, world.light, world.backdrop, groups, shutter, _indices(s.original for s in found.shown), _indices(materials),
-                    notes.lines(), limits(scene.original, scene.lull.max_depth))
+                    nodes.names(), notes.lines(), limits(scene.original, scene.lull.max_depth))
 
 
 def _move_flat(shown, parts, notes):
@@ -176,6 +177,10 @@ class _Nodes:
         self._children.append(number)
         if moves is not None:
             self._moving[number] = moves
+
+    def names(self):
+        return {kind: [v.get("name", "") for v in values] for kind, values in self._writer.root.items()
+                if isinstance(values, list) and kind in ("nodes", "meshes", "materials", "images")}
 
     def write(self, path, shutter):
         """Writes the file. Returns the time that the shutter is open, 0 where nothing moves."""

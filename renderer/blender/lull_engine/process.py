@@ -24,6 +24,12 @@ def _start(command, **more):
                             preexec_fn=_LIBC and (lambda: _LIBC.prctl(1, signal.SIGKILL)), **more)  # PR_SET_PDEATHSIG
 
 
+def ended(code):
+    """Returns how a process of this exit code ended."""
+    return f"ended by signal {-code}" + (", as if memory did not suffice" if code == -signal.SIGKILL else "") if code < 0 else \
+        f"ended with exit code {code}"
+
+
 def run(command, stopped, heard):
     """Runs a command, and calls `heard` with what it prints. Returns its exit code, its output, and whether `stopped` returned true."""
     with _start(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as process:

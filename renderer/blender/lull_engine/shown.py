@@ -94,7 +94,7 @@ class Collector:
         key = "hair of " + original.name_full
         seen = original.evaluated_get(self._graph)
         if key not in self._meshes:
-            self._meshes[key] = strands.of_particles(seen)
+            self._meshes[key] = strands.of_particles(seen, self._notes)
             for mesh in self._meshes[key]:
                 self._override_in(mesh)
         away = instance.matrix_world @ seen.matrix_world.inverted_safe()
@@ -113,7 +113,7 @@ class Collector:
 
     def _read(self, o, original):
         if o.type == 'CURVES':
-            mesh = strands.of_curves(o)
+            mesh = strands.of_curves(o, self._notes)
         else:
             is_mesh = o.type == 'MESH' and not o.data.is_editmode
             data = o.data if is_mesh else o.to_mesh()
