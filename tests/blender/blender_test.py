@@ -250,7 +250,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
             said = process.communicate(timeout=300)[0]
         own.unlink()
         self.assertEqual(process.returncode, 0, said)
-        self.assertIn("The add-on's own, version ", said)
+        self.assertIn("Version 0.1.0, the add-on's own", said)
         np.testing.assert_allclose(rgb(self.read("frame.0001")), rgb(self.read("plastic.lull")), atol=1e-6)
 
     def test_names_what_an_exception_left_out(self):
