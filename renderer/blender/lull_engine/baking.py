@@ -25,14 +25,14 @@ class Baker:
     """`size` is the largest of images that have no size of their own, in pixels; `view` tells the camera's (see camera.View)."""
 
     def __init__(self, size, view, notes):
-        self.size, self._view, self._notes = size, view, notes
+        self.size, self.view, self._notes = size, view, notes
         self._known, self._bakes, self._bodies, self._blocks, self._nearest = {}, {}, {}, {}, {}
         self.world, self.suns = None, []
         self.is_lacking = False  # set where something is not known; for others to reset
 
     def see(self, shown):
         """Takes the places of meshes (shown.Shown), whose images are as fine as the view asks for where they are nearest."""
-        eye = self._view.matrix.translation
+        eye = self.view.matrix.translation
         for s in shown:
             known = self._nearest.get(s.mesh)
             if known is None or (s.matrix.translation - eye).length < (known.translation - eye).length:
@@ -74,9 +74,9 @@ class Baker:
         matrix = self._nearest[mesh]
         a, b, c = ((mesh.points @ np.array(matrix.to_3x3()).T)[mesh.corners[mesh.triangles[:, i]]] for i in range(3))
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
-        eye = np.array(matrix.inverted_safe() @ self._view.matrix.translation)
+        eye = np.array(matrix.inverted_safe() @ self.view.matrix.translation)
         near = np.array(matrix.to_3x3()) @ (np.clip(eye, mesh.points.min(0), mesh.points.max(0)) - eye)
-        return np.sqrt(area / _USED) / max(self._view.pixel_width(np.linalg.norm(near)), 1e-9)
+        return np.sqrt(area / _USED) / max(self.view.pixel_width(np.linalg.norm(near)), 1e-9)
 
     def _body(self, mesh, shown):
         for number, (known, _, _) in self._bodies.items():

@@ -34,6 +34,14 @@ class View:
         """Returns the width of a pixel at a distance."""
         return 2 * self._half * self.width / self.pixels * (1 if self.data.type == 'ORTHO' else distance)
 
+    def extent(self):
+        """Returns the width and height of the frame, at a distance of 1 or anywhere."""
+        return 2 * self._half * self.width, 2 * self._half * self.height
+
+    def shift(self):
+        """Returns the offset of the frame, in fractions of its width and height."""
+        return self.data.shift_x * self.side / self.width, self.data.shift_y * self.side / self.height
+
     def focus(self):
         """Returns the distance at which the picture is sharp; None without depth of field."""
         dof = self.data.dof
@@ -52,7 +60,7 @@ class View:
         data, x, y = self.data, self._half * self.width, self._half * self.height
         lens = {"clipStart": data.clip_start, "clipEnd": data.clip_end}
         if data.shift_x or data.shift_y:
-            lens["shift"] = [data.shift_x * self.side / self.width, data.shift_y * self.side / self.height]
+            lens["shift"] = list(self.shift())
         if data.dof.use_dof and data.type == 'ORTHO':  # one lens for all pixels would make it a perspective one
             self._notes.say(f"the orthographic camera '{self.name}' is sharp at all distances")
         elif data.dof.use_dof:

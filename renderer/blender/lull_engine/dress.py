@@ -44,8 +44,9 @@ class Dresser:
             return any(solids.has_solid(mesh, self._first[mesh].matrix, slots) for mesh, slots in users.items())
 
         with notes.of(material.name, "materials"):
-            surface = Surface(material, is_solid, notes)
-            return (surface,) if not surface.has_sides else tuple(Surface(material, is_solid, notes, side) for side in (1, 2))
+            surface = Surface(material, self._baker.view, is_solid, notes)
+            return (surface,) if not surface.has_sides else tuple(
+                Surface(material, self._baker.view, is_solid, notes, side) for side in (1, 2))
         return 'viewport'
 
     def dress(self, notes):

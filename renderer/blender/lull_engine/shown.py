@@ -186,7 +186,7 @@ def _asks(tree, is_copy):
     for node in tree.nodes:
         used = {o.name for o in node.outputs if o.is_linked}
         is_placed = node.type == 'NEW_GEOMETRY' and 'Position' in used or \
-            node.type == 'TEX_COORD' and node.object and 'Object' in used
+            node.type == 'TEX_COORD' and (node.object and 'Object' in used or used & {'Camera', 'Window'}) or node.type == 'CAMERA'
         is_named = node.type == 'OBJECT_INFO' and bool(used & ({'Location', 'Random'} if is_copy else used))
         is_named |= not is_copy and node.type == 'ATTRIBUTE' and node.attribute_type == 'OBJECT'
         is_copied = is_copy and (node.type == 'PARTICLE_INFO' and used or

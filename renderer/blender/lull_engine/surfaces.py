@@ -1,5 +1,5 @@
 """Materials as parameters of a surface: plain values, or outputs of nodes."""
-from . import displacement, images, values
+from . import displacement, images, seen, values
 from .bsdfs import DEFAULTS, READERS, bounced
 from .mixtures import added, mixed
 from .nodes import Constant, Tree, is_output, upstream, value_of
@@ -13,9 +13,10 @@ class Surface:
     """`parameters` are those of bsdfs.DEFAULTS, and perhaps Normal; None where nothing is known of the surface. `own` are lull's own
     properties of the material."""
 
-    def __init__(self, material, solid, notes, side=None):
-        """`solid()` returns whether faces of the material form a closed body. `side`: the input of a node that mixes the sides."""
+    def __init__(self, material, view, solid, notes, side=None):
+        """`view` is a camera.View. `solid()` returns whether faces of the material form a closed body. `side`: the input of a node that mixes the sides."""
         self.name, self.material, self.is_solid, self._notes = material.name, material, solid, notes
+        self._view = view
         self.own, self.is_thin, self.is_air, self._numbers = {}, False, False, {}
         tree = Tree(material, self._replaced)
         surface = tree.output.inputs['Surface']
@@ -38,10 +39,10 @@ class Surface:
         self._note_what_holds_of_the_whole(moves)
 
     def _replaced(self, node, name):
-        """Lets nodes have what is known of strands, and of images without a file; see nodes.Tree."""
+        """Lets nodes have what is known of strands, of the camera, and of images without a file; see nodes.Tree."""
         path = images.missing(node.image) if node.type == 'TEX_IMAGE' else None
         if path is None:
-            return values.strand(node, name)
+            return values.strand(node, name) or seen.replaced(node, name, self._view)
         if path:
             self._notes.add("magenta, as in Cycles, as there is no such file", f"{node.image.name} ({path})", "images")
         return Constant((1., 0., 1.)).output(0, 'RGBA') if name == 'Color' else Constant(1.).output()

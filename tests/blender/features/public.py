@@ -2,7 +2,7 @@
 import bpy
 
 from cases import ball, camera, case, cover, cube, dress, dressed, lamp, link, matte, mix, node, principled, surface, the, wall, without
-from compatible import displace
+from compatible import displace, socket
 from lamps import only
 
 
@@ -173,3 +173,28 @@ def window_out(scene):
 @case("window of one plane of Glass, whose normal points into the room")
 def window_in(scene):
     window(scene, 1)
+
+
+@case("window and camera coordinates, depth and distance, and normals in the camera's space")
+def by_camera(scene):
+    scene.camera.data.shift_x = 0.1
+    for x, kind, output in (-1.5, 'TexCoord', 'Window'), (-0.5, 'TexCoord', 'Camera'), (0.5, 'CameraData', 'View Z Depth'), \
+            (1.5, 'CameraData', 'View Distance'), (0, 'CameraData', 'View Vector'), (None, None, None):
+        made, bsdf, tree = principled(Specular=0, Roughness=1)
+        if kind:
+            source = node(tree, 'ShaderNode' + kind).outputs[output]
+        else:
+            turn = node(tree, 'ShaderNodeVectorTransform', vector_type='NORMAL', convert_from='WORLD', convert_to='CAMERA')
+            link(tree, (node(tree, 'ShaderNodeNewGeometry').outputs['Normal'], turn.inputs[0]))
+            source = turn.outputs[0]
+        fraction = node(tree, 'ShaderNodeVectorMath', operation='FRACTION')
+        scaled = node(tree, 'ShaderNodeVectorMath', operation='SCALE')
+        socket(scaled, "Scale").default_value = 2
+        link(tree, (source, scaled.inputs[0]), (scaled.outputs[0], fraction.inputs[0]), (fraction.outputs[0], bsdf.inputs['Base Color']))
+        if x == 0:
+            dressed(made, "floor")
+        elif x is None:
+            dressed(made)
+            the("ball").location.z = 2
+        else:
+            cube(made, 0.8, (x, 0, 0.4), rotation=(0, 0, 0.4))
