@@ -37,7 +37,7 @@ def _note_roughness(surface, node, found):
         found['Multi'] = True
         if is_rough and not any(bounced(found)):
             surface.note("darker than Cycles' where rough, without multiple scattering")
-    elif is_rough and kind in ('BECKMANN', 'ASHIKHMIN_SHIRLEY'):
+    elif is_rough and found['Metallic'] != 0 and kind in ('BECKMANN', 'ASHIKHMIN_SHIRLEY'):
         surface.note(f"with the highlights of GGX instead of {'Beckmann' if kind == 'BECKMANN' else 'Ashikhmin-Shirley'}")
     return found
 

@@ -17,6 +17,8 @@ class View:
         self.data = data = camera.data
         if data.type == 'PANO':
             raise Failure(f"camera '{camera.name}' is panoramic, which glTF does not support")
+        if not camera.matrix_world.determinant():
+            raise Failure(f"camera '{camera.name}' is scaled to nothing")
         self.name, self.matrix, self._graph, self._notes = camera.name, camera.matrix_world.copy(), graph, notes
         r = scene.render
         self.width, self.height = r.resolution_x, r.resolution_y

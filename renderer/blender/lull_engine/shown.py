@@ -83,6 +83,9 @@ class Collector:
 
     def _place(self, instance, mesh, matrix):
         original = instance.object.original
+        if not all(abs(v) < meshes.FAR for row in matrix for v in row):
+            self._notes.add("left out, as it is nowhere", original.name)
+            return
         those = [original, instance.parent.original] if instance.is_instance else [original]
         self.shown.append(Shown(
             original.name, mesh, matrix, original.lightgroup, original,

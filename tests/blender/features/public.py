@@ -127,6 +127,21 @@ def scaled_to_nothing(scene):
         o.scale = (0, 0, 0)
 
 
+@case("lamps, text, a metaball and a curve that are scaled to nothing; points nowhere and far away; a mesh without faces")
+def nowhere(scene):
+    for add, more in ((bpy.ops.object.light_add, {"type": 'AREA'}), (bpy.ops.object.light_add, {"type": 'POINT'}), (bpy.ops.object.text_add, {}),
+                      (bpy.ops.object.metaball_add, {}), (bpy.ops.curve.primitive_bezier_circle_add, {})):
+        add(**more)
+        bpy.context.object.scale = (0, 0, 0)
+    bpy.context.object.data.bevel_depth = 0.1
+    for name, last, faces in ("no number", float("nan"), [(0, 1, 2)]), ("far", 1e30, [(0, 1, 2)]), ("no faces", 1, []):
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata([(0, 0, 0), (1, 0, 0), (last, 1, 0)], [], faces)
+        o = bpy.data.objects.new(name, mesh)
+        o.location.z = -5
+        scene.collection.objects.link(o)
+
+
 def speckled(tree, low, high):
     """Returns the output of a texture from one number to another."""
     noise, ramp = node(tree, 'ShaderNodeTexNoise', Scale=6), node(tree, 'ShaderNodeValToRGB')
