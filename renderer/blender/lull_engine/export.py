@@ -138,7 +138,8 @@ class _Nodes:
             o = lamp.original
             own = {} if o.visible_camera else {"hiddenFromCamera": True}
             name = self._named(o.name, o.lightgroup, True)
-            upright = Matrix.LocRotScale(*lamp.matrix.decompose())  # not sheared
+            place, turn, scale = lamp.matrix.decompose()
+            upright = Matrix.LocRotScale(place, turn, scale if lamp.matrix.determinant() else None)  # not sheared, nor without a size
             if light.type != 'AREA':
                 if id(light) not in numbers:
                     numbers[id(light)] = self._light(lights.punctual(light))
