@@ -191,15 +191,15 @@ void MetallicRoughness::AddClearcoat(const MaterialInputs& in, float coat, Bsdf*
 void MetallicRoughness::AddOwnInterface(const Rgb& f0, float f90, float eta, bool isSmooth,
                                         const Vec2f& alphas, Bsdf* bsdf) const {
     const TrowbridgeReitz distribution(alphas.x(), alphas.y());
-    const StretchedInterface interface{f0, f90, evenInterface ? 1 : eta};
+    const StretchedInterface interface { f0, f90, evenInterface ? 1 : eta };
     if (isSmooth)
         bsdf->Add(SpecularReflection<StretchedInterface>{Rgb(Rgb::Ones()), interface});
     else if (addedInterface)
         bsdf->Add(MicrofacetReflection<StretchedInterface, SeparableMasking>{
             Rgb(Rgb::Ones()), distribution, interface});
     else
-        bsdf->Add(MicrofacetReflection<CoatedInterface>{
-            f0, distribution, CoatedInterface{Rgb(Rgb::Ones()), 1, 0}});
+        bsdf->Add(MicrofacetReflection<CoatedInterface>{f0, distribution,
+                                                        CoatedInterface{Rgb(Rgb::Ones()), 1, 0}});
 }
 
 void MetallicRoughness::AddSolid(const MaterialInputs& in, const Rgb& reflected, Rgb through,

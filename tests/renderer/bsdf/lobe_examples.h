@@ -92,7 +92,7 @@ inline std::vector<NamedLobe> SpecularLobes() {
                                                 {Rgb(0.2f, 0.92f, 1.1f), Rgb(3.9f, 2.45f, 2.14f)}}},
     };
     lobes.push_back({"smooth stretched interface",
-                     SpecularReflection<StretchedInterface>{r, {0.1f * t, 1, 1.5f}}});
+                     SpecularReflection<StretchedInterface>{r, {Rgb(0.1f * t), 1, 1.5f}}});
     for (float eta : {1.f, 1.0001f, 1.5f, 1 / 1.5f, 3.f}) {
         const std::string suffix = fmt::format(" {}", eta);
         lobes.push_back({"coat" + suffix, SpecularReflection<DielectricInterface>{r, {eta}}});
