@@ -9,7 +9,7 @@ from mathutils import Matrix, Vector
 
 from . import ies, materials, meshes, shown, values
 from .nodes import Made, Tree, grey, is_output, upstream, value_of
-from .versions import HAS_DIM_LAMPS
+from .versions import HAS_COLOURED_LAMPS, HAS_DIM_LAMPS
 
 _LUMENS = 683  # per watt, by which glTF's units are divided
 _COPIED = ("name", "type", "energy", "shadow_soft_size", "angle", "spot_size", "spot_blend", "spread", "shape", "size", "size_y")
@@ -82,10 +82,10 @@ class Lights:
 
         output = self._trees.setdefault(data.original.name_full, Tree(data, replaced)).output
         surface = output.inputs['Surface'].source if output is not None else None
-        if surface is None:
+        is_colour = surface is not None and surface.type != 'SHADER'
+        if surface is None or is_colour and not HAS_COLOURED_LAMPS:
             light.energy = 0
             return
-        is_colour = surface.type != 'SHADER'  # which Cycles lets shine
         if not is_colour and surface.node.type != 'EMISSION':
             notes.add("shining without nodes", light.name, "lights")
             return
