@@ -99,6 +99,11 @@ for (owner, name, at, wanted), old in zip(places, kept):
 bpy.ops.lull.check()
 for (owner, name, _, _), old in zip(places, kept):
     setattr(owner, name, old)""", none),
+            ("thinned", "hair_info", """
+from lull_engine import strands
+strands._LIMIT = 1200
+bpy.ops.lull.check()
+strands._LIMIT = 12_000_000""", none),
             ("time", "plastic", """
 from lull_engine.engine import _progress
 event = {'blocks': 4, 'medianSpp': 0, 'remainingSeconds': 20000, 'remainingIsUpperBound': True}
@@ -256,6 +261,12 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
     def test_names_what_an_exception_left_out(self):
         for kind, name in ("object", "ball"), ("material", "floor"), ("light", "key"):
             self.assertIn(f"1 {kind} is left out or plain, after an error (ValueError: no sense): '{name}'", self.said("faulty"))
+
+    def test_thins_out_hair_that_memory_does_not_suffice_for(self):
+        self.assertIn("1 object is shown with 1 of 5 hairs, as much wider, 1 of 8 segments, as all would take", self.said("thinned"))
+
+    def test_says_what_it_bakes_before(self):
+        self.assertIn("Baking 4 images of up to 64 pixels across, the world, about 1 s", self.said("unsaved_images"))
 
     def test_lull_ends_with_blender(self):
         render = "import bpy; s = bpy.context.scene.lull; s.stop_by, s.spp, s.cap = 'SAMPLES', 1000000, 1000000; bpy.ops.render.render()"

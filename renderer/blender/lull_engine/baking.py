@@ -148,8 +148,10 @@ class Baker:
         sizes = [b["size"] for b in self._bakes.values() if "size" in b]
         faces = sum(len(body[0].starts) for body in self._bodies.values())
         seconds = _PER_IMAGE * len(self._bakes) + _PER_PIXEL * sum(s * s for s in sizes) + _PER_FACE * faces
-        between = f" of {min(sizes)} to {max(sizes)} pixels across" if sizes else ""
-        return f"baking {len(sizes)} images{between} and {len(self._bakes) - len(sizes)} values, about {math.ceil(seconds)} s"
+        told = [f"{len(sizes)} images of up to {max(sizes)} pixels across"] if sizes else []
+        told += [f"{len(self._bakes) - len(sizes)} values"] if len(self._bakes) > len(sizes) else []
+        told += ["the world"] if self.world else []
+        return f"baking {', '.join(told) or 'displacement'}, about {math.ceil(seconds)} s"
 
     def _written(self, number, mesh, shown, moves, folder):
         arrays = {n: getattr(mesh, n) for n in ("points", "corners", "starts", "slots", "normals", "smooth")}
