@@ -209,10 +209,11 @@ class _Job:
 
     @staticmethod
     def _named(text, exported):
-        """Returns a message with the names of what it finds in the file, such as "node 'lamp'" for /nodes/6."""
+        """Returns a message with the names of what it finds in the file, such as "object 'lamp'" for /nodes/6."""
         def name(found):
-            names = exported.names.get(found[1], ())
-            return f"{'object' if found[1] == 'nodes' else found[1][:-1]} '{names[int(found[2])]}': " if int(found[2]) < len(names) else found[0]
+            names, number = exported.names.get(found[1], ()), int(found[2])
+            kind = "object" if found[1] == "nodes" else found[1][:-1]
+            return f"{kind} '{names[number]}': " if number < len(names) else found[0]
 
         return re.sub(r"\S*scene\.glb: /(\w+)/(\d+)\S*: (?:warning: )?", name, text)
 

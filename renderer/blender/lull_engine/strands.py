@@ -21,7 +21,7 @@ def _kept(count, steps, name, notes):
     points = max(most // _SIDES[0], 2)
     every = -(-2 * count // points)
     left = int(np.clip(points // -(-count // every), 2, steps))
-    if left < steps:
+    if left < steps or every > 1:
         told = f"1 of {every} hairs, as much wider, " * (every > 1) + f"{left - 1} of {steps - 1} segments"
         notes.add(f"shown with {told}, as all would take {count * steps * _SIDES[0] * _BYTES / 1e9:.0f} GB", name)
     return slice(None, None, every), np.linspace(0, steps - 1, left).round().astype(int), every

@@ -14,7 +14,8 @@ class Surface:
     properties of the material."""
 
     def __init__(self, material, view, solid, notes, side=None):
-        """`view` is a camera.View. `solid()` returns whether faces of the material form a closed body. `side`: the input of a node that mixes the sides."""
+        """`view` is a camera.View. `solid()` returns whether faces of the material form a closed body. `side`: the input of a node that
+        mixes the sides."""
         self.name, self.material, self.is_solid, self._notes = material.name, material, solid, notes
         self._view = view
         self.own, self.is_thin, self.is_air, self._numbers = {}, False, False, {}
@@ -90,6 +91,8 @@ class Surface:
         nodes = {n for v in p.values() if is_output(v) for n in upstream(v)}
         if any(n.type == 'HAIR_INFO' for n in nodes):
             self.note("without the length, width and direction of hair")
+        if any(n.type == 'TEX_POINTDENSITY' for n in nodes):
+            self.note("without the points of Point Density")
         if any(n.type == 'ATTRIBUTE' and n.attribute_type == 'VIEW_LAYER' for n in nodes):
             self.note("without properties of the view layer")
         if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for n in nodes):

@@ -3,7 +3,6 @@ import bpy
 
 from cases import ball, camera, case, cover, cube, dress, dressed, lamp, link, matte, mix, node, principled, surface, the, wall, without
 from compatible import displace, socket
-from lamps import only
 
 
 def seen_flat(made):
@@ -127,11 +126,10 @@ def scaled_to_nothing(scene):
         o.scale = (0, 0, 0)
 
 
-@case("lamps, text, a metaball and a curve that are scaled to nothing; points nowhere and far away; a mesh without faces")
+@case("a lamp, text, a metaball and a curve that are scaled to nothing; points nowhere and far away; a mesh without faces")
 def nowhere(scene):
-    for add, more in ((bpy.ops.object.light_add, {"type": 'AREA'}), (bpy.ops.object.light_add, {"type": 'POINT'}), (bpy.ops.object.text_add, {}),
-                      (bpy.ops.object.metaball_add, {}), (bpy.ops.curve.primitive_bezier_circle_add, {})):
-        add(**more)
+    for add in (bpy.ops.object.light_add, bpy.ops.object.text_add, bpy.ops.object.metaball_add, bpy.ops.curve.primitive_bezier_circle_add):
+        add()
         bpy.context.object.scale = (0, 0, 0)
     bpy.context.object.data.bevel_depth = 0.1
     for name, last, faces in ("no number", float("nan"), [(0, 1, 2)]), ("far", 1e30, [(0, 1, 2)]), ("no faces", 1, []):
@@ -170,7 +168,8 @@ def window(scene, turn):
     white = matte("white", (0.7, 0.7, 0.7, 1))
     pane = [(-1, y, 1), (1, y, 1), (1, y, 2.4), (-1, y, 2.4)]
     corners = [(i, j, k) for k in (0, z) for j in (-y, y) for i in (-x, x)]
-    faces = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5), (0, 1, 5, 4), (2, 3, 9, 8), (3, 7, 10, 9), (7, 6, 11, 10), (6, 2, 8, 11)]
+    faces = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5), (0, 1, 5, 4), (2, 3, 9, 8), (3, 7, 10, 9), (7, 6, 11, 10),
+             (6, 2, 8, 11)]
     for name, points, sides, made in (("room", corners + pane, faces, white),
                                       ("window", pane, [(0, 1, 2, 3)[::turn]], surface('BsdfGlass', Roughness=0, IOR=1.45)[0])):
         mesh = bpy.data.meshes.new(name)
