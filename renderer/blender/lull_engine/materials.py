@@ -10,6 +10,7 @@ from .strands import STRANDS
 from .surfaces import EVEN
 
 _FINE = 0.005  # difference of neighbouring pixels, on average, from which an image has details of their size
+_UNEVEN = 0.05  # difference of numbers, from which on they are not the same
 _REPEAT, _CLAMP = 10497, 33071
 
 
@@ -82,12 +83,16 @@ class _Writing:
         pbr = self.pbr = {}
         extensions = self.extensions = {}
         self.made.update(name=s.name, doubleSided=True, pbrMetallicRoughness=pbr, extensions=extensions)
+        through, specular = self._pixels('Transmission'), self._pixels('Specular')
+        self.varies = any(p.ndim == 3 and np.ptp(p[:, :, 0]) > _UNEVEN for p in (through, specular))
         even = {name: self._even(name) for name in EVEN}
         self._write_normal()
         self._write_radiance()
         self._write_metal()
         self._write_base()
         self._write_interface(even)
+        if self.varies:
+            self._write_varying(through, specular, even['IOR'])
         own = dict(s.own)
         if self.through:
             extensions["KHR_materials_diffuse_transmission"] = self.through
@@ -128,6 +133,18 @@ class _Writing:
         if sheen.max() > 0:
             e["KHR_materials_sheen"] = {"sheenColorFactor": [float(min(c, 1)) for c in sheen],
                                         "sheenRoughnessFactor": even['Sheen Roughness']}
+
+    def _write_varying(self, through, specular, ior):
+        """Lets some of the surface be glass, and some have less of an interface."""
+        f0 = max(((ior - 1) / (ior + 1)) ** 2, 1e-6)
+        both = _packed(through, through, specular)
+        share = (1 - both[:, :, 1:2]) * 0.08 * both[:, :, 2:] / f0 + both[:, :, 1:2]
+        most = max(1, float(share.max()))
+        if through.any():
+            self.extensions["KHR_materials_transmission"] = {"transmissionTexture": self._image(both, 'glass', False), "transmissionFactor": 1}
+        self.extensions["KHR_materials_specular"] = {
+            "specularTexture": self._image(_packed(np.ones(3, np.float32), share / most), 'interface', True),
+            "specularColorFactor": [most] * 3}
 
     def _shine(self, share, colour):
         """Returns an interface that reflects a share in a colour; unless it is even, white at grazing angles."""
@@ -299,7 +316,7 @@ class _Writing:
 
     def _even(self, name):
         found = self._pixels(name).reshape(-1, 3)[:, 0]
-        if np.ptp(found) > 0.05:
+        if np.ptp(found) > _UNEVEN and not (self.varies and name in ('Transmission', 'Specular')):
             self.note(f"of the same {name.lower()} everywhere")
         return float(found.mean())
 

@@ -212,3 +212,14 @@ def by_camera(scene):
             the("ball").location.z = 2
         else:
             cube(made, 0.8, (x, 0, 0.4), rotation=(0, 0, 0.4))
+
+
+@case("Mix of plastic and Diffuse by a texture; transmission and specular that are textures")
+def interface_by_texture(scene):
+    made, plastic, tree = principled(Roughness=0.3, Base_Color=(0.4, 0.1, 0.1, 1))
+    mix(tree, speckled(tree, 0, 1), node(tree, 'ShaderNodeBsdfDiffuse', Color=(0.1, 0.1, 0.4, 1)), plastic)
+    dressed(made)
+    for x, name, roughness, colour in (1.5, "Specular", 0.3, 0.05), (-1.5, "Transmission", 0.1, 0.7):
+        made, bsdf, tree = principled(Roughness=roughness, Base_Color=(colour, colour, colour, 1))
+        link(tree, (speckled(tree, 0, 1), socket(bsdf, name)))
+        ball(made, x)
