@@ -60,6 +60,20 @@ struct CoatedInterface {
     }
 };
 
+// Follows Fresnel's formula for an index of `eta` >= 1, stretched to go from f0 to f90, as in the
+// Principled BSDF of Blender 3; of index 1 it is f0 at all angles.
+struct StretchedInterface {
+    StoredRgb f0;
+    float f90, eta;
+
+    Rgb operator()(float cosI) const {
+        const Rgb r = f0;
+        const float least = Sqr((eta - 1) / (eta + 1));
+        const float rise = FresnelDielectric(std::abs(cosI), eta) - least;
+        return r + (f90 - r) * (std::max(rise, 0.f) / (1 - least));
+    }
+};
+
 // Reflects diffusely below a rough interface and glossily at it. Both share one distribution of
 // microfacets and Schlick's reflectance from f0 to f90; metal is an interface without a base.
 //

@@ -188,7 +188,8 @@ using Lobe =
                  FresnelBlend, DisneyDiffuse, DisneyReflection, DisneyTransmission, DisneyClearcoat,
                  HairLobe, FourierLobe, LayeredReflection, MicrofacetReflection<SchlickInterface>,
                  ThinTransmission, ThinSpecular, DiffuseExit, CharlieSheen,
-                 MicrofacetReflection<CoatedInterface>, CoatedDiffuseLobe,
+                 MicrofacetReflection<CoatedInterface>, SpecularReflection<StretchedInterface>,
+                 MicrofacetReflection<StretchedInterface, SeparableMasking>, CoatedDiffuseLobe,
                  SpecularReflection<CoatInterface>, SpecularReflection<CoatedConductorInterface>,
                  CoatedConductorLobe, ThinDielectricLobe>;
 static_assert(std::is_trivially_copyable_v<Lobe> && sizeof(Lobe) <= 56);

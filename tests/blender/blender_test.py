@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import numpy as np
@@ -29,13 +30,14 @@ PICTURES = """plastic transparent exposure shift orthographic_focus depth_of_fie
 sun_nodes lamps_seen spot portal world_image world_backdrop water emission alphas alpha leaf_cut shadowed glow mixed added_shine
 coated two_sided nothing group by_object coarse_image mappings muted uvs_lacking alpha_unused colours_for_renders colours
 channels_as_colours generated_of_modifiers faces text_uvs layers pose motion_of_copies unseen_copies hair_info displacement
-passes""".split()
+passes glossy_seen_flat nearly_black mix_by_texture multiple_scattering shader_into_colour colour_into_surface no_light
+scaled_to_nothing window_in unsaved_images python_drivers rigid_body""".split()
 
 # Exported by lull alone, for the warnings.
 WARNED = """in_part unknown masked_glass coat_tinted leaning terminator lamps_scaled limits oren_nayar subsurface tint velvet
 smooth_edges instancer_uvs by_facing fine light_groups negative_lamp no_shadow lamp_rays lamp_bounces falloff lamp_texture spot_scaled
 light_linking simplify transparent_glass holdout pixel_aspect blades sheared_camera motion_of_lamps world_volume world_rays points
-volume dicing""".split()
+volume dicing missing beckmann""".split()
 
 EXPORT = "bpy.ops.lull.check(); print('TEXT', repr(bpy.data.texts['lull: differences'].as_string())); bpy.ops.lull.export(filepath={!r})"
 LAYERS = "r.image_settings.file_format = 'OPEN_EXR_MULTILAYER'; "
@@ -84,6 +86,24 @@ for k in 1, 2:
     scene.collection.objects.link(copy)
 r.motion_blur_shutter, r.fps = 0.5, 25
 bpy.ops.lull.export(filepath={paths["moving.gltf"]!r})""", none),
+            ("faulty", "plastic", """
+from lull_engine import lights, materials, meshes
+places = [(meshes, 'of_blender', 1, 'ball'), (materials, 'write', 0, 'floor'), (lights.Lights, '_folded', 1, 'Area')]
+kept = [getattr(owner, name) for owner, name, _, _ in places]
+for (owner, name, at, wanted), old in zip(places, kept):
+    def faulty(*values, at=at, wanted=wanted, old=old, **more):
+        if getattr(values[at], 'name', values[at]) == wanted:
+            raise ValueError('no sense')
+        return old(*values, **more)
+    setattr(owner, name, faulty)
+bpy.ops.lull.check()
+for (owner, name, _, _), old in zip(places, kept):
+    setattr(owner, name, old)""", none),
+            ("thinned", "hair_info", """
+from lull_engine import strands
+strands._LIMIT = 1200
+bpy.ops.lull.check()
+strands._LIMIT = 12_000_000""", none),
             ("time", "plastic", """
 from lull_engine.engine import _progress
 event = {'blocks': 4, 'medianSpp': 0, 'remainingSeconds': 20000, 'remainingIsUpperBound': True}
@@ -235,8 +255,31 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
             said = process.communicate(timeout=300)[0]
         own.unlink()
         self.assertEqual(process.returncode, 0, said)
-        self.assertIn("The add-on's own, version ", said)
+        self.assertIn("Version 0.1.0, the add-on's own", said)
         np.testing.assert_allclose(rgb(self.read("frame.0001")), rgb(self.read("plastic.lull")), atol=1e-6)
+
+    def test_names_what_an_exception_left_out(self):
+        for kind, name in ("object", "ball"), ("material", "floor"), ("light", "key"):
+            self.assertIn(f"1 {kind} is left out or plain, after an error (ValueError: no sense): '{name}'", self.said("faulty"))
+
+    def test_thins_out_hair_that_memory_does_not_suffice_for(self):
+        self.assertIn("1 object is shown with 1 of 5 hairs, as much wider, 1 of 8 segments, as all would take", self.said("thinned"))
+
+    def test_says_what_it_bakes_before(self):
+        self.assertIn("Baking 4 images of up to 64 pixels across, the world, about 1 s", self.said("unsaved_images"))
+
+    def test_lull_ends_with_blender(self):
+        render = "import bpy; s = bpy.context.scene.lull; s.stop_by, s.spp, s.cap = 'SAMPLES', 1000000, 1000000; bpy.ops.render.render()"
+        with self.blender.start(*self.stored(), "--python-expr", render) as process:
+            while "blocks stopped, " not in process.stdout.readline():
+                pass
+            child, = subprocess.run(["pgrep", "-P", str(process.pid)], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
+            process.kill()
+        for _ in range(100):
+            if not pathlib.Path("/proc", child).exists():
+                return
+            time.sleep(0.1)
+        self.fail("lull runs on")
 
     def test_gives_no_time_while_all_samples_are_its_bound(self):
         self.assertIn("0 of 4 blocks stopped, 0 spp | 1 of 4 blocks stopped, 0 spp, at most 6 h left", self.said("time"))
@@ -262,7 +305,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
         self.assertIn("TEXT 'Nothing will look different.", self.said("shapes"))
         self.assertNotIn("Warning", self.said("shapes"))
         self.assertIn("noise is judged without the look 'High Contrast', gamma", self.said("looks"))
-        self.assertIn("differs: all bounces are traced, without Cycles' fast approximation", self.said("looks"))
+        self.assertIn("settings of Cycles without effect: Fast GI Approximation", self.said("looks"))
         self.assertLess(abs(self.render_exported("shapes") - rgb(self.read("area_shapes.lull"))).max(), 1e-5)
         self.assertLess(abs(self.render_exported("glb") - rgb(self.read("passes.lull"))).max(), 1e-5)
         self.assertEqual(sorted(f.name for f in self.exported.iterdir()), [

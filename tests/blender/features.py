@@ -137,14 +137,14 @@ def consequences(lines, kinds="Warning|Error"):
 def judge(out, name, lines):
     """Returns the verdict, and the differences of means, of blocks and of the worst block; without a picture the verdict alone."""
     a, b = (picture(out / f"{name}.{engine}.exr") for engine in ("cycles", "lull"))
-    remarks = [line for line in consequences(lines, "Info") if line.startswith("differs: ")]
+    remarks = [line for line in consequences(lines, "Info") if line.startswith("settings of Cycles without effect: ")]
     warnings = [line for line in consequences(lines) if line not in remarks]
     if b is None:
         return ("refused: " + "; ".join(warnings),)
-    means = b.mean((0, 1)) / np.maximum(a.mean((0, 1)), 1e-9) - 1
+    means = (b.mean((0, 1)) + 1e-9) / (a.mean((0, 1)) + 1e-9) - 1
     apart = means[np.argmax(abs(means))]
     apart_in_blocks = abs(blocks(a) - blocks(b))
-    off = max(apart_in_blocks[..., :3].mean() / a[..., :3].mean(), apart_in_blocks[..., 3].mean())
+    off = max(apart_in_blocks[..., :3].mean() / max(a[..., :3].mean(), 1e-9), apart_in_blocks[..., 3].mean())
     of_worst = worst(a, b)
     is_right = abs(apart) <= MEANS and off <= BLOCKS and of_worst <= WORST
     texts = "; ".join(warnings + remarks)

@@ -1,4 +1,7 @@
-"""Surfaces of one node as parameters."""
+"""Surfaces of one node as parameters. Besides DEFAULTS they may have a Normal, and marks: Added, of an interface that does not attenuate
+the base; Even, of one that reflects as much from all directions; Multi, of one whose microfacets keep all light."""
+import numpy as np
+
 from .nodes import is_output, value_of
 from .values import times
 from .versions import HAS_ADDED_INTERFACE, principled_input
@@ -11,6 +14,7 @@ DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specu
             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0),
             'Sheen': (0, 0, 0), 'Sheen Roughness': 0.5, 'Specular Tint': (1, 1, 1),
             'Tint': (1, 1, 1), 'Shine': 0, 'Shine Color': (1, 1, 1)}  # the latter are of a Glossy surface that is added to the base
+_KEPT = np.linspace(0, 1, 11), (1, 0.9996, 0.9944, 0.9777, 0.9428, 0.8853, 0.8074, 0.7129, 0.6091, 0.506, 0.4121)  # after one bounce
 # Plain values of these are left out.
 _UNSAID = ('Subsurface', 'Anisotropic', 'Transmission Roughness', 'Thin Film Thickness', 'Diffuse Roughness')
 _UNSAID_IN_3, _UNSAID_IN_4 = ('Sheen', 'Specular Tint'), ('Coat Tint',)
@@ -25,12 +29,26 @@ def made(node, **parameters):
 
 
 def _note_roughness(surface, node, found):
-    """Notes what reflects much, and is so rough that single scattering loses light."""
+    """Marks what keeps all light, and notes what reflects much, and is so rough that single scattering loses light."""
+    kind = getattr(node, "distribution", '')
     rough = next((least for name, least in _ROUGH if is_output(found[name]) or found[name] > 0), None)
     is_rough = rough is not None and (is_output(found['Roughness']) or found['Roughness'] > rough)
-    if is_rough and getattr(node, "distribution", '') == 'MULTI_GGX':
-        surface.note("darker than Cycles' where rough, without multiple scattering")
+    if kind == 'MULTI_GGX':
+        found['Multi'] = True
+        if is_rough and not any(bounced(found)):
+            surface.note("darker than Cycles' where rough, without multiple scattering")
+    elif is_rough and found['Metallic'] != 0 and kind in ('BECKMANN', 'ASHIKHMIN_SHIRLEY'):
+        surface.note(f"with the highlights of GGX instead of {'Beckmann' if kind == 'BECKMANN' else 'Ashikhmin-Shirley'}")
     return found
+
+
+def bounced(found):
+    """Returns the colour of the light that leaves the microfacets of a metal after more than one bounce, as from a diffuse surface."""
+    colour, roughness = found['Base Color'], found['Roughness']
+    if 'Multi' not in found or found['Metallic'] != 1 or is_output(colour) or is_output(roughness):
+        return 0, 0, 0
+    lost = 1 - float(np.interp(roughness, *_KEPT))
+    return tuple(lost * (1 - lost) * c * c / (1 - lost * min(c, 1)) for c in colour)
 
 
 def _is_neutral(socket):
@@ -93,7 +111,8 @@ def _glossy(surface, node):
     anisotropy = node.inputs.get('Anisotropy')
     if anisotropy is not None and not _is_neutral(anisotropy):
         surface.note("without anisotropic")
-    return _note_roughness(surface, node, made(node, Base_Color=value_of(node.inputs['Color']), Metallic=1, Roughness=_roughness(node)))
+    return _note_roughness(surface, node, made(node, Base_Color=value_of(node.inputs['Color']), Metallic=1, Roughness=_roughness(node),
+                                               Even=True))
 
 
 def _glass(surface, node):

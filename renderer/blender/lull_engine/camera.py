@@ -3,23 +3,22 @@ import math
 
 from mathutils import Matrix
 
+from .process import Failure
 from .shown import is_sheared
 
 
-class Failed(Exception):
-    """A scene that cannot be rendered, with the reason."""
-
-
 class View:
-    """What the camera of an evaluated scene sees. Raises: Failed."""
+    """What the camera of an evaluated scene sees. Raises: Failure."""
 
     def __init__(self, scene, graph, notes):
         camera = self._camera = scene.camera
         if camera is None:
-            raise Failed("the scene has no camera")
+            raise Failure("the scene has no camera")
         self.data = data = camera.data
         if data.type == 'PANO':
-            raise Failed(f"camera '{camera.name}' is panoramic, which glTF does not support")
+            raise Failure(f"camera '{camera.name}' is panoramic, which glTF does not support")
+        if not camera.matrix_world.determinant():
+            raise Failure(f"camera '{camera.name}' is scaled to nothing")
         self.name, self.matrix, self._graph, self._notes = camera.name, camera.matrix_world.copy(), graph, notes
         r = scene.render
         self.width, self.height = r.resolution_x, r.resolution_y
@@ -36,6 +35,14 @@ class View:
     def pixel_width(self, distance):
         """Returns the width of a pixel at a distance."""
         return 2 * self._half * self.width / self.pixels * (1 if self.data.type == 'ORTHO' else distance)
+
+    def extent(self):
+        """Returns the width and height of the frame, at a distance of 1 or anywhere."""
+        return 2 * self._half * self.width, 2 * self._half * self.height
+
+    def shift(self):
+        """Returns the offset of the frame, in fractions of its width and height."""
+        return self.data.shift_x * self.side / self.width, self.data.shift_y * self.side / self.height
 
     def focus(self):
         """Returns the distance at which the picture is sharp; None without depth of field."""
@@ -55,7 +62,7 @@ class View:
         data, x, y = self.data, self._half * self.width, self._half * self.height
         lens = {"clipStart": data.clip_start, "clipEnd": data.clip_end}
         if data.shift_x or data.shift_y:
-            lens["shift"] = [data.shift_x * self.side / self.width, data.shift_y * self.side / self.height]
+            lens["shift"] = list(self.shift())
         if data.dof.use_dof and data.type == 'ORTHO':  # one lens for all pixels would make it a perspective one
             self._notes.say(f"the orthographic camera '{self.name}' is sharp at all distances")
         elif data.dof.use_dof:

@@ -20,6 +20,7 @@ class Dresser:
     def __init__(self, shown, baker, pictures, notes):
         self._shown, self._baker, self._pictures = shown, baker, pictures
         self._first = {}  # place of each mesh
+        baker.see(shown)
         for s in shown:
             self._first.setdefault(s.mesh, s)
         users = {}
@@ -42,8 +43,11 @@ class Dresser:
         def is_solid():
             return any(solids.has_solid(mesh, self._first[mesh].matrix, slots) for mesh, slots in users.items())
 
-        surface = Surface(material, is_solid, notes)
-        return (surface,) if not surface.has_sides else tuple(Surface(material, is_solid, notes, side) for side in (1, 2))
+        with notes.of(material.name, "materials"):
+            surface = Surface(material, self._baker.view, is_solid, notes)
+            return (surface,) if not surface.has_sides else tuple(
+                Surface(material, self._baker.view, is_solid, notes, side) for side in (1, 2))
+        return 'viewport'
 
     def dress(self, notes):
         """Returns the parts of each mesh. To be called again while the baker lacks something."""
@@ -84,10 +88,15 @@ class Dresser:
             return lambda mesh: made
         if surface.parameters['Alpha'] == 0 and not surface.is_air:
             return lambda mesh: None
+        def write(over):
+            with notes.of(surface.name, "materials"):
+                return materials.write(surface, self._baker, self._pictures, note, over)
+            return materials.plain(surface.name, tuple(surface.material.diffuse_color)[:3])
+
         if not materials.needs_mesh(surface, self._pictures):
-            made = materials.write(surface, self._baker, self._pictures, note, None)
+            made = write(None)
             return lambda mesh: made
-        return lambda mesh: materials.write(surface, self._baker, self._pictures, note, (mesh, self._first[mesh], users[mesh]))
+        return lambda mesh: write((mesh, self._first[mesh], users[mesh]))
 
 
 def add_meshes(writer, shown, parts, notes):

@@ -4,14 +4,14 @@ import os
 import re
 import tempfile
 import time
+import traceback
 
 import bpy
 import numpy as np
 
 from . import exr, passes
-from .camera import Failed
 from .export import export
-from .process import Failure, Render
+from .process import Failure, Render, ended
 from .program import find_lull
 from .versions import IS_RECT_FLAT
 
@@ -61,21 +61,30 @@ class LullEngine(bpy.types.RenderEngine):
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as folder:
                 _Job(self, depsgraph, folder).run()
-        except (Failure, Failed, OSError) as e:
-            self.error_set(str(e))  # in the window
-            self.report({'ERROR'}, str(e))  # and in the terminal
+        except Exception as e:
+            told = str(_told(e))
+            self.error_set(told)  # in the window
+            self.report({'ERROR'}, told)  # and in the terminal
+
+
+def _told(e):
+    """Returns an exception as one to show to the user."""
+    if isinstance(e, (Failure, OSError)):
+        return e
+    traceback.print_exception(type(e), e, e.__traceback__)
+    return Failure(f"The scene cannot be rendered: {type(e).__name__}: {e}")
 
 
 def export_scene(scene, layer, folder, name="scene", suffix=".gltf"):
-    """Writes a view layer as a render would, and renders nothing. Returns Exported. Raises: Failure, Failed."""
+    """Writes a view layer as a render would, and renders nothing. Returns Exported. Raises: Failure."""
     found, r = [], scene.render
 
     def instead(engine, graph):
         try:
             with tempfile.TemporaryDirectory(prefix="lull-") as scratch:
                 found.append(export(graph, engine.frame_set, folder, scratch, name, suffix, False, lambda: False, lambda said: None))
-        except (Failure, Failed, OSError) as e:
-            found.append(e)
+        except Exception as e:
+            found.append(_told(e))
 
     kept = {n: getattr(r, n) for n in ("engine", "use_compositing", "use_sequencer")}
     slots = getattr(bpy.data.images.get("Render Result"), "render_slots", None)
@@ -180,23 +189,35 @@ class _Job:
         render = Render(command)
         result = engine.begin_result(0, 0, *self.size, layer=self.layer)
         try:
-            self._watch(render, result)
+            self._watch(render, result, exported)
             if os.path.exists(picture):
                 self._fill(result, picture, exported)
             elif render.code != 130:
                 raise Failure("lull: " + (" ".join(render.errors) or
-                                          "ended with exit code %d" % render.code))
+                                          ended(render.code)))
         finally:
             engine.end_result(result)
 
     def _show_export(self, said):
+        if found := re.match(r"lull: (baking .*)\n$", said):
+            self.engine.update_stats("", found[1].capitalize())
         if time.monotonic() - self.shown < (_SECONDS_BETWEEN_LINES if bpy.app.background else _SECONDS_BETWEEN_VIEWS):
             return
         self.shown = time.monotonic()
         if found := re.findall(r"^lull: (image \d+ of \d+)$", said, re.M):
             self.engine.update_stats("", "Baking " + found[-1])
 
-    def _watch(self, render, result):
+    @staticmethod
+    def _named(text, exported):
+        """Returns a message with the names of what it finds in the file, such as "object 'lamp'" for /nodes/6."""
+        def name(found):
+            names, number = exported.names.get(found[1], ()), int(found[2])
+            kind = "object" if found[1] == "nodes" else found[1][:-1]
+            return f"{kind} '{names[number]}': " if number < len(names) else found[0]
+
+        return re.sub(r"\S*scene\.glb: /(\w+)/(\d+)\S*: (?:warning: )?", name, text)
+
+    def _watch(self, render, result, exported):
         """Shows the progress of the render until it ends."""
         view = np.zeros((self.size[1], self.size[0], 4), np.float32)
         changed, shown, said = False, time.monotonic(), -_SECONDS_BETWEEN_LINES
@@ -215,7 +236,7 @@ class _Job:
                 said = time.monotonic()
                 self.engine.update_stats("", (_step if kind == "step" else _progress)(what))
             elif kind in ("warning", "note") and _ADVICE not in what:
-                self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + what)
+                self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + self._named(what, exported))
             if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:
                 _set(result.layers[0].passes["Combined"], view)
                 self.engine.update_result(result)

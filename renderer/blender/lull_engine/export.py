@@ -25,7 +25,7 @@ _ROUNDS = 3  # of questions to a second Blender, at most
 @dataclass
 class Exported:
     """`groups` are the names of light groups for lull; `shutter` is the time that it is open, in seconds, 0 where nothing moves;
-    `objects` and `materials` are pass indices by their names."""
+    `objects` and `materials` are pass indices by their names; `names` are those of what the file has, by kinds such as "nodes"."""
     gltf: str
     environment: str = None
     backdrop: str = None
@@ -33,6 +33,7 @@ class Exported:
     shutter: float = 0
     objects: dict = field(default_factory=dict)
     materials: dict = field(default_factory=dict)
+    names: dict = field(default_factory=dict)
     warnings: list = field(default_factory=list)
     remarks: list = field(default_factory=list)
 
@@ -42,7 +43,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     evaluates it at another time. `is_render`: the file is read once, and the background has a picture of its own. `heard` is called with
     what a second Blender prints.
 
-    Returns: Exported; None if `stopped` has returned true. Raises: Failure, Failed.
+    Returns: Exported; None if `stopped` has returned true. Raises: Failure.
     """
     scene, notes = graph.scene_eval, Notes()
     layer = scene.original.view_layers[graph.view_layer_eval.name]
@@ -81,11 +82,11 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     path = base + suffix
     shutter = nodes.write(path, moving.shutter)
     groups = nodes.groups
-    if world.light and scene.world.lightgroup in layer.lightgroups:
+    if world.light and scene.world and scene.world.lightgroup in layer.lightgroups:
         groups[scene.world.lightgroup] = "environment"
     materials = {m.original for s in found.shown for m in s.mesh.materials if m}
     return Exported(path, world.light, world.backdrop, groups, shutter, _indices(s.original for s in found.shown), _indices(materials),
-                    notes.lines(), limits(scene.original, scene.lull.max_depth))
+                    nodes.names(), notes.lines(), limits(scene.original, scene.lull.max_depth))
 
 
 def _move_flat(shown, parts, notes):
@@ -93,9 +94,11 @@ def _move_flat(shown, parts, notes):
     for s in shown:
         if is_flat(s.matrix) and s.mesh in parts:
             moved = s.mesh.moved(np.array(s.matrix))
-            parts[moved] = parts[s.mesh]
+            has_area = moved.normals.any()
+            parts[moved] = parts[s.mesh] if has_area else []
             s.mesh, s.matrix, s.moves = moved, Matrix(), None
-            notes.add("shown in its colours though it is scaled to no height, where Cycles has black", s.name)
+            if has_area:
+                notes.add("scaled to no height and shown in full colours, where Cycles has black", s.name)
 
 
 def _indices(blocks):
@@ -135,7 +138,8 @@ class _Nodes:
             o = lamp.original
             own = {} if o.visible_camera else {"hiddenFromCamera": True}
             name = self._named(o.name, o.lightgroup, True)
-            upright = Matrix.LocRotScale(*lamp.matrix.decompose())  # not sheared
+            place, turn, scale = lamp.matrix.decompose()
+            upright = Matrix.LocRotScale(place, turn, scale if lamp.matrix.determinant() else None)  # not sheared, nor without a size
             if light.type != 'AREA':
                 if id(light) not in numbers:
                     numbers[id(light)] = self._light(lights.punctual(light))
@@ -174,6 +178,10 @@ class _Nodes:
         self._children.append(number)
         if moves is not None:
             self._moving[number] = moves
+
+    def names(self):
+        return {kind: [v.get("name", "") for v in values] for kind, values in self._writer.root.items()
+                if isinstance(values, list) and kind in ("nodes", "meshes", "materials", "images")}
 
     def write(self, path, shutter):
         """Writes the file. Returns the time that the shutter is open, 0 where nothing moves."""

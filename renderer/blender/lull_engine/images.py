@@ -25,6 +25,14 @@ class Picture(NamedTuple):
     data: Future
 
 
+def missing(image):
+    """Returns where the file of an image should be, if nothing is known of it; "" without an image, else None."""
+    if image is None or image.source != 'FILE' or image.packed_file or image.is_dirty:
+        return "" if image is None else None
+    path = os.path.normpath(bpy.path.abspath(image.filepath, library=image.library))
+    return None if os.path.isfile(path) else path
+
+
 def _stored(image):
     """Returns the PNG or JPEG that an image was read from; None without one, or if it has been changed."""
     if image.is_dirty or image.source != 'FILE':
@@ -50,7 +58,7 @@ def _bytes_of(pixels):
     return values[:, :, :3] if values.shape[2] == 4 and values[:, :, 3].min() == 255 else values
 
 
-def _numbers_of(image):
+def numbers_of(image):
     """Returns the stored numbers of an image."""
     width, height = image.size
     values = np.empty(width * height * 4, np.float32)
@@ -77,7 +85,7 @@ class Images:
         return Picture(name, suffix, self._pool.submit(data))
 
     def numbers_of(self, image):
-        return self._once(("numbers", image), lambda: _numbers_of(image))
+        return self._once(("numbers", image), lambda: numbers_of(image))
 
     def is_grey(self, image):
         """Returns whether the channels of an image are the same, as far as it can be read."""
@@ -102,7 +110,7 @@ class Images:
     def _of_file(self, image):
         stored = _stored(image)
         if stored is None:
-            return self.of_pixels(image.name, _numbers_of(image))
+            return self.of_pixels(image.name, numbers_of(image))
         return self._picture(image.name, lambda: stored, next(s for start, s in _SUFFIXES.items() if stored.startswith(start)))
 
     def _once(self, key, make):
@@ -114,7 +122,7 @@ class Images:
         across = max(image.size)
         if image.is_float or image.colorspace_settings.name != 'sRGB' or across > _READ:
             return self.data(image)
-        pixels = _numbers_of(image)
+        pixels = numbers_of(image)
         has_alpha = image.alpha_mode in ('STRAIGHT', 'PREMUL') and image.depth == 32 and pixels[:, :, 3].min() < 1
         if has_alpha:
             pixels[:, :, :3] *= pixels[:, :, 3:]

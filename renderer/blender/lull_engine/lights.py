@@ -9,7 +9,7 @@ from mathutils import Matrix, Vector
 
 from . import ies, materials, meshes, shown, values
 from .nodes import Made, Tree, grey, is_output, upstream, value_of
-from .versions import HAS_DIM_LAMPS
+from .versions import HAS_COLOURED_LAMPS, HAS_DIM_LAMPS
 
 _LUMENS = 683  # per watt, by which glTF's units are divided
 _COPIED = ("name", "type", "energy", "shadow_soft_size", "angle", "spot_size", "spot_blend", "spread", "shape", "size", "size_y")
@@ -27,34 +27,38 @@ class Lights:
         """Returns the lights that shine, of what _COPIED names, and their lamps. To be called again while the baker lacks something."""
         folded, found = {}, []
         for lamp in self._lamps:
-            o, data = lamp.original, lamp.data
-            if not shown.is_seen(o, shown.SEEING_RAYS):
-                continue
-            key = data.original.name_full
-            if key not in folded:
-                folded[key] = self._folded(data, "%s-profile%d.exr" % (self._base, len(folded)), notes)
-            light = folded[key]
-            if light.energy * max(light.color) == 0:
-                continue
-            if light.energy < 0:
-                notes.add("left out, taking light away", o.name, "lights")
-                continue
-            if light.type == 'SUN' and not o.visible_camera and any(
-                    _is_in_view(self._scene, p) for p in _points(self._scene, light, lamp.matrix)):
-                notes.add("seen by the camera", o.name, "lights")
-            if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
-                notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
-            if data.cycles.max_bounces < 12:
-                notes.add("lighting after any number of bounces", o.name, "lights")
-            if not data.use_shadow or not getattr(data.cycles, "cast_shadow", True):
-                notes.add("casting shadows all the same", o.name, "lights")
-            if light.type == 'SPOT' and max(lamp.matrix.to_scale()) > 1.01 * min(lamp.matrix.to_scale()):
-                notes.add("shining in a round cone of its angle, whatever its scale", o.name, "lights")
-            if light.type == 'AREA' and shown.is_sheared(lamp.matrix):
-                notes.add("shining in another direction, being sheared", o.name, "lights")
-            shown.note_linking(o, notes)
-            found.append((light, lamp))
+            with notes.of(lamp.original.name, "lights"):
+                self._read(lamp, folded, found, notes)
         return found
+
+    def _read(self, lamp, folded, found, notes):
+        o, data = lamp.original, lamp.data
+        if not shown.is_seen(o, shown.SEEING_RAYS):
+            return
+        key = data.original.name_full
+        if key not in folded:
+            folded[key] = self._folded(data, "%s-profile%d.exr" % (self._base, len(folded)), notes)
+        light = folded[key]
+        if light.energy * max(light.color) == 0:
+            return
+        if light.energy < 0:
+            notes.add("left out, taking light away", o.name, "lights")
+            return
+        if light.type == 'SUN' and not o.visible_camera and any(
+                _is_in_view(self._scene, p) for p in _points(self._scene, light, lamp.matrix)):
+            notes.add("seen by the camera", o.name, "lights")
+        if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
+            notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
+        if data.cycles.max_bounces < 12:
+            notes.add("lighting after any number of bounces", o.name, "lights")
+        if not data.use_shadow or not getattr(data.cycles, "cast_shadow", True):
+            notes.add("casting shadows all the same", o.name, "lights")
+        if light.type == 'SPOT' and max(lamp.matrix.to_scale()) > 1.01 * min(lamp.matrix.to_scale()):
+            notes.add("shining in a round cone of its angle, whatever its scale", o.name, "lights")
+        if light.type == 'AREA' and shown.is_sheared(lamp.matrix):
+            notes.add("shining in another direction, being sheared", o.name, "lights")
+        shown.note_linking(o, notes)
+        found.append((light, lamp))
 
     def _folded(self, data, profile, notes):
         """Returns a light with the strength and colour of its nodes."""
@@ -78,18 +82,19 @@ class Lights:
 
         output = self._trees.setdefault(data.original.name_full, Tree(data, replaced)).output
         surface = output.inputs['Surface'].source if output is not None else None
-        if surface is None:
+        is_colour = surface is not None and surface.type != 'SHADER'
+        if surface is None or is_colour and not HAS_COLOURED_LAMPS:
             light.energy = 0
             return
-        if surface.node.type != 'EMISSION':
+        if not is_colour and surface.node.type != 'EMISSION':
             notes.add("shining without nodes", light.name, "lights")
             return
-        strength, colour = (surface.node.inputs[name] for name in ('Strength', 'Color'))
-        color = self._plain(data, colour)
+        color = self._plain(data, output.inputs['Surface'] if is_colour else surface.node.inputs['Color'])
         if color is None:
             notes.add("shining in the plain colour, without nodes", light.name, "lights")
-            color = surface.node.origin.inputs['Color'].default_value[:3]
-        factor = self._plain(data, strength)
+            color = (1, 1, 1) if is_colour else surface.node.origin.inputs['Color'].default_value[:3]
+        strength = None if is_colour else surface.node.inputs['Strength']
+        factor = (1,) if is_colour else self._plain(data, strength)
         if factor is None:
             factor = self._profile(light, data, strength, profile)
             if factor is None:

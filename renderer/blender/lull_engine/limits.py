@@ -17,7 +17,7 @@ def note_film(scene, layer, notes):
 
 
 def limits(scene, depth):
-    """Returns sentences about what Cycles has and lull has not: none about the usual settings that change nothing."""
+    """Returns sentences about what Cycles has and lull has not, with one about all its settings that change the picture."""
     c, r, found = scene.cycles, scene.render, []
     if c.max_bounces < depth:
         found.append(f"{c.max_bounces} bounces")
@@ -28,18 +28,13 @@ def limits(scene, depth):
         found.append("clamping")
     if not (c.caustics_reflective and c.caustics_refractive):
         found.append("no caustics")
-    said = ["differs: limits of Cycles do not hold, and rooms are brighter: " + ", ".join(found)] if found else []
-    if c.use_fast_gi:
-        said.append("differs: all bounces are traced, without Cycles' fast approximation")
-    if c.blur_glossy > 0:
-        said.append("differs: caustics of rough surfaces are sharper, without Cycles' Filter Glossy")
-    if c.transparent_max_bounces < 8:
-        said.append(f"differs: rays pass any number of transparent surfaces, not {c.transparent_max_bounces}")
-    if r.use_simplify and c.texture_limit_render != 'OFF':
-        said.append("differs: textures have their full size")
-    if c.pixel_filter_type != 'BOX' or c.filter_width != 1:
-        said.append("differs: edges are as sharp as means over pixels, whatever Cycles' filter")
-    return said + _unjudged(scene)
+    for name, is_set in (("Fast GI Approximation", c.use_fast_gi), ("Filter Glossy", c.blur_glossy > 0),
+                         (f"{c.transparent_max_bounces} transparent bounces", c.transparent_max_bounces < 8),
+                         ("the limit of textures", r.use_simplify and c.texture_limit_render != 'OFF'),
+                         ("the pixel filter", c.pixel_filter_type != 'BOX' or c.filter_width != 1)):
+        if is_set:
+            found.append(name)
+    return ["settings of Cycles without effect: " + ", ".join(found)] * bool(found) + _unjudged(scene)
 
 
 def _unjudged(scene):

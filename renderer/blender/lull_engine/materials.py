@@ -10,6 +10,7 @@ from .strands import STRANDS
 from .surfaces import EVEN
 
 _FINE = 0.005  # difference of neighbouring pixels, on average, from which an image has details of their size
+_UNEVEN = 0.05  # difference of numbers, from which on they are not the same
 _REPEAT, _CLAMP = 10497, 33071
 
 
@@ -82,12 +83,16 @@ class _Writing:
         pbr = self.pbr = {}
         extensions = self.extensions = {}
         self.made.update(name=s.name, doubleSided=True, pbrMetallicRoughness=pbr, extensions=extensions)
+        through, specular = self._pixels('Transmission'), self._pixels('Specular')
+        self.varies = any(p.ndim == 3 and np.ptp(p[:, :, 0]) > _UNEVEN for p in (through, specular))
         even = {name: self._even(name) for name in EVEN}
         self._write_normal()
         self._write_radiance()
         self._write_metal()
         self._write_base()
         self._write_interface(even)
+        if self.varies:
+            self._write_varying(through, specular, even['IOR'])
         own = dict(s.own)
         if self.through:
             extensions["KHR_materials_diffuse_transmission"] = self.through
@@ -95,21 +100,17 @@ class _Writing:
                 self.through["diffuseTransmissionColorTexture"] = pbr["baseColorTexture"]
         if s.is_air:
             _of_air(self.made)
-        if s.brightens and "baseColorTexture" not in pbr:
-            *colour, alpha = pbr["baseColorFactor"]
-            pbr["baseColorFactor"] = [*(min(max(0, c + s.brightens), 1) for c in colour), alpha]
         if even['Transmission'] > 0 and not s.is_thin:
             volume = extensions["KHR_materials_volume"] = {"thicknessFactor": 1}  # without it, glass would be a thin sheet
+            own["keepsRadiance"] = True
             if s.absorbs and max(s.absorbs) > 0:
                 distance = 1 / max(s.absorbs)
                 volume.update(attenuationDistance=distance, attenuationColor=[math.exp(-a * distance) for a in s.absorbs])
         if is_output(self.p['Shine']) or self.p['Shine'] > 0:
-            colour = self._pixels('Shine Color').reshape(-1, 3).mean(0)
-            own["addedInterface"] = True
+            if "evenInterface" not in own:
+                own["addedInterface"] = True
             extensions.pop("KHR_materials_ior", None)  # with the usual one, normal incidence has 0.04
-            # An interface that reflects a share in a colour, white at grazing angles.
-            extensions["KHR_materials_specular"] = {"specularFactor": self._even('Shine'),
-                                                    "specularColorFactor": [float(c) / 0.04 for c in colour]}
+            extensions["KHR_materials_specular"] = self._shine(self._pixels('Shine'), self._pixels('Shine Color'))
         if own:
             self.made["extras"] = {"lull": own}
         return self.made
@@ -132,6 +133,25 @@ class _Writing:
         if sheen.max() > 0:
             e["KHR_materials_sheen"] = {"sheenColorFactor": [float(min(c, 1)) for c in sheen],
                                         "sheenRoughnessFactor": even['Sheen Roughness']}
+
+    def _write_varying(self, through, specular, ior):
+        """Lets some of the surface be glass, and some have less of an interface."""
+        f0 = max(((ior - 1) / (ior + 1)) ** 2, 1e-6)
+        both = _packed(through, through, specular)
+        share = (1 - both[:, :, 1:2]) * 0.08 * both[:, :, 2:] / f0 + both[:, :, 1:2]
+        most = max(1, float(share.max()))
+        if through.any():
+            self.extensions["KHR_materials_transmission"] = {"transmissionTexture": self._image(both, 'glass', False), "transmissionFactor": 1}
+        self.extensions["KHR_materials_specular"] = {
+            "specularTexture": self._image(_packed(np.ones(3, np.float32), share / most), 'interface', True),
+            "specularColorFactor": [most] * 3}
+
+    def _shine(self, share, colour):
+        """Returns an interface that reflects a share in a colour; unless it is even, white at grazing angles."""
+        if share.ndim == colour.ndim == 1:
+            return {"specularFactor": float(share[0]), "specularColorFactor": [float(c) / 0.04 for c in colour]}
+        both = self._image(_packed(colour, share), 'shine', True)
+        return {"specularTexture": both, "specularColorTexture": both, "specularColorFactor": [1 / 0.04] * 3}
 
     def _write_metal(self):
         metallic, roughness = self.p['Metallic'], self.p['Roughness']
@@ -290,13 +310,13 @@ class _Writing:
     def _over_mesh(self, value, kind='EMIT'):
         mesh, shown, slots = self.over
         pixels = self.baker.over_mesh(self.surface.material, value, mesh, shown, slots, kind)
-        if abs(np.diff(pixels, axis=1)).mean() > _FINE and self.baker.is_coarse(mesh, shown.matrix):
+        if abs(np.diff(pixels, axis=1)).mean() > _FINE and self.baker.is_coarse(mesh):
             self.note(f"blurred, by images of {self.baker.size} pixels over whole meshes (Texture Size)")
         return pixels
 
     def _even(self, name):
         found = self._pixels(name).reshape(-1, 3)[:, 0]
-        if np.ptp(found) > 0.05:
+        if np.ptp(found) > _UNEVEN and not (self.varies and name in ('Transmission', 'Specular')):
             self.note(f"of the same {name.lower()} everywhere")
         return float(found.mean())
 

@@ -7,6 +7,7 @@ _KINDS = {'FLOAT': ("value", 1, np.float32), 'INT': ("value", 1, np.int32), 'BOO
           'FLOAT_VECTOR': ("vector", 3, np.float32), 'FLOAT2': ("vector", 2, np.float32),
           'FLOAT_COLOR': ("color", 4, np.float32), 'BYTE_COLOR': ("color", 4, np.float32)}
 _OF_BLENDER = {"position", "material_index", "sharp_face", "sharp_edge", "crease_edge", "crease_vert", "bevel_weight_edge"}
+FAR = 1e11  # from which on lull traces no rays; neither is a point there that is no number
 GENERATED = "lull generated"  # the attribute of generated coordinates, in bakes
 
 
@@ -105,6 +106,11 @@ def of_blender(mesh, name, asks_generated):
     made.triangles = _read(mesh.loop_triangles, "loops", 3, np.int32)
     made.faces = _read(mesh.loop_triangles, "polygon_index", 1, np.int32)
     made.normals, made.smooth = corner_normals(mesh), _read(mesh.polygons, "use_smooth", 1, bool)
+    is_somewhere = (abs(made.points) < FAR).all(1)
+    if not is_somewhere.all():  # as in Cycles, faces are not there whose points are nowhere
+        kept = is_somewhere[made.corners[made.triangles]].all(1)
+        made.triangles, made.faces = made.triangles[kept], made.faces[kept]
+        made.points, made.normals = np.where(is_somewhere[:, None], made.points, 0), np.nan_to_num(made.normals)
     made.uvs = {layer.name: _read(layer.data, "uv", 2, np.float32) for layer in mesh.uv_layers}
     made.uv_of_render = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
     colours = mesh.color_attributes

@@ -1,6 +1,6 @@
 """Mixed and added surfaces as parameters, which are mixed with the same factor."""
 from . import values
-from .bsdfs import DEFAULTS
+from .bsdfs import DEFAULTS, bounced
 from .nodes import is_output, upstream, value_of
 from .values import times
 
@@ -17,8 +17,7 @@ def mixed(surface, node):
     a, b = _half(surface, a, node.inputs[1]), _half(surface, b, node.inputs[2])
     if is_output(factor) and values.is_by_view(factor):
         if node is surface.root and _hides_from_rays(surface, b, factor):
-            # Light that enters a plane of solid glass, and never leaves it, is weaker than in Cycles.
-            return a if a['Transmission'] != 1 or surface.is_solid() else _lit_through(surface, a)
+            return a
         return _mixed_by_view(surface, a, b, factor)
     if not is_output(factor) and factor in (0, 1):
         return b if factor else a
@@ -30,8 +29,9 @@ def mixed(surface, node):
     both = {name: values.mix(factor, a[name], b[name]) for name in DEFAULTS}
     if 'Added' in a or 'Added' in b:
         both['Added'] = True
-    if not is_output(factor):
-        _keep_highlights(surface, both, a, b, factor)
+    reflecting = [p for p in (a, b) if _reflects(p)]
+    both.update({mark: True for mark in ('Even', 'Multi') if reflecting and all(mark in p for p in reflecting)})
+    _keep_highlights(surface, both, a, b, factor)
     if 'Normal' in a or 'Normal' in b:
         reflect = all(p['Base Color'] != (0, 0, 0) for p in (a, b))
         if reflect and a.get('Normal') is not b.get('Normal'):
@@ -50,10 +50,10 @@ def added(surface, node):
     if _is_metal(first) and not _reflects(other):
         first, other = other, first
     radiance = values.plus(first['Radiance'], other['Radiance'])
-    if _is_metal(other) and not _reflects(first) and max(other['Base Color']) > 0:
-        most = max(other['Base Color'])
-        return dict(first, **{'Shine': most, 'Shine Color': tuple(c / most for c in other['Base Color']), 'Roughness': other['Roughness'],
-                              'Radiance': radiance})
+    if _is_metal(other) and not _reflects(first):
+        return dict(first, **{'Shine': 1, 'Shine Color': other['Base Color'], 'Roughness': other['Roughness'], 'Radiance': radiance,
+                              'Base Color': values.plus(first['Base Color'], bounced(other)),
+                              **{mark: True for mark in ('Even', 'Multi') if mark in other}})
     if other['Base Color'] != (0, 0, 0):
         surface.note("without the second of added surfaces")
     return dict(first, Radiance=radiance)
@@ -70,8 +70,8 @@ def _half(surface, found, socket):
 
 
 def _keep_highlights(surface, both, a, b, factor):
-    """Gives a mixture by a number the roughness of what reflects, and its own base to what scatters."""
-    shares = ((a, 1 - factor), (b, factor))
+    """Gives a mixture the roughness and the colour of what reflects, and its own base to what scatters."""
+    shares = ((a, values.minus(factor)), (b, factor))
     reflecting = [(p, share) for p, share in shares if _reflects(p)]
     if len(reflecting) == 2 and not any(is_output(p['Roughness']) for p in (a, b)) and abs(a['Roughness'] - b['Roughness']) > 0.1:
         surface.note("reflecting by one roughness, between those of mixed surfaces")
@@ -79,10 +79,10 @@ def _keep_highlights(surface, both, a, b, factor):
         return
     (shiny, share), = reflecting
     base = b if shiny is a else a
-    both['Roughness'] = shiny['Roughness']
+    both.update({name: shiny[name] for name in ('Roughness', 'Shine Color')})
     if _is_metal(shiny):
-        both.update({'Metallic': 0, 'Base Color': times(1 - share, base['Base Color']), 'Shine': share,
-                     'Shine Color': shiny['Base Color']})
+        both.update({'Metallic': 0, 'Shine': share, 'Shine Color': shiny['Base Color'],
+                     'Base Color': values.plus(times(values.minus(share), base['Base Color']), times(share, bounced(shiny)))})
 
 
 def _reflects(p):
@@ -90,7 +90,7 @@ def _reflects(p):
 
 
 def _is_metal(p):
-    return p['Metallic'] == 1 and p['Transmission'] == 0 and not is_output(p['Base Color'])
+    return p['Metallic'] == 1 and p['Transmission'] == 0
 
 
 def _hides_from_rays(surface, other, factor):

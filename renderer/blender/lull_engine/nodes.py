@@ -79,6 +79,19 @@ class Made:
         return object.__getattribute__(self, "properties")[name]
 
 
+class Constant(Made):
+    """A node of a plain value: a number, or a colour as three."""
+
+    def __init__(self, value):
+        if isinstance(value, tuple):
+            super().__init__('MixRGB', 'RGB', 0.0, (*value, 1.0), (*value, 1.0), blend_type='MIX')
+        else:
+            super().__init__('Math', 'VALUE', value, 0.0, operation='ADD')
+
+    def plain_output(self):
+        return self.inputs[1 if self.type == 'RGB' else 0].default_value
+
+
 class Tree:
     """Reads the evaluated node tree of `owner`, a material, light or world. `replaced(node, name)` returns another output for that of a
     Node of this name, or None."""
@@ -118,6 +131,9 @@ class Tree:
                 result = next((n for n in results if n.is_active_output), results[0] if results else None)
                 socket, groups = (result.inputs[_index(node.outputs, output)] if result else None), (*groups, node)
             else:
+                if output.type == 'SHADER' and wanted.type != 'SHADER':  # Cycles leaves such links out
+                    socket = wanted
+                    break
                 node = self._node(node, groups)
                 found = self._replaced(node, output.name) or node.output(_index(node.origin.outputs, output))
                 break
@@ -160,7 +176,8 @@ def value_of(socket):
     source = socket.source
     if source is not None and source.node.type not in ('RGB', 'VALUE'):
         return source
-    value = socket.default_value if source is None else converted(source.node.plain_output(), socket.type)
+    kind = 'RGBA' if socket.type == 'SHADER' else socket.type
+    value = socket.default_value if source is None else converted(source.node.plain_output(), kind)
     return value if isinstance(value, (int, float)) else tuple(value)[:3]
 
 
@@ -189,7 +206,7 @@ def described(output, place):
             made.append({"make": "ShaderNode" + node.kind, "set": node.properties, "inputs": inputs})
         else:
             made.append({"copy": [*place, *(g.name for g in node.groups), node.name], "inputs": inputs,
-                         "set": _properties(node.origin),
+                         "set": _properties(node.origin), "object": _place(node.origin),
                          "alpha": node.type == 'TEX_IMAGE' and node.origin.outputs['Alpha'].is_linked})
         numbers[node] = len(made) - 1
         return numbers[node]
@@ -199,6 +216,12 @@ def described(output, place):
 
 def _plain(value):
     return list(value) if isinstance(value, tuple) else value if isinstance(value, (int, float, str, bool)) else None
+
+
+def _place(origin):
+    """Returns where the object is whose coordinates a node has, as JSON; None without one."""
+    o = origin.object if origin.type == 'TEX_COORD' else None
+    return o and [v for row in o.matrix_world for v in row]
 
 
 def _properties(origin):

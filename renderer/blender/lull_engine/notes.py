@@ -1,4 +1,8 @@
 """What will look different, collected by its consequence."""
+import contextlib
+import traceback
+
+from .process import Failure
 
 
 class Notes:
@@ -14,6 +18,17 @@ class Notes:
     def say(self, sentence):
         if sentence not in self._sentences:
             self._sentences.append(sentence)
+
+    @contextlib.contextmanager
+    def of(self, name, kind="objects"):
+        """Lets an exception end nothing but what concerns one thing."""
+        try:
+            yield
+        except Failure:
+            raise
+        except Exception as e:  # whatever it is, the rest of the scene can be shown
+            traceback.print_exc()
+            self.add(f"left out or plain, after an error ({type(e).__name__}: {e})", name, kind)
 
     def lines(self):
         """Returns a line each, such as "2 materials are even: chalk, sand"."""

@@ -6,7 +6,6 @@ import tempfile
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .camera import Failed
 from .engine import arguments, export_scene
 from .process import Failure
 
@@ -22,7 +21,7 @@ class LULL_OT_check(bpy.types.Operator):
             with tempfile.TemporaryDirectory(prefix="lull-") as folder:
                 done = export_scene(context.scene, context.view_layer.name, folder)
                 lines = done.warnings + done.remarks
-        except (Failure, Failed, OSError) as e:
+        except (Failure, OSError) as e:
             self.report({'ERROR'}, str(e))
             return {'CANCELLED'}
         text = bpy.data.texts.get(_REPORT) or bpy.data.texts.new(_REPORT)
@@ -49,7 +48,7 @@ class LULL_OT_export(bpy.types.Operator, ExportHelper):
             name, suffix = file, ".glb"
         try:
             done = export_scene(scene, context.view_layer.name, folder, name, suffix)
-        except (Failure, Failed, OSError) as e:
+        except (Failure, OSError) as e:
             self.report({'ERROR'}, str(e))
             return {'CANCELLED'}
         for line in done.warnings:

@@ -1,10 +1,12 @@
 """Runs lull as a process, with its messages and images as events."""
+import ctypes
 import json
 import os
 import selectors
 import signal
 import socket
 import subprocess
+import sys
 
 from .display import Stream
 
@@ -13,11 +15,24 @@ class Failure(Exception):
     """An error to show to the user."""
 
 
+_LIBC = ctypes.CDLL(None) if sys.platform == "linux" else None
+
+
+def _start(command, **more):
+    """Starts a process in a group of its own, so that Ctrl-C in Blender's terminal reaches it once, through us; it ends with Blender."""
+    return subprocess.Popen(command, stdin=subprocess.DEVNULL, start_new_session=True,
+                            preexec_fn=_LIBC and (lambda: _LIBC.prctl(1, signal.SIGKILL)), **more)  # PR_SET_PDEATHSIG
+
+
+def ended(code):
+    """Returns how a process of this exit code ended."""
+    return f"ended by signal {-code}" + (", as if memory did not suffice" if code == -signal.SIGKILL else "") if code < 0 else \
+        f"ended with exit code {code}"
+
+
 def run(command, stopped, heard):
     """Runs a command, and calls `heard` with what it prints. Returns its exit code, its output, and whether `stopped` returned true."""
-    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, errors="replace",
-                          start_new_session=True) as process:
+    with _start(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as process:
         with selectors.DefaultSelector() as selector:
             selector.register(process.stdout, selectors.EVENT_READ)
             said = ""
@@ -45,10 +60,7 @@ class Render:
     def __init__(self, command):
         self.server = socket.create_server(("127.0.0.1", 0))
         address = "127.0.0.1:%d" % self.server.getsockname()[1]
-        # In a group of its own, so that Ctrl-C in Blender's terminal reaches it once, through us.
-        self.process = subprocess.Popen(
-            command + ["--json-progress", "--display", address], stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
+        self.process = _start(command + ["--json-progress", "--display", address], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.code, self.said, self.errors = None, b"", []
 
     def events(self, stopped):

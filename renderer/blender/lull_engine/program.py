@@ -62,7 +62,7 @@ def _told():
     """Returns a line about the program, and whether it can be used."""
     try:
         path = find_lull()
-        return f"{path}, version {_version_of(path)}, {_found()[1]}" if path != _OWN else f"The add-on's own, version {_VERSION}", True
+        return f"Version {_version_of(path)}, " + ("the add-on's own" if path == _OWN else path), True
     except Failure as e:
         return str(e), False
 
@@ -87,7 +87,7 @@ class LullPreferences(bpy.types.AddonPreferences):
         layout = self.layout
         if not os.path.exists(_OWN):
             layout.prop(self, "program")
-        row = layout.row()
+        row = layout.split(factor=0.85)
         line, is_right = _told()
         row.label(text=line, icon='CHECKMARK' if is_right else 'ERROR')
         row.operator(LULL_OT_test.bl_idname)

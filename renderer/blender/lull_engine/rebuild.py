@@ -1,5 +1,6 @@
 """Makes nodes in another Blender of what nodes.described() returned."""
 import bpy
+from mathutils import Matrix
 
 _OF_THE_TREE = {"rna_type", "type", "inputs", "outputs", "internal_links", "dimensions", "bl_idname", "bl_label", "bl_description",
                 "bl_icon", "bl_static_type", "bl_width_default", "bl_width_min", "bl_width_max", "bl_height_default",
@@ -16,6 +17,9 @@ def built(tree, described):
             node = _copy(_found(item["copy"]), tree)
         for name, value in item["set"].items():
             setattr(node, name, value)
+        if rows := item.get("object"):  # which may be moved by what is in the session alone
+            node.object = bpy.data.objects.new("lull place", None)
+            node.object.matrix_world = Matrix([rows[i:i + 4] for i in range(0, 16, 4)])
         for socket, value in zip(node.inputs, item["inputs"]):
             if "from" in value:
                 tree.links.new(_output(made, *value["from"]), socket)

@@ -1,12 +1,13 @@
 """Bakes nodes and renders the world, in a Blender of its own; see baking.py, which writes the request.
 
-The last argument is the path of a JSON file: `blend` (materials, worlds, lights and cameras), frame, subframe, `bakes`, `bodies` and
-`world`. Answers are .npy files beside it, and said.json: the suns of the world.
+The last argument is the path of a JSON file: `blend` (materials, worlds, lights and cameras), frame, subframe, `bakes`, `bodies`,
+`world` and `images`. Answers are .npy files beside it, and said.json: the suns of the world, and materials that `failed`.
 """
 import importlib
 import json
 import os
 import sys
+import traceback
 import types
 
 import bpy
@@ -27,12 +28,33 @@ def load(path):
             setattr(wanted, kind, getattr(there, kind))
 
 
+def change(name, pixels):
+    """Gives an image these pixels."""
+    old = next((i for i in bpy.data.images if i.name_full == name), None)
+    if old is None:  # no node has it
+        return
+    made = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0], alpha=True, float_buffer=old.is_float)
+    made.colorspace_settings.name, made.alpha_mode = old.colorspace_settings.name, old.alpha_mode
+    made.pixels.foreach_set(pixels.ravel())
+    old.user_remap(made)
+
+
+def baked(baker, bodies, each):
+    if each["over"] == 'all':
+        return baker.plain(each["nodes"], each.get("object"))
+    if each["over"] == 'uv':
+        return baker.over_uvs(each["nodes"], each["names"], each["size"])
+    return baker.over_mesh(each["nodes"], bodies[str(each["body"])], each["size"], each["slots"], each["kind"])
+
+
 def main():
     request = sys.argv[-1]
     with open(request, encoding="utf-8") as f:
         what = json.load(f)
     folder = os.path.dirname(request)
     load(what["blend"])
+    for name, file in what["images"].items():
+        change(name, np.load(os.path.join(folder, file)))
     baker = bake.Baker(what["frame"], what["subframe"])
     bodies = {}
     for number, body in what["bodies"].items():
@@ -45,18 +67,19 @@ def main():
                                         np.array(body["matrix"]).reshape(4, 4), vectors)
             np.save(os.path.join(folder, f"normals{number}.npy"), made.move(points))
             np.save(os.path.join(folder, f"points{number}.npy"), points.astype(np.float32))
+    failed = []
     for i, each in enumerate(what["bakes"]):
         print(f"lull: image {i + 1} of {len(what['bakes'])}", flush=True)
-        if each["over"] == 'all':
-            found = baker.plain(each["nodes"], each.get("object"))
-        elif each["over"] == 'uv':
-            found = baker.over_uvs(each["nodes"], each["names"], each["size"])
-        else:
-            found = baker.over_mesh(each["nodes"], bodies[str(each["body"])], each["size"], each["slots"], each["kind"])
+        try:
+            found = baked(baker, bodies, each)
+        except Exception as e:  # whatever it is, the other materials have their values
+            traceback.print_exc()
+            failed.append((next((n["copy"][1] for n in each["nodes"]["nodes"] if "copy" in n), ""), f"{type(e).__name__}: {e}"))
+            found = np.zeros(3) if each["over"] == 'all' else np.zeros((4, 4, 3))
         np.save(os.path.join(folder, f"bake{each['number']}.npy"), found)
     suns = world.write(what["world"], what["frame"], what["subframe"]) if what["world"] else []
     with open(os.path.join(folder, "said.json"), "w", encoding="utf-8") as f:
-        json.dump({"suns": suns}, f)
+        json.dump({"suns": suns, "failed": failed}, f)
 
 
 main()

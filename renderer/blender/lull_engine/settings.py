@@ -31,7 +31,7 @@ class LullSettings(bpy.types.PropertyGroup):
     max_depth: IntProperty(name="Bounces", default=12, min=0, max=1000000,
                            description="Maximum number of bounces")
     texture: IntProperty(name="Texture Size", default=1024, min=16, max=8192, subtype='PIXEL',
-                         description="Size of the images that replace nodes which glTF does not have")
+                         description="Largest size of the images that replace nodes which glTF does not have")
     panes: BoolProperty(name="Sheets for Panes", default=True,
                         description="Replace flat slabs of clear glass by sheets, which light sampling passes")
     graded_by: FloatProperty(name="Graded By", default=0, min=-10, max=10,

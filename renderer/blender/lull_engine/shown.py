@@ -47,11 +47,13 @@ class Collector:
         # Of curves and texts, Blender lists the mesh as an instance beside the object itself.
         listed = {i.parent.original for i in graph.object_instances if i.is_instance}
         for instance in graph.object_instances:
-            self._add(instance, listed)
+            with notes.of(instance.object.name):
+                self._add(instance, listed)
         if self._override is None:
             self._note_copies()
         for original in {s.original: None for s in self.shown}:
-            _note_of(original, notes)
+            with notes.of(original.name):
+                _note_of(original, notes)
 
     def _add(self, instance, listed):
         o, original = instance.object, instance.object.original
@@ -81,6 +83,9 @@ class Collector:
 
     def _place(self, instance, mesh, matrix):
         original = instance.object.original
+        if not all(abs(v) < meshes.FAR for row in matrix for v in row):
+            self._notes.add("left out, as it is nowhere", original.name)
+            return
         those = [original, instance.parent.original] if instance.is_instance else [original]
         self.shown.append(Shown(
             original.name, mesh, matrix, original.lightgroup, original,
@@ -92,7 +97,7 @@ class Collector:
         key = "hair of " + original.name_full
         seen = original.evaluated_get(self._graph)
         if key not in self._meshes:
-            self._meshes[key] = strands.of_particles(seen)
+            self._meshes[key] = strands.of_particles(seen, self._notes)
             for mesh in self._meshes[key]:
                 self._override_in(mesh)
         away = instance.matrix_world @ seen.matrix_world.inverted_safe()
@@ -111,7 +116,7 @@ class Collector:
 
     def _read(self, o, original):
         if o.type == 'CURVES':
-            mesh = strands.of_curves(o)
+            mesh = strands.of_curves(o, self._notes)
         else:
             is_mesh = o.type == 'MESH' and not o.data.is_editmode
             data = o.data if is_mesh else o.to_mesh()
@@ -184,7 +189,7 @@ def _asks(tree, is_copy):
     for node in tree.nodes:
         used = {o.name for o in node.outputs if o.is_linked}
         is_placed = node.type == 'NEW_GEOMETRY' and 'Position' in used or \
-            node.type == 'TEX_COORD' and node.object and 'Object' in used
+            node.type == 'TEX_COORD' and (node.object and 'Object' in used or used & {'Camera', 'Window'}) or node.type == 'CAMERA'
         is_named = node.type == 'OBJECT_INFO' and bool(used & ({'Location', 'Random'} if is_copy else used))
         is_named |= not is_copy and node.type == 'ATTRIBUTE' and node.attribute_type == 'OBJECT'
         is_copied = is_copy and (node.type == 'PARTICLE_INFO' and used or

@@ -5,10 +5,29 @@ from . import meshes
 
 STRANDS = "lull strand"  # UVs: a random number, and the way along a strand; 0, 0 on other surfaces
 _SIDES, _MOST = (3, 8), 1_000_000  # of tubes, at least and at most; vertices, beyond which tubes have fewer sides
+_LIMIT, _BYTES = 12_000_000, 600  # vertices at most; of memory that each takes, here and in lull
 _RADIUS = 0.005  # of curves that have none, as in Cycles
 
 
-def of_particles(o):
+def _kept(count, steps, name, notes):
+    """Returns which of so many strands and of their steps are shown, and how much wider, so that they fit into memory."""
+    most = _LIMIT
+    try:
+        with open("/proc/meminfo", encoding="ascii") as f:
+            free = next(int(line.split()[1]) for line in f if line.startswith("MemAvailable:"))
+        most = min(most, free * 1024 // 2 // _BYTES)
+    except (OSError, StopIteration):
+        pass
+    points = max(most // _SIDES[0], 2)
+    every = -(-2 * count // points)
+    left = int(np.clip(points // -(-count // every), 2, steps))
+    if left < steps or every > 1:
+        told = f"1 of {every} hairs, as much wider, " * (every > 1) + f"{left - 1} of {steps - 1} segments"
+        notes.add(f"shown with {told}, as all would take {count * steps * _SIDES[0] * _BYTES / 1e9:.0f} GB", name)
+    return slice(None, None, every), np.linspace(0, steps - 1, left).round().astype(int), every
+
+
+def of_particles(o, notes):
     """Returns meshes, in the world, of the hair of an evaluated object, with its materials."""
     found = []
     for modifier in o.modifiers:
@@ -21,12 +40,13 @@ def of_particles(o):
         parents, children = len(system.particles), len(system.child_particles)
         first = parents if children and not settings.use_parent_particles else 0
         steps = (1 << settings.render_step) + 1
-        points = np.array([system.co_hair(o, particle_no=i, step=s) for i in range(first, parents + children)
-                           for s in range(steps)]).reshape(-1, steps, 3)
+        some, at, wider = _kept(parents + children - first, steps, o.name, notes)
+        numbers = range(first, parents + children)[some]
+        points = np.array([system.co_hair(o, particle_no=i, step=s) for i in numbers for s in at.tolist()]).reshape(-1, len(at), 3)
         slots = [slot.material for slot in o.material_slots]
         material = slots[min(settings.material, len(slots)) - 1] if slots else None
-        uvs = _uvs(o, modifier, system, range(first, parents + children))
-        found.append(_tubes(o.name, points, np.broadcast_to(_radii(settings, steps), points.shape[:2]), material, uvs))
+        uvs = _uvs(o, modifier, system, numbers)
+        found.append(_tubes(o.name, points, np.broadcast_to(wider * _radii(settings, steps)[at], points.shape[:2]), material, uvs))
     return [mesh for mesh in found if mesh]
 
 
@@ -52,7 +72,7 @@ def _uvs(o, modifier, system, numbers):
                      for i in numbers])
 
 
-def of_curves(o):
+def of_curves(o, notes):
     """Returns a mesh, in the space of the object, of evaluated hair curves; None without any."""
     data = o.data
     if not len(data.curves):
@@ -65,10 +85,10 @@ def of_curves(o):
         data.attributes["radius"].data.foreach_get("value", radii)
     counts = np.array([c.points_length for c in data.curves])
     starts = np.array([c.first_point_index for c in data.curves])
-    steps = int(counts.max())
+    some, steps, wider = _kept(len(counts), int(counts.max()), o.name, notes)
     # The last point is repeated where a curve has fewer.
-    at = starts[:, None] + np.minimum(np.arange(steps), counts[:, None] - 1)
-    return _tubes(o.name, points[at], radii[at], o.material_slots[0].material if o.material_slots else None, None)
+    at = starts[some, None] + np.minimum(steps, counts[some, None] - 1)
+    return _tubes(o.name, points[at], wider * radii[at], o.material_slots[0].material if o.material_slots else None, None)
 
 
 def _tubes(name, points, radii, material, uvs):

@@ -1,14 +1,10 @@
 """Materials as parameters of a surface: plain values, or outputs of nodes."""
-import numpy as np
-
-from . import displacement, values
-from .bsdfs import DEFAULTS, READERS
+from . import displacement, images, seen, values
+from .bsdfs import DEFAULTS, READERS, bounced
 from .mixtures import added, mixed
-from .nodes import Tree, is_output, upstream
+from .nodes import Constant, Tree, is_output, upstream, value_of
 from .versions import HAS_ADDED_INTERFACE, displacement_method
 
-# Values of Specular, and the differences of albedos.
-_MORE_THAN_SCHLICK = (0, 0.1, 0.25, 0.5, 0.75, 1), (0, -0.0116, -0.0008, 0.0061, 0.0084, 0.0087)
 EVEN = ('IOR', 'Specular', 'Clearcoat', 'Clearcoat Roughness', 'Transmission', 'Sheen Roughness')  # of one number for a whole material
 _READERS = {**READERS, 'MIX_SHADER': mixed, 'ADD_SHADER': added}
 
@@ -17,11 +13,13 @@ class Surface:
     """`parameters` are those of bsdfs.DEFAULTS, and perhaps Normal; None where nothing is known of the surface. `own` are lull's own
     properties of the material."""
 
-    def __init__(self, material, solid, notes, side=None):
-        """`solid()` returns whether faces of the material form a closed body. `side`: the input of a node that mixes the sides."""
+    def __init__(self, material, view, solid, notes, side=None):
+        """`view` is a camera.View. `solid()` returns whether faces of the material form a closed body. `side`: the input of a node that
+        mixes the sides."""
         self.name, self.material, self.is_solid, self._notes = material.name, material, solid, notes
-        self.own, self.is_thin, self.is_air, self.brightens, self._numbers = {}, False, False, 0, {}
-        tree = Tree(material, values.strand)
+        self._view = view
+        self.own, self.is_thin, self.is_air, self._numbers = {}, False, False, {}
+        tree = Tree(material, self._replaced)
         surface = tree.output.inputs['Surface']
         self.root = surface.source.node if surface.source is not None else None
         self.has_sides = side is None and self.root is not None and _mixes_sides(self.root)
@@ -35,13 +33,20 @@ class Surface:
         if self.parameters is None:
             self.note("in the viewport colour, as nothing is known of the surface")
             return
-        if self.parameters.pop('Added', False):
-            self.own["addedInterface"] = True
-        self._mark(surface.source)
+        self._mark()
         moves = tree.output.inputs['Displacement'].source
         if moves is not None and not displacement.moves(material):
             self.parameters['Normal'], self.kind = moves, 'BUMP'
         self._note_what_holds_of_the_whole(moves)
+
+    def _replaced(self, node, name):
+        """Lets nodes have what is known of strands, of the camera, and of images without a file; see nodes.Tree."""
+        path = images.missing(node.image) if node.type == 'TEX_IMAGE' else None
+        if path is None:
+            return values.strand(node, name) or seen.replaced(node, name, self._view)
+        if path:
+            self._notes.add("magenta, as in Cycles, as there is no such file", f"{node.image.name} ({path})", "images")
+        return Constant((1., 0., 1.)).output(0, 'RGBA') if name == 'Color' else Constant(1.).output()
 
     def note(self, consequence):
         self._notes.add(consequence, self.name, "materials")
@@ -57,20 +62,23 @@ class Surface:
         if socket.source is None:
             return None
         node = socket.source.node
-        if socket.source.type != 'SHADER':
-            return None
+        if socket.source.type != 'SHADER':  # Cycles lets colours shine
+            return dict(DEFAULTS, **{'Base Color': (0, 0, 0), 'Radiance': value_of(socket)})
         read = _READERS.get(node.type)
         return read(self, node) if read else None
 
-    def _mark(self, source):
-        p = self.parameters
+    def _mark(self):
+        p, further = self.parameters, bounced(self.parameters)
+        is_even, keeps_all = p.pop('Even', False), p.pop('Multi', False)
+        if p.pop('Added', False) or HAS_ADDED_INTERFACE and is_even and not keeps_all:
+            self.own["addedInterface"] = True
+        if is_even:
+            self.own["evenInterface"] = True
+        if max(further) > 0.001:
+            p.update({'Metallic': 0, 'Shine': 1, 'Shine Color': p['Base Color'], 'Base Color': further})
         if p['Alpha'] == 0 and (p['Tint'] != (1, 1, 1) or p['Radiance'] != (0, 0, 0)):
             p.update({'Alpha': 1, 'Base Color': p['Tint'], 'Transmission': 1, 'Roughness': 0})
             self.is_air = self.is_thin = True
-        elif HAS_ADDED_INTERFACE and source is not None and source.node.type == 'BSDF_PRINCIPLED' and \
-                not is_output(p['Specular']) and p['Metallic'] == 0 and p['Transmission'] == 0:
-            # Under even light, the reflectance of a smooth interface by Fresnel's formula less that by Schlick's.
-            self.brightens = float(np.interp(p['Specular'], *_MORE_THAN_SCHLICK))
 
     def _note_what_holds_of_the_whole(self, moves):
         p = self.parameters
@@ -83,6 +91,8 @@ class Surface:
         nodes = {n for v in p.values() if is_output(v) for n in upstream(v)}
         if any(n.type == 'HAIR_INFO' for n in nodes):
             self.note("without the length, width and direction of hair")
+        if any(n.type == 'TEX_POINTDENSITY' for n in nodes):
+            self.note("without the points of Point Density")
         if any(n.type == 'ATTRIBUTE' and n.attribute_type == 'VIEW_LAYER' for n in nodes):
             self.note("without properties of the view layer")
         if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for n in nodes):

@@ -241,8 +241,10 @@ void GltfMaterials::AddSurface(const MaterialUse& use, const GltfTextureUse& col
                               use.path + "/pbrMetallicRoughness/metallicRoughnessTexture"),
                GltfTexels::LinearColor, warnings);
     use.write.Bool("vertexcolors", hasColors);
-    use.write.Bool("addedinterface",
-                   OwnFlag(document, use.material.extras, "addedInterface", use.path));
+    for (const auto& [name, key] : {std::pair{"addedinterface", "addedInterface"},
+                                    {"eveninterface", "evenInterface"},
+                                    {"keepsradiance", "keepsRadiance"}})
+        use.write.Bool(name, OwnFlag(document, use.material.extras, key, use.path));
     AddSpecular(use, warnings);
     AddTransmission(use, warnings);
     AddClearcoat(use, warnings);

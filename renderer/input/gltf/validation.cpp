@@ -289,7 +289,8 @@ void CheckMaterial(const JsonAt& o) {
         e.NumberWithin("anisotropyStrength", 0, 1);
         e.Number("anisotropyRotation");
     });
-    o.Extras({"addedInterface", "spread", "openBehind", "hiddenFromCamera", "castsNoShadow"});
+    o.Extras({"addedInterface", "evenInterface", "keepsRadiance", "spread", "openBehind",
+              "hiddenFromCamera", "castsNoShadow"});
     CheckTextureInfos(o);
 }
 

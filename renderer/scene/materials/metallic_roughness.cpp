@@ -78,7 +78,9 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
       anisotropyRotation(in.entity.parameters.GetFloat("anisotropyrotation", 0)),
       solid(in.entity.parameters.GetBool("solid", false)),
       vertexColors(in.entity.parameters.GetBool("vertexcolors", false)),
-      addedInterface(in.entity.parameters.GetBool("addedinterface", false)) {
+      addedInterface(in.entity.parameters.GetBool("addedinterface", false)),
+      evenInterface(in.entity.parameters.GetBool("eveninterface", false)),
+      keepsRadiance(in.entity.parameters.GetBool("keepsradiance", false)) {
     // An index of 0 stands for an interface that reflects all (KHR_materials_ior).
     if (ior == 0) return;
     const auto index = InRange(double(ior), 1, 100);
@@ -89,8 +91,8 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
 
 MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     const bool isAnisotropic = anisotropyFactor > 0, hasSheen = !IsBlack(sheenColorFactor);
-    MaterialTraits traits = in.TraitsOf(4 + addedInterface + isAnisotropic + hasSheen +
-                                        (diffuseTransmissionFactor > 0));
+    MaterialTraits traits = in.TraitsOf(4 + (addedInterface || evenInterface) + isAnisotropic +
+                                        hasSheen + (diffuseTransmissionFactor > 0));
     VisitSlots([&](const auto& slot) {
         if (slot.texture.IsConstant()) return;
         traits.Need(in.textures.Needs(slot.texture));
@@ -101,6 +103,7 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     // The light that sheen, the interface, or a coat on one side leaves to the rest depends on the
     // view.
     if (hasSheen || diffuseTransmissionFactor > 0 || IsCoatedSolid()) traits.isConstant = false;
+    if (keepsRadiance && solid) traits.isConstant = false;  // by the side of the view
     if (CanLetThrough()) traits.needs = traits.needs | kLetsThrough;
     return traits;
 }
@@ -183,10 +186,27 @@ void MetallicRoughness::AddClearcoat(float coat, float alpha, Bsdf* bsdf) const 
             Rgb(Rgb::Constant(coat)), TrowbridgeReitz(alpha, alpha), SchlickInterface{0.04f}});
 }
 
-void MetallicRoughness::AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth,
-                                 const Vec2f& alphas, Bsdf* bsdf) const {
+void MetallicRoughness::AddOwnInterface(const Rgb& f0, float f90, float eta, bool isSmooth,
+                                        const Vec2f& alphas, Bsdf* bsdf) const {
+    const TrowbridgeReitz distribution(alphas.x(), alphas.y());
+    const StretchedInterface interface { f0, f90, evenInterface ? 1 : eta };
+    if (isSmooth)
+        bsdf->Add(SpecularReflection<StretchedInterface>{Rgb(Rgb::Ones()), interface});
+    else if (addedInterface)
+        bsdf->Add(MicrofacetReflection<StretchedInterface, SeparableMasking>{
+            Rgb(Rgb::Ones()), distribution, interface});
+    else
+        bsdf->Add(MicrofacetReflection<CoatedInterface>{f0, distribution,
+                                                        CoatedInterface{Rgb(Rgb::Ones()), 1, CoatAbove(0, 0)}});
+}
+
+void MetallicRoughness::AddSolid(const MaterialInputs& in, const Rgb& reflected, Rgb through,
+                                 bool isSmooth, const Vec2f& alphas, Bsdf* bsdf) const {
     const float index = ior == 0 ? 100 : ior;
-    bsdf->SetEta(index);
+    if (keepsRadiance)
+        through *= bsdf->Shading().n.dot(in.hit->wo) > 0 ? Sqr(index) : 1 / Sqr(index);
+    else
+        bsdf->SetEta(index);
     if (isSmooth) {
         bsdf->Add(FresnelSpecular{reflected, through, index});
     } else {
@@ -216,7 +236,8 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const Rgb tint = Look(specularColor, in) * specularColorFactor;
     const Rgb f0 = strength * (Sqr((ior - 1) / (ior + 1)) * tint).max(0.f).min(1.f);
     const InterfaceAbove above{f0.maxCoeff(), strength};
-    const InterfaceAbove aboveBase = addedInterface ? InterfaceAbove{} : above;
+    const bool isOwn = addedInterface || evenInterface;
+    const InterfaceAbove aboveBase = isOwn ? InterfaceAbove{} : above;
     const float dielectric = 1 - metallic;
     const float transmitting = dielectric * Weight(transmission, transmissionFactor, in);
     // A coat lies on the outside of a solid, and on both sides of all else.
@@ -228,32 +249,39 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const bool isSmooth = alpha < kSmoothAlpha && !isAnisotropic;
     const float toOtherSide = Weight(diffuseTransmission, diffuseTransmissionFactor, in);
     const Rgb diffuse = (dielectric - transmitting) * (1 - toOtherSide) * color;
-    const Rgb base = addedInterface ? Rgb(Rgb::Zero()) : diffuse;  // below the interface
+    const Rgb base = isOwn ? Rgb(Rgb::Zero()) : diffuse;  // below the interface
 
     // A thin rough sheet and a base below reflect by the same interface, in one lobe.
     const bool together = !solid && !isSmooth;
     const float reflecting = together ? dielectric : dielectric - transmitting;
     const Rgb r0 = reflecting * f0 + metallic * color;
     const float r90 = reflecting * strength + metallic;
-    if (isSmooth && r90 > 0) bsdf->Add(ThinSpecular{r0, r90, Rgb(Rgb::Zero()), above, coat});
-    if (isAnisotropic && r90 > 0)
+    if (isOwn && r90 > 0) {
+        const float root = std::sqrt(std::min(above.f0 / std::max(strength, 1e-6f), 0.98f));
+        AddOwnInterface(r0, r90, (1 + root) / (1 - root), isSmooth, alphas, bsdf);
+    } else if (isSmooth && r90 > 0) {
+        bsdf->Add(ThinSpecular{r0, r90, Rgb(Rgb::Zero()), above, coat});
+    } else if (isAnisotropic && r90 > 0) {
         bsdf->Add(MicrofacetReflection<CoatedInterface>{
             Rgb(Rgb::Ones()), TrowbridgeReitz(alphas.x(), alphas.y()), {r0, r90, coat}});
-    const bool isApart = isSmooth || isAnisotropic;
+    }
+    const bool isApart = isOwn || isSmooth || isAnisotropic;
     const Rgb glossy = isApart ? Rgb(Rgb::Zero()) : r0;
     const float glossy90 = isApart ? 0 : r90;
     if (glossy90 > 0 || ((r90 > 0 || coatWeight > 0) && !IsBlack(base)))
         bsdf->Add(LayeredReflection(base, glossy, glossy90, alpha, aboveBase, coat));
     else if (!IsBlack(base))
         bsdf->Add(LambertianReflection{base});
-    if (addedInterface && !IsBlack(diffuse))
+    if (evenInterface && !IsBlack(diffuse))
+        bsdf->Add(LambertianReflection{diffuse});
+    else if (addedInterface && !IsBlack(diffuse))
         bsdf->Add(
             DisneyDiffuse{diffuse, std::clamp(roughness, 0.f, 1.f), DisneyDiffuse::Part::Whole});
 
     const Rgb through = transmitting * color;
     if (transmitting > 0 && solid) {
         const float left = IsCoatedSolid() ? coat.Through(CosineTowards(in, *bsdf)) : 1;
-        AddSolid(left * (transmitting * strength * tint).max(0.f).min(1.f), left * through,
+        AddSolid(in, left * (transmitting * strength * tint).max(0.f).min(1.f), left * through,
                  isSmooth, alphas, bsdf);
     } else if (transmitting > 0 && isSmooth) {
         bsdf->Add(

@@ -25,7 +25,9 @@ struct UvSlot {
 // the mesh's colours multiply the base colour; "anisotropyrotation": radians, from the first
 // tangent to the second; "addedinterface": interface and coat are added to the base, which they do
 // not attenuate and which is Disney's, as in the Principled BSDF of Blender 3 (not
-// energy-conserving).
+// energy-conserving), with its Fresnel and separable masking; "eveninterface": it reflects as much
+// from all directions, over a Lambertian base that it does not attenuate; "keepsradiance": solids
+// do not scale the radiance that they refract by the square of the index, as if it left them again.
 struct MetallicRoughness {
     UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy,
         diffuseTransmissionColor;
@@ -35,7 +37,7 @@ struct MetallicRoughness {
     float metallicFactor, roughnessFactor, specularFactor, transmissionFactor, clearcoatFactor,
         clearcoatRoughnessFactor, sheenRoughnessFactor, anisotropyFactor, diffuseTransmissionFactor;
     float ior, anisotropyRotation;
-    bool solid, vertexColors, addedInterface;
+    bool solid, vertexColors, addedInterface, evenInterface, keepsRadiance;
 
     explicit MetallicRoughness(const MaterialReader& in);
 
@@ -60,6 +62,9 @@ struct MetallicRoughness {
     // Returns the roughness along the tangents of a surface whose own is `alpha`, and turns the
     // frame to where it is anisotropic.
     Vec2f Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const;
+    // Adds the interface that reflects from f0 to f90 and attenuates nothing.
+    void AddOwnInterface(const Rgb& f0, float f90, float eta, bool isSmooth, const Vec2f& alphas,
+                         Bsdf* bsdf) const;
     // Adds sheen over all lobes that there are, below a coat.
     void AddSheen(const MaterialInputs& in, const CoatAbove& coat, Bsdf* bsdf) const;
     // Adds the `share` of the base's light that leaves on the other side, below an interface.
@@ -67,8 +72,8 @@ struct MetallicRoughness {
                                 float alpha, const CoatAbove& coat, Bsdf* bsdf) const;
     void AddClearcoat(float coat, float alpha, Bsdf* bsdf) const;
     // Adds the interface of a solid that reflects and transmits so much.
-    void AddSolid(const Rgb& reflected, const Rgb& through, bool isSmooth, const Vec2f& alphas,
-                  Bsdf* bsdf) const;
+    void AddSolid(const MaterialInputs& in, const Rgb& reflected, Rgb through, bool isSmooth,
+                  const Vec2f& alphas, Bsdf* bsdf) const;
 };
 
 }  // namespace lull

@@ -52,9 +52,7 @@ def material(name, kind, **inputs):
     made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
-    output, shader = tree.nodes.new('ShaderNodeOutputMaterial'), new_node(tree, 'ShaderNode' + kind)
-    for key, value in inputs.items():
-        set_input(shader, key.replace("_", " "), value)
+    output, shader = tree.nodes.new('ShaderNodeOutputMaterial'), node(tree, 'ShaderNode' + kind, **inputs)
     tree.links.new(shader.outputs[0], output.inputs['Surface'])
     return made
 

@@ -72,6 +72,9 @@ inline std::vector<NamedLobe> SpreadLobes() {
             add("coated reflection",
                 MicrofacetReflection<CoatedInterface>{white, TrowbridgeReitz(alpha, 0.3f),
                                                       CoatedInterface{gold, 1, 0.5f}});
+        add("stretched interface",
+            MicrofacetReflection<StretchedInterface, SeparableMasking>{
+                white, TrowbridgeReitz(alpha, alpha), StretchedInterface{gold, 1, 1.5f}});
         if (alpha > 0.05f) add("sheen", CharlieSheen{color, alpha});
         add("clear coat", MicrofacetReflection<SchlickInterface>{
                               white, TrowbridgeReitz(alpha, alpha), SchlickInterface{0.04f}});
@@ -88,6 +91,8 @@ inline std::vector<NamedLobe> SpecularLobes() {
          SpecularReflection<ConductorInterface>{r,
                                                 {Rgb(0.2f, 0.92f, 1.1f), Rgb(3.9f, 2.45f, 2.14f)}}},
     };
+    lobes.push_back({"smooth stretched interface",
+                     SpecularReflection<StretchedInterface>{r, {Rgb(0.1f * t), 1, 1.5f}}});
     for (float eta : {1.f, 1.0001f, 1.5f, 1 / 1.5f, 3.f}) {
         const std::string suffix = fmt::format(" {}", eta);
         lobes.push_back({"coat" + suffix, SpecularReflection<DielectricInterface>{r, {eta}}});

@@ -117,12 +117,46 @@ TEST(MetallicRoughness, AddsTheInterfaceWhereAskedTo) {
     b.description.materials[0].parameters.Add(Bool("addedinterface", true));
     const Bsdf bsdf = b.MakeBsdf(0);
     ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 3);
-    EXPECT_NEAR(LobeAt<LayeredReflection>(bsdf, 0).f0.r, 0.04f, 1e-6);
-    EXPECT_EQ(LobeAt<LayeredReflection>(bsdf, 0).diffuse.r, 0);
+    const auto& interface =
+        LobeAt<MicrofacetReflection<StretchedInterface, SeparableMasking>>(bsdf, 0).interface;
+    for (const float cosine : {1.f, 0.7f, 0.2f, 0.01f})
+        EXPECT_NEAR(interface(cosine).x(), FresnelDielectric(cosine, 1.5f), 1e-5);
     const auto& base = LobeAt<DisneyDiffuse>(bsdf, 1);
     EXPECT_EQ(base.part, DisneyDiffuse::Part::Whole);
     EXPECT_FLOAT_EQ(base.roughness, 0.7f);
     EXPECT_FLOAT_EQ(base.r.r, 0.5f);
+}
+
+// Blender's Glossy BSDF, over a Diffuse one: as much from all directions.
+TEST(MetallicRoughness, ReflectsEvenlyWhereAskedTo) {
+    SceneWith b({{"roughnessfactor", 0.7f}, {"metallicfactor", 0.5f}, {"specularfactor", 0}});
+    b.description.materials[0].parameters.Add(Bool("eveninterface", true));
+    Bsdf bsdf = b.MakeBsdf(0);
+    ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 2);
+    const auto& lobe = LobeAt<MicrofacetReflection<CoatedInterface>>(bsdf, 0);
+    for (const float cosine : {1.f, 0.2f, 0.01f})
+        EXPECT_FLOAT_EQ((Rgb(lobe.r) * lobe.interface(cosine)).y(), 0.125f);
+    EXPECT_FLOAT_EQ(LobeAt<LambertianReflection>(bsdf, 1).r.r, 0.25f);
+    b.description.materials[0].parameters.Add(Bool("addedinterface", true));
+    bsdf = b.MakeBsdf(0);
+    const auto& old = LobeAt<MicrofacetReflection<StretchedInterface, SeparableMasking>>(bsdf, 0);
+    for (const float cosine : {1.f, 0.2f, 0.01f})
+        EXPECT_FLOAT_EQ(old.interface(cosine).y(), 0.125f);
+}
+
+// So does light that enters and leaves it again.
+TEST(MetallicRoughness, KeepsRadianceInGlassWhereAskedTo) {
+    SceneWith b({{"metallicfactor", 0}, {"transmissionfactor", 1}, {"roughnessfactor", 0}}, true);
+    b.description.materials[0].parameters.Add(Bool("keepsradiance", true));
+    const MaterialTable table = b.Make();
+    SurfaceInteraction hit = MaterialScene::Hit(0);
+    for (const float side : {1.f, -1.f}) {
+        hit.wo = Vec3f(0, 0, side);
+        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+        EXPECT_FLOAT_EQ(bsdf.Eta(), 1);
+        EXPECT_FLOAT_EQ(LobeAt<FresnelSpecular>(bsdf, 0).t.r,
+                        0.5f * (side > 0 ? Sqr(1.5f) : 1 / Sqr(1.5f)));
+    }
 }
 
 TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
