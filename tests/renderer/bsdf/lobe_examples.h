@@ -76,9 +76,17 @@ inline std::vector<NamedLobe> SpreadLobes() {
             MicrofacetReflection<StretchedInterface, SeparableMasking>{
                 white, TrowbridgeReitz(alpha, alpha), StretchedInterface{gold, 1, 1.5f}});
         if (alpha > 0.05f) add("sheen", CharlieSheen{color, alpha});
+        static const CoatTable coats(1.5f, 0.01f);
+        float blend;
+        const CoatRow* row = coats.RowOf(alpha, &blend);
+        add("coated base", CoatedDiffuseLobe{color, TrowbridgeReitz(alpha, alpha), row, blend});
         add("clear coat", MicrofacetReflection<SchlickInterface>{
                               white, TrowbridgeReitz(alpha, alpha), SchlickInterface{0.04f}});
     }
+    static const CoatTable smooth(0, 1.5f, 0.01f);
+    float blend;
+    lobes.push_back(
+        {"base below a smooth coat", CoatedDiffuseLobe{color, {0, 0}, smooth.RowOf(0, &blend), 0}});
     return lobes;
 }
 
@@ -99,6 +107,11 @@ inline std::vector<NamedLobe> SpecularLobes() {
         lobes.push_back({"refraction" + suffix, SpecularTransmission{t, eta}});
         lobes.push_back({"glass" + suffix, FresnelSpecular{r, t, eta}});
     }
+    lobes.push_back({"thin dielectric", ThinDielectricLobe{r, 1.5f}});
+    lobes.push_back({"smooth coat", SpecularReflection<CoatInterface>{r, {1.5f}}});
+    lobes.push_back(
+        {"coated gold", SpecularReflection<CoatedConductorInterface>{
+                            r, {1.5f, 0.01f, Rgb(0.05f, 0.3f, 1), Rgb(3.7f, 1.6f, 1.1f)}}});
     lobes.push_back({"thin glass",
                      ThinSpecular{Rgb(0.04f, 0.04f, 0.04f), 1, t, InterfaceAbove{0.04f, 1}, 0.5f}});
     return lobes;
