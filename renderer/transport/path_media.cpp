@@ -1,5 +1,7 @@
 #include "renderer/transport/path_media.h"
 
+#include <map>
+
 #include "renderer/base/color.h"
 
 namespace lull {
@@ -29,7 +31,7 @@ class Beam {
         else
             scene.shapes.Interact(ray, found, kNeedsNothing, &hit, context.camera.time);
         isPane = (needs & kLetsThrough) && !IsBlack(through);
-        media = scene.media.Beyond(found.shape, ray.d.dot(hit.n) > 0, true, media);
+        media = Media::Beyond(scene, found.shape, hit, ray.d, true, media);
         return true;
     }
     // Goes through the surface. Returns false where no light does.
@@ -53,6 +55,30 @@ class Beam {
 };
 
 }  // namespace
+
+MediumStack Media::Beyond(const Scene& scene, int shape, const SurfaceInteraction& hit,
+                          const Vec3f& wi, bool crosses, const MediumStack& current) {
+    const MediumStack beyond = scene.media.Beyond(shape, wi.dot(hit.n) > 0, crosses, current);
+    if (beyond.Count() < 2 || beyond.Count() <= current.Count()) return beyond;
+    constexpr int kMostHits = 100;
+    std::map<int, bool> isLeft;  // before it is entered, by medium
+    Ray ray = hit.SpawnRay(wi);
+    Hit found;
+    for (int i = 0; i < kMostHits && scene.accelerator.Intersect(ray, &found); ++i) {
+        SurfaceInteraction at;
+        scene.shapes.Interact(ray, found, kNeedsNothing, &at, 0);
+        const MediumTable::Sides& sides = scene.media.ofShapes[size_t(found.shape)];
+        if (sides.outside == ShapeEntity::kSurrounding)
+            isLeft.try_emplace(sides.inside, wi.dot(at.n) > 0);
+        ray = at.SpawnRay(wi);
+    }
+    MediumStack kept;
+    for (int i = 0; i + 1 < beyond.Count(); ++i)
+        if (const auto it = isLeft.find(beyond.At(i)); it != isLeft.end() && it->second)
+            kept.Enter(beyond.At(i));
+    kept.Enter(beyond.Top());
+    return kept;
+}
 
 Media::Visibility Media::Look(const Context& context, const Vec3f& origin, const Vec3f& target,
                               const MediumStack& from, bool isAtInfinity) {

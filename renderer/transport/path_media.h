@@ -123,16 +123,21 @@ class Media {
     static constexpr bool kExist = true, kLetThrough = true;
     using Context = PathContext<Media>;
 
+    // Does what MediumTable::Beyond() does. Of the media about one that is entered, those are kept
+    // that the ray leaves later: where two volumes touch, it meets only one of their surfaces.
+    static MediumStack Beyond(const Scene&, int shape, const SurfaceInteraction&, const Vec3f& wi,
+                              bool crosses, const MediumStack& current);
+
     // Starts where the camera is.
-    explicit Media(const Scene& scene) : table(&scene.media), media(scene.media.ofCamera) {}
+    explicit Media(const Scene& scene) : scene(&scene), media(scene.media.ofCamera) {}
 
     // Samples where the medium scatters the ray before it has gone t.
     MediumSample Sample(Ray ray, float t, Sampler& sampler) const {
         ray.tMax = t;
         const int medium = media.Top();
-        return medium == kVacuum ? MediumSample{} : table->Sample(medium, ray, sampler);
+        return medium == kVacuum ? MediumSample{} : scene->media.Sample(medium, ray, sampler);
     }
-    float PhaseParameter() const { return table->PhaseParameter(media.Top()); }
+    float PhaseParameter() const { return scene->media.PhaseParameter(media.Top()); }
 
     // How a vertex sees a sample of a light.
     struct Visibility {
@@ -172,7 +177,7 @@ class Media {
     static bool LooksBehind(SurfaceNeeds needs) { return needs & (kIsInterface | kLetsThrough); }
     bool GoThrough(const SurfaceInteraction& hit, int shape, bool isLast, Path* path) {
         if (isLast && path->seesLights) return false;
-        media = table->Beyond(shape, path->ray.d.dot(hit.n) > 0, true, media);
+        media = Beyond(*scene, shape, hit, path->ray.d, true, media);
         path->ray = hit.SpawnRay(path->ray.d);
         path->wentThrough = true;
         return true;
@@ -184,7 +189,7 @@ class Media {
 
     // Return the media on the side of a vertex that a direction points to.
     MediumStack Towards(const SurfaceVertex& v, const Vec3f& wi) const {
-        return table->Beyond(v.shape, wi.dot(v.hit.n) > 0, !v.IsSameSide(wi, v.hit.wo), media);
+        return Beyond(*scene, v.shape, v.hit, wi, !v.IsSameSide(wi, v.hit.wo), media);
     }
     const MediumStack& Towards(const MediumVertex&, const Vec3f&) const { return media; }
 
@@ -195,7 +200,7 @@ class Media {
     // meets area light `index`.
     static bool Follow(const Context&, const Ray&, const MediumStack& from, int index, LightHit*);
 
-    const MediumTable* table;
+    const Scene* scene;
     MediumStack media;  // that the path's next ray is in
 };
 

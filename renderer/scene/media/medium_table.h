@@ -24,6 +24,8 @@ class MediumStack {
     explicit MediumStack(int medium) : media{medium}, count(1) {}
 
     int Top() const { return count > 0 ? media[size_t(count - 1)] : kVacuum; }
+    int Count() const { return count; }
+    int At(int i) const { return media[size_t(i)]; }
     // Forgets the outermost where there are too many.
     void Enter(int medium) {
         if (count == kMost) std::shift_left(media.begin(), media.end(), 1), --count;

@@ -260,6 +260,13 @@ TEST(GltfMaterial, VolumesLieInOthers) {
     AddBox(&overlapping, red, 2, 0);
     AddBox(&overlapping, green, 2, -1);
     expect(overlapping, 4, 2, 6);
+    // What is behind two that touch is in none of them.
+    GltfFile touching = LampBelow();
+    AddBox(&touching, red, 2, -1);
+    AddBox(&touching, green, 2, 1);
+    LookDown(&touching, 0.4);
+    EXPECT_GT(Measure(*Compiled(touching), Estimator::Combined, 400).mean.z(),
+              std::pow(0.5, 8) * 0.9f);
     // From the middle of both on.
     nested.root["cameras"] = {
         {{"type", "perspective"}, {"perspective", {{"yfov", 0.01}, {"znear", 0.01}}}}};
