@@ -256,7 +256,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
         own.unlink()
         self.assertEqual(process.returncode, 0, said)
         self.assertIn("Version 0.1.0, the add-on's own", said)
-        np.testing.assert_allclose(rgb(self.read("frame.0001")), rgb(self.read("plastic.lull")), atol=1e-6)
+        np.testing.assert_allclose(rgb(self.read("frame.0001")), rgb(self.read("plastic.lull")), atol=1e-5)
 
     def test_names_what_an_exception_left_out(self):
         for kind, name in ("object", "ball"), ("material", "floor"), ("light", "key"):

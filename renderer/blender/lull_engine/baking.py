@@ -15,7 +15,7 @@ from .process import Failure, ended as how_ended, run
 
 _SECOND = os.path.join(os.path.dirname(os.path.abspath(__file__)), "second.py")
 _USED = 0.6  # of an image, by the faces of an unwrapped mesh
-_FINE, _LEAST = 4, 64  # pixels of an image across one of the view, at least; of an image, at least
+_FINE, _LEAST, _AROUND = 4, 128, 16  # pixels of an image across one of the view, of an image, and across a face: at least
 _PER_PIXEL, _PER_FACE, _PER_IMAGE = 1e-6, 1.5e-5, 0.1  # seconds that bakes take, roughly
 _SHORT = 1e-6  # of the longest edge
 _NOTHING = np.zeros((4, 4, 3))
@@ -67,6 +67,8 @@ class Baker:
 
     def _size_of(self, mesh):
         wanted = max(_LEAST, _FINE * self._across(mesh))
+        if mesh.slots.max(initial=0) > 0:  # where materials meet, pixels have none
+            wanted = max(wanted, _AROUND * math.sqrt(len(mesh.starts) / _USED))
         return self.size if wanted > self.size else min(self.size, 2 ** math.ceil(math.log2(wanted)))
 
     def _across(self, mesh):

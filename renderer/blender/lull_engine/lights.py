@@ -84,6 +84,8 @@ class Lights:
         surface = output.inputs['Surface'].source if output is not None else None
         is_colour = surface is not None and surface.type != 'SHADER'
         if surface is None or is_colour and not HAS_COLOURED_LAMPS:
+            if is_colour:
+                notes.add("dark, as a colour is linked to its output", light.name, "lights")
             light.energy = 0
             return
         if not is_colour and surface.node.type != 'EMISSION':

@@ -18,7 +18,7 @@ _PRINCIPLED = {
 # Blender 3's Principled BSDF does not attenuate its base under the interface; its coat has a quarter of its weight.
 HAS_ADDED_INTERFACE = bpy.app.version < (4, 0)
 
-HAS_COLOURED_LAMPS = bpy.app.version < (3, 5)  # lamps shine whose output has a colour instead of a shader
+HAS_COLOURED_LAMPS = bpy.app.version < (3, 5)  # lamps whose output has a colour instead of a shader are as bright as others
 HAS_DIM_LAMPS = bpy.app.version < (4, 0)  # area lights by pi / 4, spot lights off their axis
 IS_PROFILE_OPEN = bpy.app.version >= (4, 0)  # the interpolation of IES profiles takes 0 behind the last angles, also around
 IS_RECT_FLAT = bpy.app.version >= (4, 0)  # the pixels of a pass
