@@ -35,7 +35,9 @@ float CoatRow::Through(float cosine) const {
     if (isSmooth)
         return (1 - FresnelDielectric(cosine, eta)) *
                std::exp(-thickness / CosineInside(cosine, eta));
-    const float x = std::clamp(cosine * kCosines - 0.5f, 0.f, float(kCosines - 1));
+    const float first = CosineAt(1);
+    if (cosine < first) return through[0] + cosine / first * (through[1] - through[0]);
+    const float x = std::min(cosine * (kCosines - 1) + 0.5f, float(kCosines - 1));
     const int i = std::min(int(x), kCosines - 2);
     const float t = x - float(i);
     return (1 - t) * through[size_t(i)] + t * through[size_t(i) + 1];
@@ -50,7 +52,7 @@ CoatRow MakeCoatRow(float alpha, float eta, float thickness) {
     };
     if (!row.isSmooth)
         for (int i = 0; i < CoatRow::kCosines; ++i) {
-            const float cosine = (float(i) + 0.5f) / CoatRow::kCosines;
+            const float cosine = CoatRow::CosineAt(i);
             const Vec3f wo(std::sqrt(1 - Sqr(cosine)), 0, cosine);
             double sum = 0;
             for (int k = 0; k < kNormals; ++k) {

@@ -14,14 +14,17 @@ namespace lull {
 
 // A coat of one roughness over a diffuse base: how much light it lets through.
 struct CoatRow {
-    static constexpr int kCosines = 16;
+    static constexpr int kCosines = 17;
 
     float eta = 1.5f, thickness = 0.01f;  // index; the light loses exp(-thickness / |cos|)
     bool isSmooth = true;
     // Share of a diffuse flux from the base that comes back to it, and that leaves.
     float returned = 0, escaping = 0;
-    // Share that reaches the base of light with a cosine of (i + 0.5) / kCosines; of rough coats.
+    // Share that reaches the base of light with a cosine of CosineAt(i); of rough coats.
     std::array<float, kCosines> through{};
+
+    // Grazing first, then the middles of 16 steps.
+    static float CosineAt(int i) { return i == 0 ? 1e-3f : (float(i) - 0.5f) / (kCosines - 1); }
 
     // Returns the share that reaches the base, of light at this cosine, > 0.
     float Through(float cosine) const;

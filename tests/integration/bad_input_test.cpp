@@ -78,9 +78,8 @@ TEST(BadInput, OfOtherProgramsIsNamed) {
         {"\x28\xb5\x2f\xfd\1\2\3"s, "it is compressed (zstd), as Blender's files are"},
         {"\x89PNG\r\n\x1a\n"s, "it is a PNG image"},
         {"some\0thing"s, "it is a binary file"},
-        {"Film \"rgb\"\n", "scene.pbrt:1: this scene is written for pbrt-v4, as its Film \"rgb\""},
-        {"WorldBegin\nMaterial \"diffuse\"\n", "scene.pbrt:2: this scene is written for pbrt-v4"},
-        {"ColorSpace \"srgb\"\n", "written for pbrt-v4, as its directive ColorSpace shows"},
+        {"Film \"rgb\"\nWorldBegin\nMaterial \"matte\"\n",
+         "scene.pbrt:3: material \"matte\" is pbrt-v3's, in a scene for pbrt-v4; write"},
         {"SurfaceIntegrator \"path\"\n",
          "written for pbrt-v2, as its directive SurfaceIntegrator shows"}};
     for (const auto& [text, message] : kFiles) {

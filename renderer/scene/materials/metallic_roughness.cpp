@@ -196,8 +196,8 @@ void MetallicRoughness::AddOwnInterface(const Rgb& f0, float f90, float eta, boo
         bsdf->Add(MicrofacetReflection<StretchedInterface, SeparableMasking>{
             Rgb(Rgb::Ones()), distribution, interface});
     else
-        bsdf->Add(MicrofacetReflection<CoatedInterface>{f0, distribution,
-                                                        CoatedInterface{Rgb(Rgb::Ones()), 1, CoatAbove(0, 0)}});
+        bsdf->Add(MicrofacetReflection<CoatedInterface>{
+            f0, distribution, CoatedInterface{Rgb(Rgb::Ones()), 1, CoatAbove(0, 0)}});
 }
 
 void MetallicRoughness::AddSolid(const MaterialInputs& in, const Rgb& reflected, Rgb through,

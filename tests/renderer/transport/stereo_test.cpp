@@ -26,7 +26,9 @@ std::unique_ptr<const Scene> SceneOfEyes(const std::vector<float>& stereo, const
         ParsePbrt(TemporaryDirectory().Write("t.pbrt", WorldText(kWorld, fmt::format(kView, lens))),
                   warnings);
     if (!stereo.empty()) SetStereo(stereo, eye, &d);
-    return Compile(d, {.threads = 1}, warnings);
+    CompileOptions options;
+    options.threads = 1;
+    return Compile(d, options, warnings);
 }
 
 std::vector<Rgb> Samples(const Scene& scene, int firstColumn, int columns) {
