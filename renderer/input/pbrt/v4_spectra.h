@@ -2,6 +2,7 @@
 // wavelengths would show them in the light of D65.
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
