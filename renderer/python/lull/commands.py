@@ -71,7 +71,7 @@ def render(scene, *, progress=None, **options):
     A KeyboardInterrupt ends it early, with the current image.
 
     Args:
-        scene: a file of pbrt-v3 or glTF.
+        scene: a file of pbrt or glTF.
         progress: a function that is called with each event of --json-progress; None: a line in a
             terminal or a notebook; False: nothing.
         **options: those of `lull render`, with _ for -: resolution=(400, 300), denoise=True. Files
@@ -107,7 +107,7 @@ def compare(scene=None, *, progress=None, **options):
     """Compares the images of a rule, of people and of the most samples.
 
     Args:
-        scene: a file of pbrt-v3 or glTF; None: images=FOLDER names pictures of another renderer,
+        scene: a file of pbrt or glTF; None: images=FOLDER names pictures of another renderer,
             or automatic=, human= and reference= images that were rendered before.
         progress: as for render().
         **options: those of `lull compare`, with _ for -.
