@@ -81,7 +81,7 @@ CoatRow MakeCoatRow(float alpha, float eta, float thickness) {
                            MaskingOfSecond(distribution, w, o) * attenuation(w) * attenuation(o));
     }
     row.returned = float(returned / kDirections);
-    // By reciprocity it is what a diffuse light lets through.
+    // By reciprocity, the transmittance to a diffuse light.
     constexpr int kSteps = 256;
     for (int i = 0; i < kSteps; ++i) {
         const float cosine = (float(i) + 0.5f) / kSteps;
@@ -328,7 +328,7 @@ Shares SharesOf(const CoatedConductorLobe& lobe, float cosine) {
     return {coat, 0.9f * (1 - coat), 0.1f * (1 - coat)};
 }
 
-// Slopes of the base are seen multiplied by the index, those of the coat by its distance from 1.
+// The view multiplies slopes of the base by the index, slopes of the coat by its distance from 1.
 TrowbridgeReitz SeenBase(const CoatedConductorLobe& lobe) {
     const auto along = [&](int i) {
         const float coat = float(lobe.coatAlpha[i]) / CoatedConductorLobe::kAlphaUnits;

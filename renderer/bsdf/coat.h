@@ -137,7 +137,7 @@ struct CoatedDiffuseLobe {
     }
 };
 
-// A smooth conductor under a smooth coat, whose directions are those of a mirror.
+// A smooth conductor under a smooth coat, which reflects into the direction of a mirror.
 struct CoatedConductorInterface {
     float eta, thickness;  // of the coat
     StoredRgb n, k;        // of the conductor relative to the coat

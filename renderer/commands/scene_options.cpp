@@ -64,6 +64,18 @@ bool ParseOrbit(const std::string& text, std::optional<std::array<float, 2>>* or
     return valid;
 }
 
+bool ParseStereo(const std::string& text, std::vector<float>* stereo) {
+    std::array<float, 1> distance;
+    std::array<float, 2> both = {0, 0};
+    if (ParseNumbers(text, ',', &distance))
+        both[0] = distance[0];
+    else if (!ParseNumbers(text, ',', &both))
+        return false;
+    if (!(both[0] > 0) || !(both[1] >= 0) || !(both[0] + both[1] < 1e6f)) return false;
+    *stereo = {both[0], both[1]};
+    return true;
+}
+
 // Turns "a bad value" into the error message of an option.
 template <typename T>
 auto Checked(bool (*parse)(const std::string&, T*), T* value, const std::string& wanted) {
@@ -129,19 +141,9 @@ void AddEnvironmentOptions(CLI::App& app, SceneOptions* options) {
 void AddStereoOptions(CLI::App& app, SceneOptions* options) {
     auto* stereo = app.add_option_function<std::string>(
                           "--stereo",
-                          [options](const std::string& text) {
-                              std::array<float, 2> both = {0, 0};
-                              std::array<float, 1> one;
-                              const bool hasOne = ParseNumbers(text, ',', &one);
-                              if (hasOne) both[0] = one[0];
-                              if ((!hasOne && !ParseNumbers(text, ',', &both)) || !(both[0] > 0) ||
-                                  !(both[1] >= 0) || !(both[0] + both[1] < 1e6f))
-                                  throw CLI::ValidationError(
-                                      text,
-                                      "is not D or D,C: the distance of the eyes, above 0, and the "
-                                      "distance where both see the same");
-                              options->stereo = {both[0], both[1]};
-                          },
+                          Checked(ParseStereo, &options->stereo,
+                                  "D or D,C: the distance of the eyes, above 0, and the distance "
+                                  "where both see the same"),
                           "Render a pair for two eyes, D apart, that see the same at the distance "
                           "C [parallel]")
                        ->group("Scene")

@@ -60,7 +60,7 @@ void KeepSmallLamps(Halves* emission) {
                 if (half->Plane(c)[i] != 0) half->Plane(c)[i] = 0;
 }
 
-// Lowers the variance of the mean, where it is known, to that of what is left of a pixel.
+// Lowers the variance of the mean, where it is known, to the variance of the rest of a pixel.
 void ForgetVariance(const Halves& rest, size_t pixel, Planes* ofMean) {
     if (ofMean->count == 0) return;
     const float difference = LuminanceOf(rest.a, pixel) - LuminanceOf(rest.b, pixel);

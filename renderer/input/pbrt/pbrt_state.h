@@ -40,7 +40,7 @@ class ScopedNames {
 // Which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
-// The kinds of entity of a scene. Attribute names the last five.
+// The kinds of entity of a scene.
 enum class EntityKind {
     Accelerator,
     Camera,

@@ -136,8 +136,8 @@ TEST_P(Panes, HaveTheMeanOfBidirectionalPaths) {
     const std::string half =
         "Material \"metallicroughness\" \"float metallicfactor\" [.2] \"float roughnessfactor\" "
         "[0] \"float transmissionfactor\" [.5] \"rgb basecolorfactor\" [.9 .6 .3]";
-    // A light that is not seen has another weight in bdpt.
-    if (std::string(GetParam().name) == "Hidden") GTEST_SKIP();
+    if (std::string(GetParam().name) == "Hidden")
+        GTEST_SKIP() << "a light that is not seen has another weight in bdpt";
     for (const int depth : {1, 5})
         for (const std::string& roof : {Roof(glass) + Roof(coated, 1.1), Roof(half)})
             Compare(BothOf(GetParam().lights + kBox + roof, 16, depth, kCamera), 8, 16,
