@@ -28,11 +28,6 @@ HardCaseResult WhiteFurnace(const HardCaseOptions& options) {
                            "relative 1e-4, no roulette");
 }
 
-HardCaseResult WhiteFurnaceWithRoulette(const HardCaseOptions& options) {
-    const auto scene = MakeScene(Furnace(1, 1000));
-    return CompareRadiance(*scene, 1001, 1e-4, options.isLong ? 2000 : 32, options);
-}
-
 HardCaseResult NearlyWhiteFurnace(const HardCaseOptions& options) {
     const auto scene = MakeScene(Furnace(0.99, 1000));
     const double answer = (1 - std::pow(0.99, 1001)) / (1 - 0.99);
@@ -57,8 +52,6 @@ HardCaseResult MirrorHall(const HardCaseOptions& options) {
 std::vector<HardCase> EnergyCases() {
     return {{"energy", "white furnace, albedo 1, depth 1,000",
              "energy leaks a little at each bounce; depth is counted wrongly", WhiteFurnace},
-            {"energy", "white furnace with Russian roulette",
-             "roulette that is not made up for, or never ends", WhiteFurnaceWithRoulette},
             {"energy", "furnace of albedo 0.99, depth 1,000",
              "long paths are cut off for good or weighed twice", NearlyWhiteFurnace},
             {"energy", "hall of mirrors, about 300 reflections",

@@ -14,8 +14,7 @@ std::vector<HardCase> AllHardCases() {
     std::vector<HardCase> all;
     for (const auto& theme :
          {EnergyCases, ScaleCases, DegenerateCases, DielectricCases, RoughnessCases, LightCases,
-          AccumulationCases, ImageSizeCases, SignalCases, HeavyTailCases, SparsePointCases,
-          DenoisingCases, StructureCases, RandomCases}) {
+          SignalCases, HeavyTailCases, SparsePointCases, DenoisingCases}) {
         std::vector<HardCase> cases = theme();
         std::move(cases.begin(), cases.end(), std::back_inserter(all));
     }

@@ -39,14 +39,10 @@ std::vector<HardCase> DegenerateCases();
 std::vector<HardCase> DielectricCases();
 std::vector<HardCase> RoughnessCases();
 std::vector<HardCase> LightCases();
-std::vector<HardCase> AccumulationCases();
-std::vector<HardCase> ImageSizeCases();
 std::vector<HardCase> SignalCases();
 std::vector<HardCase> HeavyTailCases();
 std::vector<HardCase> SparsePointCases();
 std::vector<HardCase> DenoisingCases();
-std::vector<HardCase> StructureCases();
-std::vector<HardCase> RandomCases();
 
 // Returns the result that is furthest out of its tolerance, or closest to it. At least one.
 HardCaseResult Worst(std::span<const HardCaseResult> results);

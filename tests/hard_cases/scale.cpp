@@ -43,7 +43,7 @@ std::unique_ptr<const Scene> Box(const Placement& place) {
 // Rays from anywhere inside a closed box, a quarter of them at its edges.
 HardCaseResult WatertightBox(const HardCaseOptions& options) {
     Failures escapes;
-    const int64_t rays = options.isLong ? 100'000'000 : 1'500'000;
+    const int64_t rays = options.isLong ? 100'000'000 : 500'000;
     for (const Placement& place : kPlacements) {
         const auto scene = Box(place);
         test::Random random(options.seed + 1000 * (&place - kPlacements));
@@ -65,7 +65,7 @@ HardCaseResult WatertightBox(const HardCaseOptions& options) {
 // in its edges and corners.
 HardCaseResult WatertightPaths(const HardCaseOptions& options) {
     Failures escapes;
-    const int64_t rays = options.isLong ? 100'000'000 : 1'500'000;
+    const int64_t rays = options.isLong ? 100'000'000 : 500'000;
     for (const Placement& place : kPlacements) {
         const auto scene = Box(place);
         test::Random random(options.seed + 1000 * (&place - kPlacements));
