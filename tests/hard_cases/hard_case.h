@@ -30,14 +30,11 @@ struct HardCase {
     std::function<HardCaseResult(const HardCaseOptions&)> run;
 };
 
-// Lists all cases, theme by theme. The files of this folder hold one theme each.
+// Lists all cases, theme by theme.
 std::vector<HardCase> AllHardCases();
 
-std::vector<HardCase> EnergyCases();
-std::vector<HardCase> ScaleCases();
-std::vector<HardCase> DegenerateCases();
-std::vector<HardCase> DielectricCases();
-std::vector<HardCase> RoughnessCases();
+std::vector<HardCase> MaterialCases();
+std::vector<HardCase> GeometryCases();
 std::vector<HardCase> LightCases();
 std::vector<HardCase> SignalCases();
 std::vector<HardCase> HeavyTailCases();
