@@ -200,7 +200,7 @@ def punctual(light):
 
 
 def sun(said):
-    """Returns a sun of the world, and where it is; `said` is sun.take()'s."""
+    """Returns a sun of the world, and where it is; `said` is one of those of world.write()."""
     light = SimpleNamespace(name="environment", type='SUN', energy=said["energy"], color=said["color"], own={"angle": said["angle"]})
     return light, Matrix([said["matrix"][i:i + 4] for i in range(0, 16, 4)])
 

@@ -1,5 +1,5 @@
 """Materials as parameters of a surface: plain values, or outputs of nodes."""
-from . import displacement, images, seen, values
+from . import displacement, images, values
 from .bsdfs import DEFAULTS, READERS, bounced
 from .mixtures import added, mixed
 from .nodes import Constant, Tree, is_output, upstream, value_of
@@ -43,7 +43,7 @@ class Surface:
         """Lets nodes have what is known of strands, of the camera, and of images without a file; see nodes.Tree."""
         path = images.missing(node.image) if node.type == 'TEX_IMAGE' else None
         if path is None:
-            return values.strand(node, name) or seen.replaced(node, name, self._view)
+            return values.strand(node, name) or values.of_camera(node, name, self._view)
         if path:
             self._notes.add("magenta, as in Cycles, as there is no such file", f"{node.image.name} ({path})", "images")
         return Constant((1., 0., 1.)).output(0, 'RGBA') if name == 'Color' else Constant(1.).output()
