@@ -15,6 +15,12 @@ class Notes:
         """Notes that `name`, of a kind in the plural, will be so."""
         self._names.setdefault((kind, consequence), []).append(name)
 
+    def add_true(self, consequences, name, kind="objects"):
+        """Notes the consequences whose values are true."""
+        for consequence, is_so in consequences.items():
+            if is_so:
+                self.add(consequence, name, kind)
+
     def say(self, sentence):
         if sentence not in self._sentences:
             self._sentences.append(sentence)

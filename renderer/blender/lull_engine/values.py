@@ -1,5 +1,5 @@
 """Values of surfaces' parameters: numbers, colours as three numbers, and outputs of nodes. What is made of outputs are nodes of our own."""
-from .nodes import Made, is_output, upstream
+from .nodes import Made, computed, is_output, upstream
 from .strands import STRANDS
 
 # What depends on the direction from which a surface is seen, or on who asks.
@@ -72,7 +72,7 @@ def clamped(factor):
 
 def number(value):
     """Returns the number that nodes make of an output of a colour or vector."""
-    return Made('Math', 'MATH', value, 0.0, operation='ADD').output()
+    return computed('ADD', value, 0.0)
 
 
 def strand(node, name):
@@ -81,7 +81,7 @@ def strand(node, name):
         return None
     parts = Made('SeparateXYZ', 'SEPXYZ', Made('UVMap', 'UVMAP', uv_map=STRANDS).output(0, 'VECTOR'))
     if name == 'Is Strand':
-        return Made('Math', 'MATH', parts.output(0), 0.0, operation='GREATER_THAN').output()
+        return computed('GREATER_THAN', parts.output(0), 0.0)
     return parts.output(1 if name == 'Intercept' else 0)
 
 
@@ -107,10 +107,6 @@ def of_camera(node, name, view):
     return None
 
 
-def _math(operation, a, b):
-    return Made('Math', 'MATH', a, b, operation=operation).output()
-
-
 def _vector(*parts):
     return Made('CombineXYZ', 'COMBXYZ', *parts).output(0, 'VECTOR')
 
@@ -123,14 +119,14 @@ def _vectors(operation, *values):
 def _turned(vector, view, is_point):
     """Returns the three coordinates along the axes of the camera, the last one forwards."""
     rows = view.matrix.normalized().inverted()
-    return [_math('ADD', _vectors('DOT_PRODUCT', vector, tuple(sign * v for v in row[:3])), sign * row[3] * is_point)
+    return [computed('ADD', _vectors('DOT_PRODUCT', vector, tuple(sign * v for v in row[:3])), sign * row[3] * is_point)
             for sign, row in zip((1, 1, -1), rows)]
 
 
 def _in_frame(at, view):
     """Returns where in the picture, from its lower left corner to its upper right one."""
-    apart = [a if view.data.type == 'ORTHO' else _math('DIVIDE', a, at[2]) for a in at[:2]]
-    return _vector(*(_math('ADD', _math('DIVIDE', a, size), 0.5 - shift)
+    apart = [a if view.data.type == 'ORTHO' else computed('DIVIDE', a, at[2]) for a in at[:2]]
+    return _vector(*(computed('ADD', computed('DIVIDE', a, size), 0.5 - shift)
                      for a, size, shift in zip(apart, view.extent(), view.shift())), 0.)
 
 

@@ -65,8 +65,7 @@ class _Room:
         focus = self._what["focus"]
         if focus is not None:
             data.dof.focus_object, data.dof.focus_distance = None, focus
-        rows = self._what["matrix"]
-        camera.matrix_world = Matrix([rows[i:i + 4] for i in range(0, 16, 4)])
+        camera.matrix_world = Matrix(self._what["matrix"])
         return camera
 
     def pixels(self, world, camera, size):
@@ -147,4 +146,4 @@ def _sun(node, disc, camera, axes):
     middle = axes @ Vector(((x * weights).sum(), (y * weights).sum(), -1))
     angle = min(node.sun_size, 2 * math.sqrt(solid_angles[disc.sum(2) > 0].sum() / math.pi))
     return {"energy": float(irradiance.max()), "color": [float(c) for c in irradiance / irradiance.max()], "angle": float(angle),
-            "matrix": [v for row in middle.to_track_quat('Z', 'Y').to_matrix().to_4x4() for v in row]}
+            "matrix": [list(row) for row in middle.to_track_quat('Z', 'Y').to_matrix().to_4x4()]}
