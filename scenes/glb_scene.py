@@ -5,9 +5,73 @@ its sign.
 """
 import array
 import contextlib
+import json
 import math
+import struct
 
-from make import Glb
+
+class Glb:
+    """Collects a glTF scene and writes it as one .glb file."""
+
+    def __init__(self):
+        self.data = b''
+        self.root = {'asset': {'version': '2.0', 'generator': 'glb_scene.py'}, 'scene': 0,
+                     'scenes': [{'nodes': []}], 'extensionsUsed': ['KHR_mesh_quantization'],
+                     'extensionsRequired': ['KHR_mesh_quantization']}
+
+    def add(self, kind, **entry):
+        self.root.setdefault(kind, []).append(entry)
+        return len(self.root[kind]) - 1
+
+    def view(self, data, **more):
+        self.data += bytes(-len(self.data) % 4)
+        self.data += data
+        return self.add('bufferViews', buffer=0, byteOffset=len(self.data) - len(data),
+                        byteLength=len(data), **more)
+
+    def texture(self, picture):
+        image = self.add('images', bufferView=self.view(picture), mimeType='image/png')
+        return self.add('textures', source=image)
+
+    def material(self, name, color, metallic=0, roughness=.5, extensions=None, **more):
+        for extension in extensions or {}:
+            if extension not in self.root['extensionsUsed']:
+                self.root['extensionsUsed'].append(extension)
+        pbr = {'baseColorFactor': [*color, 1], 'metallicFactor': metallic,
+               'roughnessFactor': roughness}
+        pbr.update(more.pop('pbr', {}))
+        if extensions:
+            more['extensions'] = extensions
+        return self.add('materials', name=name, pbrMetallicRoughness=pbr, **more)
+
+    def look(self, eye, at, **entry):
+        """Adds a node that looks along its -z, as cameras and lights do."""
+        def unit(v):
+            length = math.sqrt(sum(c * c for c in v))
+            return [c / length for c in v]
+
+        def cross(a, b):
+            return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+        back = unit([e - a for e, a in zip(eye, at)])
+        right = unit(cross((0, 1, 0), back))
+        axes = [right, cross(back, right), back]
+        self.node(matrix=[round(v, 6) for axis in axes for v in (*axis, 0)] + [*eye, 1], **entry)
+
+    def node(self, **entry):
+        nodes = self.root['scenes'][0]['nodes']
+        nodes.append(self.add('nodes', **entry))
+        return nodes[-1]
+
+    def write(self, path):
+        self.data += bytes(-len(self.data) % 4)
+        self.root['buffers'] = [{'byteLength': len(self.data)}]
+        text = json.dumps(self.root, separators=(',', ':')).encode()
+        text += b' ' * (-len(text) % 4)
+        with open(path, 'wb') as f:
+            f.write(b'glTF' + struct.pack('<II', 2, 28 + len(text) + len(self.data)) +
+                    struct.pack('<I', len(text)) + b'JSON' + text +
+                    struct.pack('<I', len(self.data)) + b'BIN\0' + self.data)
 
 
 def subdivided(points, triangles):

@@ -10,7 +10,7 @@ import struct
 import zlib
 
 from glb_scene import GlbScene
-from make import png
+from images import png
 
 LUMENS = 683  # per watt, which lull divides by
 SOLAR = (17, 13.8, 9.8)
@@ -48,7 +48,7 @@ def read_materials(text):
 
 
 def grey_image(data):
-    """Returns width, height and values in [0, 1] of a PNG as make.py writes it: 8 bits, one channel, no filters."""
+    """Returns width, height and values in [0, 1] of a PNG as png() writes it: 8 bits, one channel, no filters."""
     width, height = struct.unpack('>II', data[16:24])
     packed = b''.join(data[m.end():m.end() + struct.unpack('>I', data[m.start() - 4:m.start()])[0]]
                       for m in re.finditer(b'IDAT', data))

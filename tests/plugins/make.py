@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes pbrt-v3's own renders of scenes that show one of its plug-ins each, and compares them with lull's.
+"""Renders the scenes of single plug-ins of pbrt-v3, scenes/NAME.pbrt, with pbrt-v3, and tabulates lull's deviations.
 
-    make.py references PBRT [NAME...]  renders scenes/NAME.pbrt (all, or those named) into references/NAME.exr
+    make.py references PBRT [NAME...]  renders them (those named) into references/NAME.exr
     make.py table PROGRAM [SAMPLES]    runs lull_plugins_tests with SAMPLES (256), writes plugins.csv and prints the ranges
 
 PBRT is a pbrt-v3 whose film has been told to write moments: where the environment variable
@@ -11,15 +11,16 @@ samples, as seven doubles, row by row, for box-filtered pixels. References hold 
 """
 import csv
 import os
+import pathlib
 import re
 import struct
 import subprocess
 import sys
 import tempfile
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-SCENES = sorted(name[:-5] for name in os.listdir(os.path.join(HERE, 'scenes')) if name.endswith('.pbrt'))
-SIZE = 32  # pixels a side, as in all scenes
+HERE = pathlib.Path(__file__).resolve().parent
+SCENES = sorted(path.stem for path in (HERE / 'scenes').glob('*.pbrt'))
+SIZE = 32
 
 
 def write_exr(path, pixels, samples):
@@ -51,44 +52,11 @@ def write_exr(path, pixels, samples):
 def render_reference(pbrt, name):
     with tempfile.TemporaryDirectory() as scratch:
         moments = os.path.join(scratch, 'moments')
-        path = os.path.join(HERE, 'scenes', name + '.pbrt')
-        environment = {**os.environ, 'PBRT_MOMENTS': moments}
-        subprocess.run([pbrt, '--nthreads', '1', '--quiet', '--outfile', os.path.join(scratch, 'o.pfm'), path],
-                       check=True, env=environment)
+        subprocess.run([pbrt, '--nthreads', '1', '--quiet', '--outfile', os.path.join(scratch, 'o.pfm'), HERE / f'scenes/{name}.pbrt'],
+                       check=True, env={**os.environ, 'PBRT_MOMENTS': moments})
         with open(moments, 'rb') as file:
             values = list(struct.iter_unpack('<7d', file.read()))
-    folder = os.path.join(HERE, 'references')
-    os.makedirs(folder, exist_ok=True)
-    write_exr(os.path.join(folder, name + '.exr'),
-              [values[y * SIZE:(y + 1) * SIZE] for y in range(SIZE)], int(values[0][6]))
-
-
-# What scenes show where their names do not say it.
-SHOWN = {
-    'camera-realistic': 'camera realistic, wide open',
-    'camera-realistic-exposed': 'camera realistic, weights by exposure',
-    'light-cylinder': 'diffuse area light, a cylinder',
-    'material-disney': 'material disney, reflecting',
-    'material-disney-below': 'material disney, scatterdistance',
-    'material-disney-glass': 'material disney, spectrans',
-    'material-disney-thin': 'material disney, thin',
-    'material-hair': 'material hair, on quadrics',
-    'material-hair-curves': 'material hair, on curves',
-    'material-subsurface': 'material subsurface, smooth',
-    'material-subsurface-rough': 'material subsurface, rough',
-    'medium-camera': 'medium homogeneous, about camera and lights',
-    'medium-endless': 'medium homogeneous, without an end',
-    'medium-grid': 'medium heterogeneous',
-    'motion-camera': 'ActiveTransform of the camera',
-    'motion-instance': 'ActiveTransform of instances',
-    'motion-shape': 'ActiveTransform of shapes',
-    'shape-curve': 'shape curve: flat, cylinder, ribbon; splitdepth',
-    'shape-curve-stretched': 'shape curve, under a transform that stretches',
-}
-
-
-COLUMNS = ['plug-in', 'scene'] + [f'{figure}, {estimator}' for estimator in ('pbrt-v3', 'combined') for figure in (
-    'energy', 'standard errors', '% of pixels out', '% of tiles out')]
+    write_exr(HERE / f'references/{name}.exr', [values[y * SIZE:(y + 1) * SIZE] for y in range(SIZE)], int(values[0][6]))
 
 
 def write_table(program, samples):
@@ -102,15 +70,16 @@ def write_table(program, samples):
     missing = set(SCENES) - set(found)
     if missing:
         sys.exit('not in the output: ' + ' '.join(sorted(missing)))
-    rows = []
-    for name, by in sorted(found.items()):
-        both = [by[estimator] for estimator in ('pbrt-v3', 'combined')]
-        rows.append([SHOWN.get(name, name.replace('-', ' ', 1)), name, *(figure for one in both for figure in one)])
-    with open(os.path.join(HERE, 'plugins.csv'), 'w', newline='') as file:
-        csv.writer(file, lineterminator='\n').writerows([COLUMNS, *rows])
-    for column in range(2, len(COLUMNS)):
+    table = HERE / 'plugins.csv'
+    with open(table, newline='') as file:
+        columns, *old = csv.reader(file)
+    shown = {row[1]: row[0] for row in old}
+    rows = [[shown.get(name, name.replace('-', ' ', 1)), name, *by['pbrt-v3'], *by['combined']] for name, by in sorted(found.items())]
+    with open(table, 'w', newline='') as file:
+        csv.writer(file, lineterminator='\n').writerows([columns, *rows])
+    for column in range(2, len(columns)):
         values = [float(row[column]) for row in rows]
-        print(f'{COLUMNS[column]}: {min(values)} to {max(values)}, {len(rows)} scenes, {samples} spp')
+        print(f'{columns[column]}: {min(values)} to {max(values)}, {len(rows)} scenes, {samples} spp')
 
 
 def main():

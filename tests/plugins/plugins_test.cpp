@@ -1,4 +1,4 @@
-// Compares renders of small scenes, which show one plug-in each, with pbrt-v3's own (by make.py):
+// Compares renders of small scenes, which show one plug-in each, with pbrt-v3's own (make.py):
 // energy, tiles and pixels by Z-tests with both variances known.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -88,11 +88,7 @@ TEST_P(Plugins, LookAsInPbrt) {
     const auto scene = Load(GetParam());
     const PixelStatistics theirs = LoadReference(GetParam());
     const int samples = FromEnvironment("LULL_PLUGIN_SAMPLES", 256);
-    // Lights, materials and media are what estimators treat differently.
-    const bool hasBoth = std::getenv("LULL_PLUGIN_SAMPLES") || GetParam()[0] == 'l' ||
-                         GetParam().starts_with("ma") || GetParam().starts_with("me");
     for (const Estimator estimator : {Estimator::PbrtV3, Estimator::Combined}) {
-        if (estimator == Estimator::PbrtV3 && !hasBoth) continue;
         const PixelStatistics ours =
             MeasurePixels(*scene, estimator, SamplerKind::Random, samples, 7);
         const Comparison c = Compare(ours, theirs);

@@ -14,12 +14,12 @@ import struct
 import sys
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / 'scenes'))
-import make  # noqa: E402
+import glb_scene  # noqa: E402
 
 MATTE = {'KHR_materials_specular': {'specularFactor': 0}}
 
 
-class Glb(make.Glb):
+class Glb(glb_scene.Glb):
     """Collects a scene: a matte floor and wall, a lamp above, a camera, and further objects."""
 
     def __init__(self):

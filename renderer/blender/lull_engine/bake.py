@@ -184,7 +184,7 @@ def _liken(o, what):
     o.name, o.color, o.pass_index = what["name"], what["color"], what["pass_index"]
     for name, value in what["properties"].items():
         o[name] = value
-    o.matrix_world = matrix = shown.Matrix([what["matrix"][i:i + 4] for i in range(0, 16, 4)])
+    o.matrix_world = matrix = shown.Matrix(what["matrix"])
     if shown.is_sheared(matrix):
         o.parent = bpy.data.objects.get("lull parent") or bpy.data.objects.new("lull parent", None)
         o.matrix_parent_inverse = matrix

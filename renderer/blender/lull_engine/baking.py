@@ -38,13 +38,9 @@ class Baker:
             if known is None or (s.matrix.translation - eye).length < (known.translation - eye).length:
                 self._nearest[s.mesh] = s.matrix
 
-    def plain(self, place, output):
-        """Returns the R, G, B of an output that is the same everywhere, of the tree of a data-block."""
-        return self._ask((output, 'all'), place, output, {"over": 'all'}, np.zeros(3))
-
-    def of_object(self, place, output, shown):
-        """Returns the R, G, B of an output that is the same all over an object."""
-        return self._ask((output, shown), place, output, {"over": 'all', "object": _object(shown)}, np.zeros(3))
+    def plain(self, place, output, shown=None):
+        """Returns the R, G, B of an output that is the same everywhere, or all over an object, of the tree of a data-block."""
+        return self._ask((output, shown), place, output, {"over": 'all', "object": shown and _object(shown)}, np.zeros(3))
 
     def over_uvs(self, place, output, names, size):
         """Returns the pixels over a square, whose UV layers have these names."""
@@ -194,7 +190,7 @@ def _object(shown):
     """Returns what materials may ask of an object."""
     o = shown.original
     plain = {n: v for n, v in o.items() if isinstance(v, (int, float, str)) or hasattr(v, "to_list")}
-    return {"name": o.name, "matrix": [v for row in shown.matrix for v in row], "color": list(o.color), "pass_index": o.pass_index,
+    return {"name": o.name, "matrix": [list(row) for row in shown.matrix], "color": list(o.color), "pass_index": o.pass_index,
             "properties": {n: v.to_list() if hasattr(v, "to_list") else v for n, v in plain.items()}}
 
 

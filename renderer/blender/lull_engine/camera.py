@@ -7,6 +7,12 @@ from .process import Failure
 from .shown import is_sheared
 
 
+def resolution(render):
+    """Returns the width and height of the whole picture, in pixels."""
+    scale = render.resolution_percentage / 100
+    return int(render.resolution_x * scale), int(render.resolution_y * scale)
+
+
 class View:
     """What the camera of an evaluated scene sees. Raises: Failure."""
 

@@ -3,7 +3,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import displacement, materials, meshes, panes, solids
+from . import displacement, materials, meshes, solids
 from .surfaces import Surface, state_of
 
 
@@ -161,7 +161,7 @@ def make_sheets(shown, parts, notes):
             continue
         mesh = s.mesh
         if mesh not in sheets:
-            sheets[mesh] = panes.sheet(mesh, np.array(s.matrix), parts[mesh])
+            sheets[mesh] = solids.sheet(mesh, np.array(s.matrix), parts[mesh])
         if sheets[mesh] is not None:
             s.mesh, material = sheets[mesh]
             parts[s.mesh] = [Part(material, 0)]

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from . import exr, passes
+from .camera import resolution
 from .export import export
 from .process import Failure, Render, ended
 from .program import find_lull
@@ -150,8 +151,7 @@ class _Job:
 
     def _measure(self, render):
         """Sets the size of the whole image and the rendered part, in fractions."""
-        scale = render.resolution_percentage / 100
-        self.whole = int(render.resolution_x * scale), int(render.resolution_y * scale)
+        self.whole = resolution(render)
         self.crop, self.size, self.corner = None, self.whole, (0, 0)  # the corner is the lower left one
         if render.use_border:
             # In single precision, as Blender has it: 0.9 of 40 pixels are 36.

@@ -10,8 +10,7 @@ from .baking import Baker
 from .camera import View
 from .glb import Writer
 from .images import Images
-from .limits import limits, note_film
-from .notes import Notes
+from .notes import Notes, limits, note_film
 from .shown import Collector, is_flat, is_sheared
 from .surroundings import Surroundings
 from .versions import not_tested

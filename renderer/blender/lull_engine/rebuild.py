@@ -19,7 +19,7 @@ def built(tree, described):
             setattr(node, name, value)
         if rows := item.get("object"):  # which may be moved by what is in the session alone
             node.object = bpy.data.objects.new("lull place", None)
-            node.object.matrix_world = Matrix([rows[i:i + 4] for i in range(0, 16, 4)])
+            node.object.matrix_world = Matrix(rows)
         for socket, value in zip(node.inputs, item["inputs"]):
             if "from" in value:
                 tree.links.new(_output(made, *value["from"]), socket)

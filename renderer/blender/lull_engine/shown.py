@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from mathutils import Matrix
 
 from . import meshes, normals, strands
+from .nodes import all_nodes
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE',
            'GPENCIL', 'GREASEPENCIL'}  # which Blender draws over pictures of all engines
-_BOUNCES = "diffuse", "glossy", "transmission"
-SEEING_RAYS = "camera", "volume_scatter", *_BOUNCES
+BOUNCES = "diffuse", "glossy", "transmission"
+SEEING_RAYS = "camera", "volume_scatter", *BOUNCES
 _TEXTURES = {'TEX_NOISE', 'TEX_MUSGRAVE', 'TEX_VORONOI', 'TEX_WAVE', 'TEX_MAGIC', 'TEX_CHECKER', 'TEX_BRICK', 'TEX_GRADIENT'}
 
 
@@ -186,7 +187,7 @@ def is_flat(matrix):
 
 def _asks(tree, is_copy):
     """Returns whether nodes tell objects apart, or copies of one."""
-    for node in tree.nodes:
+    for node in all_nodes(tree):
         used = {o.name for o in node.outputs if o.is_linked}
         is_placed = node.type == 'NEW_GEOMETRY' and 'Position' in used or \
             node.type == 'TEX_COORD' and (node.object and 'Object' in used or used & {'Camera', 'Window'}) or node.type == 'CAMERA'
@@ -195,7 +196,7 @@ def _asks(tree, is_copy):
         is_copied = is_copy and (node.type == 'PARTICLE_INFO' and used or
                                  node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER' or
                                  getattr(node, "from_instancer", False) and used)
-        if is_placed or is_named or is_copied or node.type == 'GROUP' and node.node_tree and _asks(node.node_tree, is_copy):
+        if is_placed or is_named or is_copied:
             return True
     return False
 
@@ -206,24 +207,21 @@ def reads_generated(node):
 
 
 def _asks_generated(tree):
-    return any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n) or
-               n.type == 'GROUP' and n.node_tree and _asks_generated(n.node_tree) for n in tree.nodes)
+    return any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n) for n in all_nodes(tree))
 
 
 def _note_of(original, notes):
-    for system in original.particle_systems:
-        settings = system.settings
-        if settings.render_type in ('LINE', 'HALO') or settings.type != 'HAIR' and settings.render_type == 'PATH':
-            notes.add("without particles that are lines or points", original.name)
-    if getattr(original.cycles, "use_adaptive_subdivision", False):
-        notes.add("subdivided as its modifier says, not adaptively", original.name)
-    if original.is_shadow_catcher or original.is_holdout:
-        notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
-    if not all(is_seen(original, (ray,)) for ray in _BOUNCES):
-        notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
     offset = getattr(original, "shadow_terminator_shading_offset", 0) or getattr(original.cycles, "shadow_terminator_offset", 0)
-    if offset > 0 and any(p.use_smooth for p in getattr(original.data, "polygons", ())):
-        notes.add("brighter near the edge of its own shadow, without its Shading Offset", original.name)
+    notes.add_true({
+        "without particles that are lines or points": any(
+            s.render_type in ('LINE', 'HALO') or s.type != 'HAIR' and s.render_type == 'PATH'
+            for s in (system.settings for system in original.particle_systems)),
+        "subdivided as its modifier says, not adaptively": getattr(original.cycles, "use_adaptive_subdivision", False),
+        "shown as surfaces, not as shadow catchers or holdouts": original.is_shadow_catcher or original.is_holdout,
+        "seen by light that other surfaces reflect, whatever its visibility": not all(is_seen(original, (ray,)) for ray in BOUNCES),
+        "brighter near the edge of its own shadow, without its Shading Offset":
+            offset > 0 and any(p.use_smooth for p in getattr(original.data, "polygons", ())),
+    }, original.name)
     note_linking(original, notes)
 
 

@@ -1,5 +1,5 @@
 """Values of surfaces' parameters: numbers, colours as three numbers, and outputs of nodes. What is made of outputs are nodes of our own."""
-from .nodes import Made, is_output, upstream
+from .nodes import Made, computed, is_output, upstream
 from .strands import STRANDS
 
 # What depends on the direction from which a surface is seen, or on who asks.
@@ -72,7 +72,7 @@ def clamped(factor):
 
 def number(value):
     """Returns the number that nodes make of an output of a colour or vector."""
-    return Made('Math', 'MATH', value, 0.0, operation='ADD').output()
+    return computed('ADD', value, 0.0)
 
 
 def strand(node, name):
@@ -81,8 +81,53 @@ def strand(node, name):
         return None
     parts = Made('SeparateXYZ', 'SEPXYZ', Made('UVMap', 'UVMAP', uv_map=STRANDS).output(0, 'VECTOR'))
     if name == 'Is Strand':
-        return Made('Math', 'MATH', parts.output(0), 0.0, operation='GREATER_THAN').output()
+        return computed('GREATER_THAN', parts.output(0), 0.0)
     return parts.output(1 if name == 'Intercept' else 0)
+
+
+def of_camera(node, name, view):
+    """Replaces an output that depends on the camera (camera.View) by nodes of the place; see nodes.Tree. In Cycles, too, it is the same for
+    all rays."""
+    if node.type == 'TEX_COORD' and name in ('Camera', 'Window') or node.type == 'CAMERA':
+        at = _turned(Made('NewGeometry', 'NEW_GEOMETRY').output(0, 'VECTOR', "Position"), view, 1)
+        if name == 'Window':
+            return _in_frame(at, view)
+        if name == 'View Z Depth':
+            return at[2]
+        made = _vector(*at)
+        if node.type == 'TEX_COORD':
+            return made
+        return _vectors('NORMALIZE' if name == 'View Vector' else 'LENGTH', made)
+    if node.type == 'VECT_TRANSFORM' and node.convert_to == 'CAMERA' != node.convert_from:
+        source = node.inputs[0].source or node.inputs[0].default_value
+        in_world = Made('VectorTransform', 'VECT_TRANSFORM', source, vector_type=node.vector_type, convert_from=node.convert_from,
+                        convert_to='WORLD').output(0, 'VECTOR')
+        made = _vector(*_turned(in_world, view, node.vector_type == 'POINT'))
+        return _vectors('NORMALIZE', made) if node.vector_type == 'NORMAL' else made
+    return None
+
+
+def _vector(*parts):
+    return Made('CombineXYZ', 'COMBXYZ', *parts).output(0, 'VECTOR')
+
+
+def _vectors(operation, *values):
+    is_number = operation in ('LENGTH', 'DOT_PRODUCT')
+    return Made('VectorMath', 'VECT_MATH', *values, operation=operation).output(int(is_number), 'VALUE' if is_number else 'VECTOR')
+
+
+def _turned(vector, view, is_point):
+    """Returns the three coordinates along the axes of the camera, the last one forwards."""
+    rows = view.matrix.normalized().inverted()
+    return [computed('ADD', _vectors('DOT_PRODUCT', vector, tuple(sign * v for v in row[:3])), sign * row[3] * is_point)
+            for sign, row in zip((1, 1, -1), rows)]
+
+
+def _in_frame(at, view):
+    """Returns where in the picture, from its lower left corner to its upper right one."""
+    apart = [a if view.data.type == 'ORTHO' else computed('DIVIDE', a, at[2]) for a in at[:2]]
+    return _vector(*(computed('ADD', computed('DIVIDE', a, size), 0.5 - shift)
+                     for a, size, shift in zip(apart, view.extent(), view.shift())), 0.)
 
 
 def is_even(output):

@@ -29,13 +29,6 @@ def closest(scene):
     wall(textured(checks()[::8, ::8], interpolation='Closest')[0])
 
 
-@case("image texture over object coordinates")
-def object_coordinates(scene):
-    made, shown, _, tree = textured()
-    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Object'], shown.inputs[0])
-    dressed(made)
-
-
 @case("image texture without UVs")
 def no_uvs(scene):
     dressed(textured()[0])

@@ -19,8 +19,8 @@ Study TwoBlocks() {
 TEST(MakeStudyPage, NeedsNothingElseAndAsksForNothing) {
     const std::string page = MakeStudyPage(TwoBlocks(), {});
     for (const char* name :
-         {"study.css", "random.js", "adjust.js", "session.js", "pictures.js", "adjust_view.js",
-          "practice.js", "fit.js", "screens.js", "check.js", "study.js", "format.js"}) {
+         {"study.css", "adjust.js", "session.js", "pictures.js", "adjust_view.js", "practice.js",
+          "check.js", "study.js", "format.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_TRUE(Contains(page, std::string(EmbeddedFile(name)))) << name;
     }
