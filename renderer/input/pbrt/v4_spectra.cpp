@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "renderer/base/color.h"
-#include "renderer/input/cie_table.h"
 #include "renderer/input/spectrum.h"
 #include "stopping/base/input_file.h"
 
@@ -115,8 +114,8 @@ Eigen::Vector3d Xyz(const Spectrum& spectrum, const Light& light) {
     for (int i = 0; i < kCieRows; ++i) {
         const double power = light(kCieFirst + i);
         const double value = power * spectrum(double(kCieFirst + i));
-        sum += value * Eigen::Vector3d(kCieTable[i].x, kCieTable[i].y, kCieTable[i].z);
-        white += power * double(kCieTable[i].y);
+        sum += value * Eigen::Vector3d(kCieX[i], kCieY[i], kCieZ[i]);
+        white += power * double(kCieY[i]);
     }
     return sum / white;
 }
