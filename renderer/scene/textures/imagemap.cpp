@@ -9,6 +9,18 @@
 
 namespace lull {
 
+Rgb MeanTexel(const Image& image) {
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    std::visit(
+        [&](const auto& texels) {
+            for (int y = 0; y < image.height; ++y)
+                for (int x = 0; x < image.width; ++x)
+                    sum += TexelRgb(image, texels, x, y).template cast<double>();
+        },
+        image.texels);
+    return (sum / (double(image.width) * image.height)).cast<float>();
+}
+
 void DecodeBytes(Image* image) {
     const auto* bytes = std::get_if<std::vector<uint8_t>>(&image->texels);
     if (!bytes) return;

@@ -118,6 +118,9 @@ Rgb TexelRgb(const Image& image, const std::vector<T>& texels, int x, int y) {
     return {ToFloat(t[0]), ToFloat(t[1]), ToFloat(t[2])};
 }
 
+// Returns the mean of the texels of an image that is not empty; linear, alpha ignored.
+Rgb MeanTexel(const Image& image);
+
 // Looks up an image whose first row is at st.y = 0, as environment maps are; texels count as
 // linear, alpha is ignored. The image must not be empty.
 inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrapS, Wrap wrapT) {
