@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <numeric>
 #include <sstream>
 
-#include "renderer/commands/denoising.h"
-#include "renderer/commands/output_options.h"
-#include "renderer/commands/render_files.h"
+#include "renderer/files/file_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
+#include "renderer/scene/light_groups.h"
 #include "stopping/base/input_file.h"
 
 namespace lull::render {
@@ -82,6 +84,16 @@ FilmOptions FilmOf(const PreparedRender& p) {
             .layers = layers};
 }
 
+// Returns grades in words, with semicolons between them.
+std::string NamesOf(const std::vector<Grade>& grades) {
+    std::string text;
+    for (const Grade& grade : grades) {
+        const std::string own = TextOf(grade);
+        text += (text.empty() ? "" : "; ") + (own.empty() ? "sRGB" : own);
+    }
+    return text;
+}
+
 void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     if (provenance->sampler != p.render.scene->sampler &&
         p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
@@ -93,23 +105,47 @@ void SetProvenance(const PreparedRender& p, Provenance* provenance) {
     p.render.CheckSampler();
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
-    provenance->clock = p.request.clock.Text();
+    provenance->clock = p.request.ClockText();
     provenance->grades = NamesOf(p.grades);
 }
 
 RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) {
-    const std::string output = request.output.empty()
-                                   ? DefaultOutput(film.filename, request.render.scene.file)
-                                   : request.output;
-    if (const int frame = request.frameNumber; frame > 0)
-        return NameFiles(NumberedFile(output, frame), NumberedFile(request.report, frame));
-    return NameFiles(output, request.report);
+    std::string output = request.output, report = request.report;
+    if (output.empty()) output = DefaultOutput(film.filename, request.render.scene.file);
+    if (const int frame = request.frameNumber; frame > 0) {
+        output = NumberedFile(output, frame);
+        report = NumberedFile(report, frame);
+    }
+    const auto with = [&](const char* extension) {
+        return std::filesystem::path(output).replace_extension(extension).string();
+    };
+    return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
+}
+
+// Returns all files that may be written or removed.
+std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
+    std::vector<NamedFile> outputs;
+    for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds})
+        outputs.push_back({"-o", file});
+    outputs.push_back({"--report", files.report});
+    return outputs;
+}
+
+// Returns the groups of these names, none without any, as MakeLightGroups() does.
+LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description& description,
+                              const Scene& scene) {
+    if (names.empty()) return {};
+    try {
+        return MakeLightGroups(names, description, scene);
+    } catch (const Error& e) {
+        throw Error(std::string("--light-groups: ") + e.what());
+    }
 }
 
 // Returns the memory of previews and of the denoiser's written inputs, bytes per pixel, which the
 // film and its layers do not include.
 int64_t BytesBeside(const RenderRequest& request) {
-    const bool hasPreviews = request.denoise && request.pictures.preview > 0;
+    const bool hasPreviews = request.denoise && request.preview;
     return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);
 }
 
@@ -128,8 +164,8 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     AddFileOfRule(p->rule.text, &inputs);
     render.CheckFiles(OutputsOf(p->files), std::move(inputs));
     render.LockResults(p->files.exr);
-    p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
-                             region, ranks->Count(), MessagesOf(render.settings));
+    p->display = MakeDisplay(request, std::filesystem::path(p->files.exr).filename(), region,
+                             ranks->Count());
     render.Compile();
     p->film.layers.groups =
         ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);
@@ -149,11 +185,40 @@ std::string FirstDifference(const std::string& text, const std::string& other) {
     return "";
 }
 
+// Returns whether a file is there and was not cut short.
+bool IsWhole(const std::string& file) try {
+    if (!IsThere(file)) return false;
+    if (file.ends_with(".png")) return ReadImage(file).width > 0;
+    const char* const end = file.ends_with(".json")   ? "\n}\n"
+                            : file.ends_with(".html") ? "</html>\n"
+                                                      : "\n";
+    return ReadFile(file).View().ends_with(end);
+} catch (const Error&) {
+    return false;
+}
+
+// Returns whether all files but the EXR that a render ends with are there, none of them cut short.
+bool AreWhole(const RenderFiles& files) {
+    const std::initializer_list<std::string> others = {files.png, files.sppMap, files.thresholds,
+                                                       files.report};
+    return std::ranges::all_of(
+        others, [](const std::string& file) { return file.empty() || IsWhole(file); });
+}
+
 }  // namespace
+
+std::vector<Grading> GradingsOf(const std::vector<Grade>& grades) {
+    std::vector<Grading> gradings;
+    for (const Grade& grade : grades)
+        gradings.push_back(grade.IsPlain() ? Grading() : [grade](std::span<float> rgb) {
+            ApplyGrade(grade, rgb);
+        });
+    return gradings;
+}
 
 std::string SettingsOf(const PreparedRender& p) {
     const RenderRequest& request = p.request;
-    const PictureFormat& format = request.pictures.format;
+    const PictureFormat& format = request.pictures;
     RenderIdentity identity = p.render.Identity();
     identity["aov"] = TextOf(request.aovs);
     identity["light groups"] = NameOf(p.film.layers.groups);
