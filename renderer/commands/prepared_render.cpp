@@ -33,7 +33,7 @@ int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule)
 
 // Reads the rule, lets the schedule suit it, and cuts the blocks.
 void PrepareRule(PreparedRender* p) {
-    RenderSettings& settings = p->render.settings;
+    RenderSettings& settings = p->settings;
     ScheduleOptions& schedule = settings.schedule;
     const std::string rule = p->request.Rule();
     // A fixed number of samples is its own cap; with --cap the smaller of both holds.
@@ -41,15 +41,15 @@ void PrepareRule(PreparedRender* p) {
     if (const int spp = FixedSpp(rule))
         schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;
     if (p->request.denoise) {
-        p->render.DenoiseBlocks();
-        p->render.denoiser->Grade(GradingsOf(p->grades));
+        p->DenoiseBlocks();
+        p->denoiser->Grade(GradingsOf(p->grades));
     }
-    p->rule = p->render.ReadRule("--stop", rule);
+    p->rule = p->ReadRule("--stop", rule);
     if (p->request.gradedBy != 0 && p->rule.stopAt && !p->request.denoise)
         throw UsageError(fmt::format(
             "--graded-by: {} does not judge the image; choose a rule that does", p->rule.text));
     schedule.smallestSide = p->rule.smallestSide;
-    p->blocks = MakeBlocks(p->render.input.region, schedule);
+    p->blocks = MakeBlocks(p->input.region, schedule);
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
 }
 
@@ -76,7 +76,7 @@ bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
 // Returns how the film is kept, with no light groups yet: whoever goes on from a checkpoint may
 // look at the half.
 FilmOptions FilmOf(const PreparedRender& p) {
-    const RenderSettings& settings = p.render.settings;
+    const RenderSettings& settings = p.settings;
     const LayerOptions layers = p.request.WantedLayers();
     return {.grid = GridOf(settings.schedule),
             .withHalf = p.clock || p.request.HasPage() || layers.features ||
@@ -95,14 +95,13 @@ std::string NamesOf(const std::vector<Grade>& grades) {
 }
 
 void SetProvenance(const PreparedRender& p, Provenance* provenance) {
-    if (provenance->sampler != p.render.scene->sampler &&
-        p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
-        !p.request.render.quiet && p.render.Leads())
+    if (provenance->sampler != p.scene->sampler && p.scene->sampler == SamplerKind::Random &&
+        !p.request.render.sampler && !p.request.render.quiet && p.Leads())
         MessagesOf(p.request.render)
             .Note(
                 "the samples are those of \"sobol-halves\", which has less noise than the scene's "
                 "Sampler \"random\"; --sampler random keeps that");
-    p.render.CheckSampler();
+    p.CheckSampler();
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
     provenance->clock = p.request.ClockText();
@@ -152,25 +151,23 @@ int64_t BytesBeside(const RenderRequest& request) {
 }  // namespace
 
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
-    auto p = std::make_unique<PreparedRender>(request, ranks);
-    RenderJob& render = p->render;
-    const PixelRect& region = render.input.region;
+    auto p = std::make_unique<PreparedRender>(request, StartClock(request), ranks);
+    const PixelRect& region = p->input.region;
     PrepareRule(p.get());
-    CheckBlocks(p->blocks, render.settings.schedule.smallestSide, render.input.warnings);
+    CheckBlocks(p->blocks, p->settings.schedule.smallestSide, p->input.warnings);
     p->film = FilmOf(*p);
     CheckFilmFits(region, p->film, BytesBeside(request));
-    p->files = NameFilesOf(request, render.input.film);
+    p->files = NameFilesOf(request, p->input.film);
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
-    render.CheckFiles(OutputsOf(p->files), std::move(inputs));
-    render.LockResults(p->files.exr);
+    p->CheckFiles(OutputsOf(p->files), std::move(inputs));
+    p->LockResults(p->files.exr);
     p->display = MakeDisplay(request, std::filesystem::path(p->files.exr).filename(), region,
                              ranks->Count());
-    render.Compile();
-    p->film.layers.groups =
-        ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);
-    CheckFilmFits(region, FilmFor(*render.scene, p->film), BytesBeside(request));
-    SetProvenance(*p, &render.provenance);
+    p->Compile();
+    p->film.layers.groups = ChooseLightGroups(request.lightGroups, p->input.description, *p->scene);
+    CheckFilmFits(region, FilmFor(*p->scene, p->film), BytesBeside(request));
+    SetProvenance(*p, &p->provenance);
     p->histories.resize(p->blocks.size());
     return p;
 }
@@ -219,7 +216,7 @@ std::vector<Grading> GradingsOf(const std::vector<Grade>& grades) {
 std::string SettingsOf(const PreparedRender& p) {
     const RenderRequest& request = p.request;
     const PictureFormat& format = request.pictures;
-    RenderIdentity identity = p.render.Identity();
+    RenderIdentity identity = p.Identity();
     identity["aov"] = TextOf(request.aovs);
     identity["light groups"] = NameOf(p.film.layers.groups);
     identity["denoise"] = request.denoise ? "yes" : "no";

@@ -16,17 +16,16 @@ struct RenderFiles {
 // The attribute of an EXR that has SettingsOf() a finished frame.
 inline constexpr const char* kSettingsAttribute = "settings";
 
-struct PreparedRender {
-    PreparedRender(const RenderRequest& request, MpiJob* ranks)
-        : request(request),
-          clock(StartClock(request)),
-          grades(request.Grades()),
-          render(request.render, ranks, false) {}
+struct PreparedRender : RenderJob {
+    PreparedRender(const RenderRequest& request, std::function<double()> clock, MpiJob* ranks)
+        : RenderJob(request.render, ranks, false),
+          request(request),
+          clock(std::move(clock)),
+          grades(request.Grades()) {}
 
     const RenderRequest request;
-    const std::function<double()> clock;
+    const std::function<double()> clock;  // started before the scene was read
     const std::vector<Grade> grades;
-    RenderJob render;
     Rule rule;
     std::vector<Block> blocks;  // without samples
     FilmOptions film;

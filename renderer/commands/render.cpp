@@ -45,21 +45,20 @@ CriterionMaker MakeCriterionMaker(PreparedRender* p) {
 
 // Adds who hears of the render beside those that every command has.
 void AddListeners(const PreparedRender& p, RenderEvents* events) {
-    const Messages messages = MessagesOf(p.render.settings);
+    const Messages messages = MessagesOf(p.settings);
     if (p.clock)
-        events->onProgress = WarnOfFirstSamples(p.render.input.region.Area(), messages,
-                                                std::move(events->onProgress));
+        events->onProgress =
+            WarnOfFirstSamples(p.input.region.Area(), messages, std::move(events->onProgress));
     const RenderRequest& request = p.request;
     const bool isDefault = !p.clock && !request.denoise && !request.stop && !request.spp;
-    if (isDefault && !p.render.settings.quiet)
+    if (isDefault && !p.settings.quiet)
         events->onProgress =
-            AdviseDenoising(p.render.input.region.Area(), messages, std::move(events->onProgress));
+            AdviseDenoising(p.input.region.Area(), messages, std::move(events->onProgress));
     if (messages.isJson) events->onStop = StopEvents(p.rule.trend.kind);
 }
 
 SessionOptions MakeOptions(PreparedRender* p) {
-    const RenderJob& render = p->render;
-    SessionOptions how = render.MakeSessionOptions(FixedSpp(p->request.Rule()) == 0);
+    SessionOptions how = p->MakeSessionOptions(FixedSpp(p->request.Rule()) == 0);
     how.render.makeCriterion = MakeCriterionMaker(p);
     how.render.trend = p->rule.trend;
     how.render.display = p->display.get();
@@ -70,8 +69,8 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.render.schedule.inSteps = true;
     how.firstLook = p->display || p->request.preview;
     // The hash of a large scene takes its time, and nobody asks for it where there is neither.
-    if (render.settings.checkpoint.file.empty() && render.ranks->Count() == 1) return how;
-    how.identity = render.Identity();
+    if (p->settings.checkpoint.file.empty() && p->ranks->Count() == 1) return how;
+    how.identity = p->Identity();
     how.identity["curves"] = p->request.HasPage() ? "yes" : "no";
     return how;
 }
@@ -116,25 +115,25 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
         RemoveUnknownErrors(result, film.Region(), &*denoised);
     }
     ResultFiles written(Rescue::None);
-    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance},
+    WriteImage({p.files.exr, p.files.png}, {*p.scene, p.provenance},
                {film, denoised ? &*denoised : nullptr, result, {}, p.request.pictures}, &written);
     written.Check();
 } catch (const Error& e) {
-    MessagesOf(p.render.settings).Warn(fmt::format("no preview: {}", e.what()));
+    MessagesOf(p.settings).Warn(fmt::format("no preview: {}", e.what()));
 }
 
 // Renders, and shows pictures on the way where they are asked for.
 RenderResult RenderPrepared(PreparedRender* p, Session* session) {
-    if (p->clock) p->render.ranks->SetClock(p->clock);
-    if (p->render.denoiser && p->display)
-        p->render.denoiser->ShowPictures(
+    if (p->clock) p->ranks->SetClock(p->clock);
+    if (p->denoiser && p->display)
+        p->denoiser->ShowPictures(
             [display = p->display.get()](const PixelRect& pixels, std::span<const float> rgb) {
                 display->ShowDenoised(pixels, rgb);
             });
     if (p->request.preview)
         session->Preview(*p->request.preview,
                          [=](const RenderResult& result) { WritePreview(*p, session, result); });
-    return p->render.Run(session);
+    return p->Run(session);
 }
 
 // Denoised image of a finished render.
@@ -146,7 +145,7 @@ struct DenoiserResults {
 // Denoises each eye of a pair by itself, so that neither sees the other at the seam.
 DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const ProgressStyle& style,
                           const DenoiserOptions& how) {
-    const PixelRect& region = p.render.input.region;
+    const PixelRect& region = p.input.region;
     const Vec2i across(region.Width() / 2, 0);
     const PixelRect left{region.min, region.max - across};
     const size_t count = p.blocks.size() / 2;
@@ -164,8 +163,8 @@ DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const Progr
 // Makes the requested images, and frees their inputs.
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
-    const RenderSettings& settings = p.render.settings;
-    const PixelRect& region = p.render.input.region;
+    const RenderSettings& settings = p.settings;
+    const PixelRect& region = p.input.region;
     Film& film = session->GetFilm();
     DenoiserResults made;
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
@@ -176,7 +175,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const auto start = std::chrono::steady_clock::now();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
     if (p.request.denoise)
-        made.image = p.render.input.film.isPair            ? DenoisePair(p, film, style, how)
+        made.image = p.input.film.isPair                   ? DenoisePair(p, film, style, how)
                      : film.layers.Find<LightGroupLayer>() ? denoise(TakeGroups(&film))
                                                            : denoise(TakePicture(&film));
     film.layers.ForgetFeatures();  // what follows needs the memory
@@ -201,11 +200,10 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
 ResultFiles WriteFiles(PreparedRender& p, const Film& film, const RenderResult& result,
                        const DenoiserResults& made) {
     const RenderFiles& files = p.files;
-    const RenderJob& render = p.render;
-    const PictureOrigin origin{*render.scene, render.provenance};
-    const Provenance& provenance = render.provenance;
-    const Description& description = render.input.description;
-    Warnings& warnings = p.render.input.warnings;
+    const PictureOrigin origin{*p.scene, p.provenance};
+    const Provenance& provenance = p.provenance;
+    const Description& description = p.input.description;
+    Warnings& warnings = p.input.warnings;
     const DenoisedImage* denoised = made.image ? &*made.image : nullptr;
     LayerChannels layers =
         ChannelsOf({film, denoised, p.request.pictures.isTransparent,
@@ -213,7 +211,7 @@ ResultFiles WriteFiles(PreparedRender& p, const Film& film, const RenderResult& 
                     [&](uint32_t n) { return NameOfMaterial(n, description); }});
     layers.channels.insert(layers.channels.end(), made.halves.begin(), made.halves.end());
     // By which a finished frame is known.
-    const bool isFrame = p.request.frameNumber > 0 && !render.settings.checkpoint.file.empty();
+    const bool isFrame = p.request.frameNumber > 0 && !p.settings.checkpoint.file.empty();
     if (isFrame && !result.cancelled) layers.attributes[kSettingsAttribute] = SettingsOf(p);
     ResultFiles results;
     const int64_t clamped =
@@ -244,10 +242,10 @@ ResultFiles WriteFiles(PreparedRender& p, const Film& film, const RenderResult& 
 
 // Prints how the render ended, writes all files, and prints how it continues.
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
-    const RenderSettings& settings = p.render.settings;
+    const RenderSettings& settings = p.settings;
     const Messages messages = MessagesOf(settings);
     const int64_t rejected = session->GetFilm().RejectedCount();
-    PrintResult(settings, p.render.provenance, result, rejected);
+    PrintResult(settings, p.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
     const ResultFiles written = WriteFiles(p, session->GetFilm(), result, denoised);
@@ -258,7 +256,7 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     if (goesOn && !settings.quiet) messages.Note(HowToGoOn(checkpoint));
     if (messages.isJson) SayEnd(written, result, rejected);
     written.Check();
-    if (!result.cancelled && !result.timeUp) p.render.RemoveCheckpoint();
+    if (!result.cancelled && !result.timeUp) p.RemoveCheckpoint();
     return result.cancelled ? kInterrupted : kDone;
 }
 
@@ -278,10 +276,10 @@ ExitCode RunImage(const RenderRequest& request, MpiJob* ranks, const std::string
     if (request.frameNumber > 0 && checkpoint.resume && !IsThere(checkpoint.file) && IsFinished(*p))
         return kDone;
     if (!note.empty()) MessagesOf(request.render).Note(note);
-    Session session(*p->render.scene, p->render.input.region, MakeOptions(p.get()));
+    Session session(*p->scene, p->input.region, MakeOptions(p.get()));
     const RenderResult result = RenderPrepared(p.get(), &session);
     ranks->End();
-    return p->render.Leads() ? Write(*p, result, &session) : kDone;
+    return p->Leads() ? Write(*p, result, &session) : kDone;
 }
 
 // Renders all frames, each with a checkpoint of its own. To be resumed are those without all of
