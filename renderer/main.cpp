@@ -15,7 +15,6 @@
 
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/help.h"
 #include "renderer/mpi/job.h"
 
 namespace lull {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/App.hpp>
 #include <CLI/CLI.hpp>
 
@@ -35,8 +36,16 @@ class UsageError : public Error {
 
 class MpiJob;
 
-// The group of options that --help shows of a command with many; the others are by subject.
+// The groups of options without a subject, and of those that --help shows of a command with many;
+// the others are by subject.
+inline constexpr const char* kOptions = "Options";
 inline constexpr const char* kCommonOptions = "Common options";
+
+// Give the program, before it has commands and options, and a command their help, the same with all
+// versions of CLI11. Where a command has common options, --help lists these, and those that no
+// other command has; --help-all lists all by subject.
+void SetProgramHelp(CLI::App* program);
+void SetHelp(CLI::App* command);
 
 // Does the work of a subcommand and returns the exit code. Throws on errors.
 using Command = std::function<ExitCode()>;
@@ -141,41 +150,59 @@ CLI::Validator OneOf(const Choices& choices) {
     return CLI::IsMember(choices).description("");
 }
 
-// Returns the names of an enum's values, and the same as the help shows them, "off|auto|on".
-template <typename T>
-std::vector<std::string> ChoicesOf() {
-    std::vector<std::string> names;
-    for (const auto& [value, name] : EnumNames<T>::all) names.push_back(name);
-    return names;
-}
-template <typename T>
-std::string ChoiceText() {
-    std::string text;
-    for (const std::string& name : ChoicesOf<T>()) text += (text.empty() ? "" : "|") + name;
-    return text;
-}
-
 // Adds an option that sets *value, which must outlive the parsing, to the value of an enum that is
-// named (EnumNames). The previous *value is the default in the help; a value that may be
-// missing shows none.
-template <typename T>
-CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, std::optional<T>* value,
-                             const std::string& help) {
-    return app
-        .add_option_function<std::string>(
-            option, [value](const std::string& name) { *value = ValueNamed<T>(name); }, help)
-        ->check(OneOf(ChoicesOf<T>()))
-        ->type_name(ChoiceText<T>());
-}
+// named (EnumNames). The previous *value is the default in the help; a value that may be missing
+// (std::optional) shows none.
 template <typename T>
 CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
                              const std::string& help) {
-    return app
-        .add_option_function<std::string>(
-            option, [value](const std::string& name) { *value = *ValueNamed<T>(name); }, help)
-        ->check(OneOf(ChoicesOf<T>()))
-        ->type_name(ChoiceText<T>())
-        ->default_str(NameOf(*value));
+    using Enum = typename std::conditional_t<std::is_enum_v<T>, std::optional<T>, T>::value_type;
+    std::vector<std::string> names;
+    for (const auto& [named, name] : EnumNames<Enum>::all) names.push_back(name);
+    const auto set = [value](const std::string& name) { *value = *ValueNamed<Enum>(name); };
+    auto* added = app.add_option_function<std::string>(option, set, help)
+                      ->check(OneOf(names))
+                      ->type_name(fmt::format("{}", fmt::join(names, "|")));
+    if constexpr (std::is_enum_v<T>) added->default_str(NameOf(*value));
+    return added;
+}
+
+// Adds an option, for a bool a flag, with its group in the help; it sets *value, which must outlive
+// the parsing. The help shows the previous *value of numbers as the default, unless the text ends
+// with another in brackets.
+template <typename T>
+CLI::Option* AddOption(CLI::App& app, const char* group, const std::string& name, T* value,
+                       const std::string& help, const std::string& type = "",
+                       const CLI::Validator& check = {}) {
+    if constexpr (std::is_same_v<T, bool>) return app.add_flag(name, *value, help)->group(group);
+    auto* option = app.add_option(name, *value, help)->group(group)->type_name(type)->check(check);
+    return std::is_arithmetic_v<T> && !help.ends_with(']') ? option->capture_default_str() : option;
+}
+
+// The same of an option that parse(text, value) reads, false where the text "is not " what is
+// wanted.
+template <typename T>
+CLI::Option* AddOption(CLI::App& app, const char* group, const std::string& name,
+                       bool (*parse)(const std::string&, T*), T* value, const std::string& wanted,
+                       const std::string& help, const std::string& type) {
+    const auto read = [=](const std::string& text) {
+        if (!parse(text, value)) throw CLI::ValidationError(text, "is not " + wanted);
+    };
+    return app.add_option_function<std::string>(name, read, help)->group(group)->type_name(type);
+}
+
+// Reads numbers with `separator` between them; false if `text` is anything else.
+template <typename T, size_t N>
+bool ParseNumbers(std::string_view text, char separator, std::array<T, N>* numbers) {
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (T& number : *numbers) {
+        if (&number != numbers->data() && (at == end || *at++ != separator)) return false;
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc()) return false;
+        at = next;
+    }
+    return at == end;
 }
 
 // Returns why a text is no number from `least` to `most` in decimal notation, "" if it is one.

@@ -9,7 +9,7 @@
 #include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/denoising.h"
+#include "renderer/commands/render_messages.h"
 #include "renderer/denoise/dependent_halves.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/film_picture.h"
@@ -167,20 +167,18 @@ void AddCommand(CLI::App& app, Command* command) {
         app.add_subcommand("denoise", "Denoises an image and estimates the remaining error.");
     auto options = std::make_shared<Options>();
     denoise->add_option("IN", options->input, "Image to denoise, an EXR")->required();
-    denoise->add_option("--half", options->half, "Add an EXR with other samples of the same image")
-        ->type_name("B.exr");
-    denoise->add_option("-o,--output", options->output, "Write OUT.exr [IN.denoised.exr]")
+    AddOption(*denoise, kOptions, "--half", &options->half,
+              "Add an EXR with other samples of the same image", "B.exr");
+    AddOption(*denoise, kOptions, "-o,--output", &options->output,
+              "Write OUT.exr [IN.denoised.exr]", "OUT.exr")
         ->check([](const std::string& file) {
             return file.ends_with(".exr") ? "" : file + " does not end in .exr";
-        })
-        ->type_name("OUT.exr");
-    denoise
-        ->add_option("--block", options->blockSize,
-                     "Set the side of the blocks with an error each, in pixels")
-        ->check(Between(10, 1 << 16))
-        ->type_name("N")
-        ->capture_default_str();
-    denoise->add_flag("--quiet", options->quiet, "Print only errors and the names of files");
+        });
+    AddOption(*denoise, kOptions, "--block", &options->blockSize,
+              "Set the side of the blocks with an error each, in pixels", "N",
+              Between(10, 1 << 16));
+    AddOption(*denoise, kOptions, "--quiet", &options->quiet,
+              "Print only errors and the names of files");
     denoise->footer(kFooter);
     denoise->callback([=] { *command = [=] { return RunDenoise(*options); }; });
 }

@@ -7,9 +7,7 @@
 
 #include "renderer/base/clocks.h"
 #include "renderer/commands/command.h"
-#include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
-#include "renderer/commands/scene_options.h"
 #include "renderer/files/file_io.h"
 #include "renderer/progress/progress.h"
 #include "renderer/results/report.h"
@@ -154,8 +152,8 @@ void PrintView(const Description& description, const Scene& scene, const std::st
                          : ", pinhole"));
     Line("film", FilmText(scene.film, file));
     Line("filter", description.filter.name);
-    Line("sampler", UsedText(NameOf(DefaultSampler(Purpose::Image, Estimator::Combined, scene)),
-                             description.sampler));
+    Line("sampler",
+         UsedText(NameOf(DefaultSampler(Estimator::Combined, scene)), description.sampler));
     if (description.sampler.loc.file)
         Line("samples", fmt::format("{} per pixel in the file; without --spp each block stops by "
                                     "itself",

@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <numeric>
 #include <sstream>
 
-#include "renderer/commands/denoising.h"
-#include "renderer/commands/output_options.h"
-#include "renderer/commands/render_files.h"
+#include "renderer/files/file_io.h"
+#include "renderer/image/image_io.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
+#include "renderer/scene/light_groups.h"
 #include "stopping/base/input_file.h"
 
 namespace lull::render {
@@ -31,7 +33,7 @@ int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule)
 
 // Reads the rule, lets the schedule suit it, and cuts the blocks.
 void PrepareRule(PreparedRender* p) {
-    RenderSettings& settings = p->render.settings;
+    RenderSettings& settings = p->settings;
     ScheduleOptions& schedule = settings.schedule;
     const std::string rule = p->request.Rule();
     // A fixed number of samples is its own cap; with --cap the smaller of both holds.
@@ -39,15 +41,15 @@ void PrepareRule(PreparedRender* p) {
     if (const int spp = FixedSpp(rule))
         schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;
     if (p->request.denoise) {
-        p->render.DenoiseBlocks();
-        p->render.denoiser->Grade(GradingsOf(p->grades));
+        p->DenoiseBlocks();
+        p->denoiser->Grade(GradingsOf(p->grades));
     }
-    p->rule = p->render.ReadRule("--stop", rule);
+    p->rule = p->ReadRule("--stop", rule);
     if (p->request.gradedBy != 0 && p->rule.stopAt && !p->request.denoise)
         throw UsageError(fmt::format(
             "--graded-by: {} does not judge the image; choose a rule that does", p->rule.text));
     schedule.smallestSide = p->rule.smallestSide;
-    p->blocks = MakeBlocks(p->render.input.region, schedule);
+    p->blocks = MakeBlocks(p->input.region, schedule);
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
 }
 
@@ -74,7 +76,7 @@ bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
 // Returns how the film is kept, with no light groups yet: whoever goes on from a checkpoint may
 // look at the half.
 FilmOptions FilmOf(const PreparedRender& p) {
-    const RenderSettings& settings = p.render.settings;
+    const RenderSettings& settings = p.settings;
     const LayerOptions layers = p.request.WantedLayers();
     return {.grid = GridOf(settings.schedule),
             .withHalf = p.clock || p.request.HasPage() || layers.features ||
@@ -82,59 +84,90 @@ FilmOptions FilmOf(const PreparedRender& p) {
             .layers = layers};
 }
 
+// Returns grades in words, with semicolons between them.
+std::string NamesOf(const std::vector<Grade>& grades) {
+    std::string text;
+    for (const Grade& grade : grades) {
+        const std::string own = TextOf(grade);
+        text += (text.empty() ? "" : "; ") + (own.empty() ? "sRGB" : own);
+    }
+    return text;
+}
+
 void SetProvenance(const PreparedRender& p, Provenance* provenance) {
-    if (provenance->sampler != p.render.scene->sampler &&
-        p.render.scene->sampler == SamplerKind::Random && !p.request.render.sampler &&
-        !p.request.render.quiet && p.render.Leads())
+    if (provenance->sampler != p.scene->sampler && p.scene->sampler == SamplerKind::Random &&
+        !p.request.render.sampler && !p.request.render.quiet && p.Leads())
         MessagesOf(p.request.render)
             .Note(
                 "the samples are those of \"sobol-halves\", which has less noise than the scene's "
                 "Sampler \"random\"; --sampler random keeps that");
-    p.render.CheckSampler();
+    p.CheckSampler();
     provenance->criterion = p.rule.text;
     provenance->checksum = p.rule.checksum;
-    provenance->clock = p.request.clock.Text();
+    provenance->clock = p.request.ClockText();
     provenance->grades = NamesOf(p.grades);
 }
 
 RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) {
-    const std::string output = request.output.empty()
-                                   ? DefaultOutput(film.filename, request.render.scene.file)
-                                   : request.output;
-    if (const int frame = request.frameNumber; frame > 0)
-        return NameFiles(NumberedFile(output, frame), NumberedFile(request.report, frame));
-    return NameFiles(output, request.report);
+    std::string output = request.output, report = request.report;
+    if (output.empty()) output = DefaultOutput(film.filename, request.render.scene.file);
+    if (const int frame = request.frameNumber; frame > 0) {
+        output = NumberedFile(output, frame);
+        report = NumberedFile(report, frame);
+    }
+    const auto with = [&](const char* extension) {
+        return std::filesystem::path(output).replace_extension(extension).string();
+    };
+    return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
+}
+
+// Returns all files that may be written or removed.
+std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
+    std::vector<NamedFile> outputs;
+    for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds})
+        outputs.push_back({"-o", file});
+    outputs.push_back({"--report", files.report});
+    return outputs;
+}
+
+// Returns the groups of these names, none without any, as MakeLightGroups() does.
+LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description& description,
+                              const Scene& scene) {
+    if (names.empty()) return {};
+    try {
+        return MakeLightGroups(names, description, scene);
+    } catch (const Error& e) {
+        throw Error(std::string("--light-groups: ") + e.what());
+    }
 }
 
 // Returns the memory of previews and of the denoiser's written inputs, bytes per pixel, which the
 // film and its layers do not include.
 int64_t BytesBeside(const RenderRequest& request) {
-    const bool hasPreviews = request.denoise && request.pictures.preview > 0;
+    const bool hasPreviews = request.denoise && request.preview;
     return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);
 }
 
 }  // namespace
 
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
-    auto p = std::make_unique<PreparedRender>(request, ranks);
-    RenderJob& render = p->render;
-    const PixelRect& region = render.input.region;
+    auto p = std::make_unique<PreparedRender>(request, StartClock(request), ranks);
+    const PixelRect& region = p->input.region;
     PrepareRule(p.get());
-    CheckBlocks(p->blocks, render.settings.schedule.smallestSide, render.input.warnings);
+    CheckBlocks(p->blocks, p->settings.schedule.smallestSide, p->input.warnings);
     p->film = FilmOf(*p);
     CheckFilmFits(region, p->film, BytesBeside(request));
-    p->files = NameFilesOf(request, render.input.film);
+    p->files = NameFilesOf(request, p->input.film);
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
-    render.CheckFiles(OutputsOf(p->files), std::move(inputs));
-    render.LockResults(p->files.exr);
-    p->display = MakeDisplay(request.pictures, std::filesystem::path(p->files.exr).filename(),
-                             region, ranks->Count(), MessagesOf(render.settings));
-    render.Compile();
-    p->film.layers.groups =
-        ChooseLightGroups(request.lightGroups, render.input.description, *render.scene);
-    CheckFilmFits(region, FilmFor(*render.scene, p->film), BytesBeside(request));
-    SetProvenance(*p, &render.provenance);
+    p->CheckFiles(OutputsOf(p->files), std::move(inputs));
+    p->LockResults(p->files.exr);
+    p->display = MakeDisplay(request, std::filesystem::path(p->files.exr).filename(), region,
+                             ranks->Count());
+    p->Compile();
+    p->film.layers.groups = ChooseLightGroups(request.lightGroups, p->input.description, *p->scene);
+    CheckFilmFits(region, FilmFor(*p->scene, p->film), BytesBeside(request));
+    SetProvenance(*p, &p->provenance);
     p->histories.resize(p->blocks.size());
     return p;
 }
@@ -149,12 +182,41 @@ std::string FirstDifference(const std::string& text, const std::string& other) {
     return "";
 }
 
+// Returns whether a file is there and was not cut short.
+bool IsWhole(const std::string& file) try {
+    if (!IsThere(file)) return false;
+    if (file.ends_with(".png")) return ReadImage(file).width > 0;
+    const char* const end = file.ends_with(".json")   ? "\n}\n"
+                            : file.ends_with(".html") ? "</html>\n"
+                                                      : "\n";
+    return ReadFile(file).View().ends_with(end);
+} catch (const Error&) {
+    return false;
+}
+
+// Returns whether all files but the EXR that a render ends with are there, none of them cut short.
+bool AreWhole(const RenderFiles& files) {
+    const std::initializer_list<std::string> others = {files.png, files.sppMap, files.thresholds,
+                                                       files.report};
+    return std::ranges::all_of(
+        others, [](const std::string& file) { return file.empty() || IsWhole(file); });
+}
+
 }  // namespace
+
+std::vector<Grading> GradingsOf(const std::vector<Grade>& grades) {
+    std::vector<Grading> gradings;
+    for (const Grade& grade : grades)
+        gradings.push_back(grade.IsPlain() ? Grading() : [grade](std::span<float> rgb) {
+            ApplyGrade(grade, rgb);
+        });
+    return gradings;
+}
 
 std::string SettingsOf(const PreparedRender& p) {
     const RenderRequest& request = p.request;
-    const PictureFormat& format = request.pictures.format;
-    RenderIdentity identity = p.render.Identity();
+    const PictureFormat& format = request.pictures;
+    RenderIdentity identity = p.Identity();
     identity["aov"] = TextOf(request.aovs);
     identity["light groups"] = NameOf(p.film.layers.groups);
     identity["denoise"] = request.denoise ? "yes" : "no";

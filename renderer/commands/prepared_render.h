@@ -1,24 +1,31 @@
 // A render of `lull render` that is ready to begin.
 #pragma once
 
-#include "renderer/commands/denoising.h"
-#include "renderer/commands/render_files.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/commands/render_options.h"
+#include "renderer/render/block_monitor.h"
+#include "renderer/results/denoised_image.h"
 
 namespace lull::render {
 
-struct PreparedRender {
-    PreparedRender(const RenderRequest& request, MpiJob* ranks)
-        : request(request),
-          clock(StartClock(request.clock)),
-          grades(request.Grades()),
-          render(request.render, ranks, false) {}
+// Names the files, all but the report in one folder; a report that is not wanted is empty.
+struct RenderFiles {
+    std::string exr, png, sppMap, thresholds, report;
+};
+
+// The attribute of an EXR that has SettingsOf() a finished frame.
+inline constexpr const char* kSettingsAttribute = "settings";
+
+struct PreparedRender : RenderJob {
+    PreparedRender(const RenderRequest& request, std::function<double()> clock, MpiJob* ranks)
+        : RenderJob(request.render, ranks, false),
+          request(request),
+          clock(std::move(clock)),
+          grades(request.Grades()) {}
 
     const RenderRequest request;
-    const std::function<double()> clock;
+    const std::function<double()> clock;  // started before the scene was read
     const std::vector<Grade> grades;
-    RenderJob render;
     Rule rule;
     std::vector<Block> blocks;  // without samples
     FilmOptions film;
@@ -30,6 +37,9 @@ struct PreparedRender {
 // Reads the scene and the rule, and names the files. Throws Error, or UsageError, for all that can
 // be wrong before the work begins.
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks);
+
+// Returns the grades for the denoiser.
+std::vector<Grading> GradingsOf(const std::vector<Grade>&);
 
 // Frames of `lull render --frames --resume` whose files are there.
 

@@ -4,12 +4,14 @@
 #include <CLI/App.hpp>
 
 #include "renderer/base/clocks.h"
-#include "renderer/commands/denoising.h"
 #include "renderer/commands/prepared_render.h"
 #include "renderer/commands/render_messages.h"
 #include "renderer/mpi/job.h"
+#include "renderer/pages/html_page.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
+#include "renderer/results/report.h"
+#include "renderer/scene/light_groups.h"
 #include "stopping/base/input_file.h"
 #include "stopping/rules/lnoise.h"
 
@@ -17,38 +19,47 @@ namespace lull::render {
 
 namespace {
 
+// Returns the maker of criteria that see blocks as the grades show them, unless the rule sees to
+// that itself, or only counts.
+CriterionMaker MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& grades) {
+    CriterionMaker criteriaOf = CriteriaOf(rule);
+    if (grades.empty() || rule.stopAt || rule.need == ViewNeed::Measured) return criteriaOf;
+    return [criteriaOf, grades](const BlockInfo& info) {
+        std::vector<GradedJudge> judges;
+        for (const Grade& grade : grades) judges.push_back({grade, criteriaOf(info)});
+        return std::make_unique<GradedCriterion>(std::move(judges));
+    };
+}
+
 // Returns the maker of the criteria; for a page, they also keep the curves of each block.
-CriterionMaker MakeCriterionMaker(const Rule& rule, const std::vector<Grade>& grades,
-                                  bool withCurves, std::vector<BlockHistory>* histories) {
-    CriterionMaker criteriaOf = MakeGradedCriteria(rule, grades);
-    if (!withCurves) return criteriaOf;
-    return [criteriaOf, histories](const BlockInfo& info) {
+CriterionMaker MakeCriterionMaker(PreparedRender* p) {
+    CriterionMaker criteriaOf = MakeGradedCriteria(p->rule, p->grades);
+    if (!p->request.HasPage()) return criteriaOf;
+    return [criteriaOf, p](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;
         rules.push_back(criteriaOf(info));
         return std::make_unique<BlockMonitor>(std::move(rules), MonitorOptions{.curves = true},
-                                              &(*histories)[size_t(info.index)]);
+                                              &p->histories[size_t(info.index)]);
     };
 }
 
 // Adds who hears of the render beside those that every command has.
 void AddListeners(const PreparedRender& p, RenderEvents* events) {
-    const Messages messages = MessagesOf(p.render.settings);
+    const Messages messages = MessagesOf(p.settings);
     if (p.clock)
-        events->onProgress = WarnOfFirstSamples(p.render.input.region.Area(), messages,
-                                                std::move(events->onProgress));
-    const RenderRequest& request = p.request;
-    const bool isDefault = !p.clock && !request.denoise && !request.stop && request.spp == 0;
-    if (isDefault && !p.render.settings.quiet)
         events->onProgress =
-            AdviseDenoising(p.render.input.region.Area(), messages, std::move(events->onProgress));
+            WarnOfFirstSamples(p.input.region.Area(), messages, std::move(events->onProgress));
+    const RenderRequest& request = p.request;
+    const bool isDefault = !p.clock && !request.denoise && !request.stop && !request.spp;
+    if (isDefault && !p.settings.quiet)
+        events->onProgress =
+            AdviseDenoising(p.input.region.Area(), messages, std::move(events->onProgress));
     if (messages.isJson) events->onStop = StopEvents(p.rule.trend.kind);
 }
 
 SessionOptions MakeOptions(PreparedRender* p) {
-    const RenderJob& render = p->render;
-    SessionOptions how = render.MakeSessionOptions(FixedSpp(p->request.Rule()) == 0);
-    how.render.makeCriterion =
-        MakeCriterionMaker(p->rule, p->grades, p->request.HasPage(), &p->histories);
+    SessionOptions how = p->MakeSessionOptions(FixedSpp(p->request.Rule()) == 0);
+    how.render.makeCriterion = MakeCriterionMaker(p);
     how.render.trend = p->rule.trend;
     how.render.display = p->display.get();
     AddListeners(*p, &how.render.events);
@@ -56,12 +67,43 @@ SessionOptions MakeOptions(PreparedRender* p) {
     how.clock = p->clock;
     // An interruption or a preview finds the whole image, whatever its sample counts.
     how.render.schedule.inSteps = true;
-    how.firstLook = p->display || p->request.pictures.preview > 0;
+    how.firstLook = p->display || p->request.preview;
     // The hash of a large scene takes its time, and nobody asks for it where there is neither.
-    if (render.settings.checkpoint.file.empty() && render.ranks->Count() == 1) return how;
-    how.identity = render.Identity();
+    if (p->settings.checkpoint.file.empty() && p->ranks->Count() == 1) return how;
+    how.identity = p->Identity();
     how.identity["curves"] = p->request.HasPage() ? "yes" : "no";
     return how;
+}
+
+// Sets the visible error of blocks that the rule `denoised` has stopped to that by which it did.
+// Theirs are still the same samples, which the picture in the end filters more carefully: its own
+// estimate, equally rough, may be above the threshold.
+void KeepDecisions(const RenderResult& result, DenoisedImage* denoised) {
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        const BlockResult& block = result.blocks[i];
+        std::optional<VisibleError>& error = denoised->blocks[i];
+        if (!error || !block.block.stoppedByVote || block.decisions.empty()) continue;
+        error->estimate = block.decisions.back().decision.value;
+        error->upper = std::max(error->upper, error->estimate);
+    }
+}
+
+// Removes the error estimates of blocks with too few samples for one, and sets the error of their
+// pixels to the largest. Returns the number of these blocks.
+int RemoveUnknownErrors(const RenderResult& result, const PixelRect& region,
+                        DenoisedImage* denoised) {
+    int count = 0;
+    for (size_t i = 0; i < result.blocks.size(); ++i) {
+        if (result.blocks[i].block.spp >= int(kLeastDenoisedSpp)) continue;
+        ++count;
+        if (i < denoised->blocks.size()) denoised->blocks[i].reset();
+        const PixelRect& pixels = result.blocks[i].block.pixels;
+        for (int y = pixels.min.y(); y < pixels.max.y(); ++y)
+            std::fill_n(denoised->error.begin() + (y - region.min.y()) * region.Width() +
+                            (pixels.min.x() - region.min.x()),
+                        pixels.Width(), kUnknownError);
+    }
+    return count;
 }
 
 // A preview that cannot be written is a warning: the files may be written in the end.
@@ -73,26 +115,25 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
         RemoveUnknownErrors(result, film.Region(), &*denoised);
     }
     ResultFiles written(Rescue::None);
-    WriteImage({p.files.exr, p.files.png}, {*p.render.scene, p.render.provenance},
-               {film, denoised ? &*denoised : nullptr, result, {}, p.request.pictures.format},
-               &written);
+    WriteImage({p.files.exr, p.files.png}, {*p.scene, p.provenance},
+               {film, denoised ? &*denoised : nullptr, result, {}, p.request.pictures}, &written);
     written.Check();
 } catch (const Error& e) {
-    MessagesOf(p.render.settings).Warn(fmt::format("no preview: {}", e.what()));
+    MessagesOf(p.settings).Warn(fmt::format("no preview: {}", e.what()));
 }
 
 // Renders, and shows pictures on the way where they are asked for.
 RenderResult RenderPrepared(PreparedRender* p, Session* session) {
-    if (p->clock) p->render.ranks->SetClock(p->clock);
-    if (p->render.denoiser && p->display)
-        p->render.denoiser->ShowPictures(
+    if (p->clock) p->ranks->SetClock(p->clock);
+    if (p->denoiser && p->display)
+        p->denoiser->ShowPictures(
             [display = p->display.get()](const PixelRect& pixels, std::span<const float> rgb) {
                 display->ShowDenoised(pixels, rgb);
             });
-    if (const double seconds = p->request.pictures.preview; seconds > 0)
-        session->Preview(seconds,
+    if (p->request.preview)
+        session->Preview(*p->request.preview,
                          [=](const RenderResult& result) { WritePreview(*p, session, result); });
-    return p->render.Run(session);
+    return p->Run(session);
 }
 
 // Denoised image of a finished render.
@@ -104,7 +145,7 @@ struct DenoiserResults {
 // Denoises each eye of a pair by itself, so that neither sees the other at the seam.
 DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const ProgressStyle& style,
                           const DenoiserOptions& how) {
-    const PixelRect& region = p.render.input.region;
+    const PixelRect& region = p.input.region;
     const Vec2i across(region.Width() / 2, 0);
     const PixelRect left{region.min, region.max - across};
     const size_t count = p.blocks.size() / 2;
@@ -122,32 +163,25 @@ DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const Progr
 // Makes the requested images, and frees their inputs.
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
-    const RenderSettings& settings = p.render.settings;
-    const PixelRect& region = p.render.input.region;
+    const RenderSettings& settings = p.settings;
+    const PixelRect& region = p.input.region;
     Film& film = session->GetFilm();
     DenoiserResults made;
-    NoisyPicture picture;
-    GroupedPicture groups;
-    const bool isPair = p.render.input.film.isPair;
-    const bool hasGroups = p.request.denoise && film.layers.Find<LightGroupLayer>();
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
     const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
+    const auto denoise = [&](auto picture) {
+        return DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
+    };
     const auto start = std::chrono::steady_clock::now();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
-    if (isPair && p.request.denoise)
-        made.image = DenoisePair(p, film, style, how);
-    else if (hasGroups)
-        groups = TakeGroups(&film);
-    else if (p.request.denoise)
-        picture = TakePicture(&film);
+    if (p.request.denoise)
+        made.image = p.input.film.isPair                   ? DenoisePair(p, film, style, how)
+                     : film.layers.Find<LightGroupLayer>() ? denoise(TakeGroups(&film))
+                                                           : denoise(TakePicture(&film));
     film.layers.ForgetFeatures();  // what follows needs the memory
     film.DropHalf();
-    if (!p.request.denoise) return made;
+    if (!made.image) return made;
     const Messages messages = MessagesOf(settings);
-    if (!isPair)
-        made.image = hasGroups
-                         ? DenoiseWithReports(std::move(groups), region, p.blocks, style, how)
-                         : DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
     if (IsRule(p.rule.text, kDenoisedRuleName)) KeepDecisions(result, &*made.image);
     if (const int unknown = RemoveUnknownErrors(result, region, &*made.image); unknown > 0)
         messages.Warn(fmt::format(
@@ -161,26 +195,60 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     return made;
 }
 
+// Writes all files, each whole or not at all; a report whose name ends in .html as a page. Those of
+// an earlier render that this one has none of are removed.
+ResultFiles WriteFiles(PreparedRender& p, const Film& film, const RenderResult& result,
+                       const DenoiserResults& made) {
+    const RenderFiles& files = p.files;
+    const PictureOrigin origin{*p.scene, p.provenance};
+    const Provenance& provenance = p.provenance;
+    const Description& description = p.input.description;
+    Warnings& warnings = p.input.warnings;
+    const DenoisedImage* denoised = made.image ? &*made.image : nullptr;
+    LayerChannels layers =
+        ChannelsOf({film, denoised, p.request.pictures.isTransparent,
+                    [&](uint32_t n) { return NameOfObject(n, description, origin.scene); },
+                    [&](uint32_t n) { return NameOfMaterial(n, description); }});
+    layers.channels.insert(layers.channels.end(), made.halves.begin(), made.halves.end());
+    // By which a finished frame is known.
+    const bool isFrame = p.request.frameNumber > 0 && !p.settings.checkpoint.file.empty();
+    if (isFrame && !result.cancelled) layers.attributes[kSettingsAttribute] = SettingsOf(p);
+    ResultFiles results;
+    const int64_t clamped =
+        WriteImage({files.exr, files.png}, origin,
+                   {film, denoised, result, std::move(layers), p.request.pictures}, &results);
+    if (clamped > 0)
+        warnings.Add({}, "values clamped to 65504",
+                     fmt::format("{} in the EXR, as 16 bits hold no more; leave out "
+                                 "--exr-half to keep them",
+                                 clamped));
+    results.Write(files.sppMap,
+                  [&](const std::string& file) { WriteSppMap(file, provenance, result); });
+    // Of an interrupted render nobody knows at which spp its blocks would have stopped.
+    if (result.cancelled)
+        ResultFiles::RemoveOld(files.thresholds);
+    else
+        results.Write(files.thresholds, [&](const std::string& file) {
+            WriteThresholdsOf(file, provenance.scene, ThresholdsOf(provenance, result));
+        });
+    if (files.report.ends_with(".html"))
+        results.WriteText(files.report, MakeRenderPage(provenance, result, film, p.histories,
+                                                       warnings.Counts(), denoised));
+    else if (!files.report.empty())
+        results.WriteText(files.report, Dump(ReportJson(provenance, result, film.RejectedCount(),
+                                                        warnings.Counts(), denoised)));
+    return results;
+}
+
 // Prints how the render ended, writes all files, and prints how it continues.
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
-    const RenderSettings& settings = p.render.settings;
+    const RenderSettings& settings = p.settings;
     const Messages messages = MessagesOf(settings);
     const int64_t rejected = session->GetFilm().RejectedCount();
-    PrintResult(settings, p.render.provenance, result, rejected);
+    PrintResult(settings, p.provenance, result, rejected);
     if (result.progress.samples == 0) return kInterrupted;  // there is nothing to write
     const DenoiserResults denoised = TakeDenoised(p, result, session);
-    const bool isFrame = p.request.frameNumber > 0 && !settings.checkpoint.file.empty();
-    const ResultFiles written =
-        WriteFiles(p.files, {{*p.render.scene, p.render.provenance},
-                             session->GetFilm(),
-                             result,
-                             p.histories,
-                             p.render.input.warnings,
-                             denoised.image ? &*denoised.image : nullptr,
-                             denoised.halves,
-                             p.render.input.description,
-                             p.request.pictures.format,
-                             isFrame && !result.cancelled ? SettingsOf(p) : ""});
+    const ResultFiles written = WriteFiles(p, session->GetFilm(), result, denoised);
     for (const std::string& name : written.Names()) fmt::print("{}\n", name);
     if (p.display) p.display->Finish();
     const CheckpointOptions& checkpoint = settings.checkpoint;
@@ -188,7 +256,7 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     if (goesOn && !settings.quiet) messages.Note(HowToGoOn(checkpoint));
     if (messages.isJson) SayEnd(written, result, rejected);
     written.Check();
-    if (!result.cancelled && !result.timeUp) p.render.RemoveCheckpoint();
+    if (!result.cancelled && !result.timeUp) p.RemoveCheckpoint();
     return result.cancelled ? kInterrupted : kDone;
 }
 
@@ -196,7 +264,8 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
 ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();
-    PrintPath(request.path, render.settings, render.input.description, *render.scene);
+    PrintPath(*request.pixel, request.sample, render.settings, render.input.description,
+              *render.scene);
     return kDone;
 }
 
@@ -207,10 +276,10 @@ ExitCode RunImage(const RenderRequest& request, MpiJob* ranks, const std::string
     if (request.frameNumber > 0 && checkpoint.resume && !IsThere(checkpoint.file) && IsFinished(*p))
         return kDone;
     if (!note.empty()) MessagesOf(request.render).Note(note);
-    Session session(*p->render.scene, p->render.input.region, MakeOptions(p.get()));
+    Session session(*p->scene, p->input.region, MakeOptions(p.get()));
     const RenderResult result = RenderPrepared(p.get(), &session);
     ranks->End();
-    return p->render.Leads() ? Write(*p, result, &session) : kDone;
+    return p->Leads() ? Write(*p, result, &session) : kDone;
 }
 
 // Renders all frames, each with a checkpoint of its own. To be resumed are those without all of
@@ -236,10 +305,12 @@ ExitCode RunSequence(const RenderRequest& request, MpiJob* ranks) {
 
 ExitCode RunRender(RenderRequest request, MpiJob* ranks) {
     CheckRequest(request);
-    if (request.path.pixel) return ranks->Rank() == 0 ? RunPath(request, ranks) : kDone;
+    if (request.pixel) return ranks->Rank() == 0 ? RunPath(request, ranks) : kDone;
     SetWording(request.render, ranks);
-    request.aovs.alpha |= request.pictures.format.isTransparent;
-    LoadView(&request.pictures);
+    request.aovs.alpha |= request.pictures.isTransparent;
+    if (request.ocio || request.view)
+        request.pictures.grade.view =
+            LoadView(request.ocio.value_or(""), request.view.value_or(""));
     return request.sequence ? RunSequence(request, ranks) : RunImage(request, ranks);
 }
 

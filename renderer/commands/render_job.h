@@ -38,24 +38,23 @@ class RenderJob {
     // There, takes the results, of which `output` is one, for this process alone. Throws Error if
     // another process has them.
     void LockResults(const std::string& output);
-    // Locks the checkpoint of the settings, which have changed, instead. Throws Error if another
-    // process has it.
-    void LockCheckpoint();
     // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();
     // Warns where blocks are denoised from samples whose halves depend on each other.
     void CheckSampler() const;
-    // Reads a stopping rule that was given with `option`. Throws Error.
-    Rule ReadRule(const std::string& option, const std::string& rule) const;
+    // Reads a stopping rule that was given with `option`, which the Error that a bad one is names;
+    // with the caution of the settings, unless there is another.
+    Rule ReadRule(const std::string& option, const std::string& rule,
+                  std::optional<double> caution = {}) const;
     // Compiles the scene, and sets the sampler, where the user names none, and the provenance; the
     // rule is left to be filled in.
     void Compile();
     // Returns the identity that checkpoints and ranks must share, from the provenance.
     RenderIdentity Identity() const;
-    // Returns the options of a session with the checkpoint of the settings, without a rule, that
-    // can be interrupted and that the ranks share. `adaptive`: blocks stop by themselves, as the
-    // progress shows.
-    SessionOptions MakeSessionOptions(bool adaptive) const;
+    // Returns the options of a session without a rule that can be interrupted and, where it is
+    // shared, has the checkpoint of the settings and all ranks. `adaptive`: blocks stop by
+    // themselves, as the progress shows.
+    SessionOptions MakeSessionOptions(bool adaptive, bool isShared = true) const;
     // Takes up the checkpoint, and renders until the end or an interruption.
     RenderResult Run(Session*, const RenderFunction& render = Render) const;
     // Lets the ranks go after the last render. Returns the exit code where nothing is to be
@@ -75,10 +74,23 @@ class RenderJob {
     std::optional<FileLock> checkpointLock, resultLock;
 };
 
+// Returns the options of a render that resumes from the file without being told to.
+CheckpointOptions ResumeIfThere(const std::string& file, double interval);
+
+// Returns exclusive access to a checkpoint, for as long as work may write it. Throws Error if
+// another process has it.
+FileLock LockCheckpointFile(const std::string& file);
+
+// Returns how to continue a render that has ended early: by which command, if it has a checkpoint.
+std::string HowToGoOn(const CheckpointOptions&);
+
+// From now on the first SIGINT, SIGTERM or SIGHUP makes Interrupted() true, and a second one ends
+// the program at once with exit code 130; not so a second SIGHUP, as a terminal that is closed
+// sends several. Where SIGHUP is ignored, as by nohup, it stays so.
+void CatchInterrupts();
+bool Interrupted();
+
 // Lets errors and warnings be JSON where all there is to say is; to be called first of all.
 void SetWording(const RenderSettings&, MpiJob* ranks);
-
-// RenderJob::MakeSessionOptions() without a checkpoint; the ranks may be null.
-SessionOptions MakeSessionOptions(const RenderSettings&, bool adaptive, MpiJob* ranks);
 
 }  // namespace lull

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/base/color.h"
 #include "renderer/base/error.h"
-#include "renderer/progress/progress.h"
 #include "renderer/render/shortfall.h"
 #include "renderer/results/report.h"
+#include "renderer/scene/light_groups.h"
+#include "renderer/transport/integrator.h"
 
 namespace lull {
 
@@ -118,6 +120,48 @@ std::string ShortfallOf(const Provenance& provenance, const RenderResult& result
     return text;
 }
 
+template <typename Triple>
+std::string Numbers(const Triple& v) {
+    return fmt::format("{:.5g} {:.5g} {:.5g}", v[0], v[1], v[2]);
+}
+
+std::string PlaceOf(const PathStep& step, const Description& description, const Scene& scene) {
+    switch (step.kind) {
+        case PathStep::Kind::Sky:
+            return "leaves the scene towards " + Numbers(step.position);
+        case PathStep::Kind::Medium:
+            return fmt::format("in a medium at {}, after {:.5g}", Numbers(step.position),
+                               step.distance);
+        default:
+            return fmt::format("on \"{}\" of \"{}\" at {}, normal {}, after {:.5g}",
+                               NameOfObject(step.object, description, scene),
+                               NameOfMaterial(step.material, description), Numbers(step.position),
+                               Numbers(step.normal), step.distance);
+    }
+}
+
+std::string WayOf(const PathStep& step) {
+    if (!step.goesOn) return "";
+    const std::string density = step.isSpecular
+                                    ? std::string("as in a mirror or clear glass")
+                                    : fmt::format("with density {:.5g} per sr", step.pdf);
+    return fmt::format(
+        "     continues {}towards {}, {}\n",
+        step.isTransmission && step.kind == PathStep::Kind::Surface ? "through it " : "",
+        Numbers(step.direction), density);
+}
+
+// Returns why there is no further step.
+std::string EndOf(const PathLog& log, const Scene& scene) {
+    if (log.steps.empty()) return "It meets nothing that shines or scatters.\n";
+    const PathStep& last = log.steps.back();
+    if (last.kind == PathStep::Kind::Sky) return "";
+    if (const int maxDepth = MaxDepth(scene.integrator); int(log.steps.size()) > maxDepth)
+        return fmt::format("It ends at the greatest depth, {} bounces.\n", maxDepth);
+    return last.goesOn ? "Terminated by Russian roulette.\n"
+                       : "It ends here: nothing is scattered.\n";
+}
+
 }  // namespace
 
 void PrintResult(const RenderSettings& settings, const Provenance& provenance,
@@ -128,6 +172,24 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
     PrintToStderr("{}{}{}{}", SummaryOf(result, settings.schedule.cap, result.trend.kind),
                   SharesOf(result.shares), result.timeUp ? ShortfallOf(provenance, result) : "",
                   CappedOf(provenance, result));
+}
+
+ProgressListener WarnOfFirstSamples(int64_t pixels, const Messages& messages,
+                                    ProgressListener listener) {
+    return [=, hasWarned = false](const RenderProgress& p) mutable {
+        listener(p);
+        constexpr int64_t kShare = 20;  // of the samples, from which their speed is taken
+        if (hasWarned || !p.secondsLeft || p.samples >= pixels || p.samples < pixels / kShare)
+            return;
+        const double needed = p.seconds / double(p.samples) * double(pixels - p.samples);
+        const double left = std::max(*p.secondsLeft, 0.);
+        if (needed < 1.1 * left || needed < left + 1) return;
+        hasWarned = true;
+        messages.Warn(fmt::format(
+            "the first sample of every pixel ends in about {}, but {} are left; a smaller "
+            "--resolution takes less",
+            FormatDuration(needed), FormatDuration(left)));
+    };
 }
 
 ProgressListener AdviseDenoising(int64_t pixels, const Messages& messages,
@@ -171,6 +233,51 @@ void SayEnd(const ResultFiles& files, const RenderResult& result, int64_t reject
                                    : "done",
                   p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp, p.samples,
                   rejected, p.seconds);
+}
+
+void PrintDenoised(const DenoisedImage& image, double seconds, bool quiet, const Messages& messages,
+                   double accepted) {
+    if (quiet) return;
+    const std::string text =
+        fmt::format("denoised in {}; {}", FormatDuration(seconds), TextOf(image.blocks, accepted));
+    if (messages.isJson)
+        messages.Note(text);
+    else
+        PrintToStderr("{}\n", text);
+}
+
+void PrintPath(const Vec2i& pixel, int index, const RenderSettings& settings,
+               const Description& description, const Scene& scene) {
+    const Vec2i& size = scene.film.resolution;
+    if (pixel.x() >= size.x() || pixel.y() >= size.y())
+        throw UsageError(fmt::format("--pixel {},{}: the image is {}x{}", pixel.x(), pixel.y(),
+                                     size.x(), size.y()));
+    if (!std::holds_alternative<PathIntegrator>(scene.integrator))
+        throw UsageError(
+            fmt::format("--pixel: a sample of \"{}\" is more than one path; add --integrator path",
+                        NameOf(scene.integrator, scene.isVolumetric)));
+    const SamplerKind kind = settings.sampler.value();
+    Sampler sampler(kind, settings.seed);
+    const PathLog log = LogSample(scene, settings.estimator, sampler, pixel, uint32_t(index));
+
+    fmt::print("Sample {} of pixel {},{} (sampler {}, seed {}, estimator {})\n", index, pixel.x(),
+               pixel.y(), NameOf(kind), settings.seed, NameOf(settings.estimator));
+    fmt::print("  0  camera at {}, looks along {}\n", Numbers(log.ray.o),
+               Numbers(log.ray.d.normalized()));
+    int number = 0;
+    for (const PathStep& step : log.steps) {
+        fmt::print("{:3}  {}\n", ++number, PlaceOf(step, description, scene));
+        if (number > 1) fmt::print("     light from here counts {}\n", Numbers(step.throughput));
+        if (!IsBlack(step.emitted)) fmt::print("     it shines:     + {}\n", Numbers(step.emitted));
+        if (!IsBlack(step.direct)) fmt::print("     lights bring:  + {}\n", Numbers(step.direct));
+        fmt::print("{}", WayOf(step));
+    }
+    fmt::print("{}", EndOf(log, scene));
+    const float factor = log.filterWeight * log.cameraWeight * log.filmScale;
+    fmt::print("Radiance {}, luminance {:.5g}", Numbers(log.sample.radiance),
+               Luminance(log.sample.radiance));
+    if (factor != 1) fmt::print(", with a factor of {:.5g} by filter, lens and exposure", factor);
+    fmt::print("{}\n", log.sample.rejected ? "; it was rejected: not finite, or negative" : "");
 }
 
 }  // namespace lull

@@ -1,23 +1,65 @@
-// Options of all commands that render by stopping rules.
+// Options of all commands that load a scene or render by stopping rules.
 #pragma once
 
-#include "renderer/commands/checkpoint_options.h"
-#include "renderer/commands/scene_options.h"
+#include <CLI/App.hpp>
+
+#include "renderer/commands/command.h"
+#include "renderer/files/outputs.h"
+#include "renderer/film/film.h"
+#include "renderer/input/gltf_loader.h"
+#include "renderer/render/session.h"
+#include "renderer/scene/compile.h"
 #include "stopping/rules/rule.h"
 
 namespace lull {
 
-// What a render is for: an image of little noise, or the noise of the images that observers judged.
-enum class Purpose { Image, Recording };
+struct SceneOptions {
+    std::string file;
+    bool substitute = false;  // continue without missing and unsupported parts
+    bool isVerbose = false;   // print warnings that do not concern the image
+    CompileOptions compile;
+    std::string integrator;  // empty: the scene's
+    int pbrt = 0;            // the version, 3 or 4, that the scene is written for; 0: as it shows
+    GltfOptions view;
+    std::vector<float> stereo;  // distance and convergence of two eyes; empty: the scene's
+    std::string eye;            // "left" or "right": of these, one alone
+    std::string environment;    // empty: the scene's own
+    double environmentRotation = 0, exposure = 0;
+};
 
-// Returns the sampler where the user names none. Images have that of least noise with independent
-// halves, from which noise is estimated; with pbrt-v3's noise, the scene's. Recordings have
-// independent samples.
-SamplerKind DefaultSampler(Purpose, Estimator, const Scene&);
+// Adds SCENE, --pbrt, --resolution, --crop, --integrator, --max-depth, --threads, --substitute,
+// --exposure, --environment, --environment-rotation, --camera, --orbit, --frame,
+// --animation, --shutter, --variant, --solid-glass.
+void AddSceneOptions(CLI::App& app, SceneOptions* options);
+
+// Prints warnings on stderr as they occur.
+Warnings MakePrintedWarnings(const SceneOptions&, const Messages& = {});
+
+// Reads the scene's file. Throws Error, and leaves others in the warnings, as ParsePbrt() does.
+Description LoadDescription(const SceneOptions&, Warnings&);
+
+// Returns the image to write where the command names none: the scene's `filename`, or the name of
+// the scene if that is empty or "scene", as of many scenes.
+std::string DefaultOutput(const std::string& filename, const std::string& scene);
+
+// A scene that has been read, and its film as the options change it, before it is compiled,
+// which will give the film's warnings.
+struct SceneInput {
+    // Throws Error, also if the memory cannot hold such a film.
+    explicit SceneInput(const SceneOptions&, const FilmOptions& = {}, const Messages& = {});
+
+    Warnings warnings;  // printed as they occur
+    Description description;
+    FilmSettings film;
+    PixelRect region;  // the film's crop
+};
+
+// Returns the sampler where neither user nor command name one: that of least noise with independent
+// halves, from which noise is estimated; with pbrt-v3's noise, the scene's.
+SamplerKind DefaultSampler(Estimator, const Scene&);
 
 struct RenderSettings {
     SceneOptions scene;
-    Purpose purpose = Purpose::Image;
     std::optional<int> cap;
     ScheduleOptions schedule;
     std::optional<SamplerKind> sampler;  // else DefaultSampler()
@@ -38,34 +80,26 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator);
 // Adds --caution.
 CLI::Option* AddCautionOption(CLI::App& app, double* caution);
 
-// Compiles the scene for a render, prints how often there was each of its warnings, and has it lie
-// in memory where it is quick to read. With pbrt-v3's estimator lights are chosen by pbrt-v3's
-// tables, however many there are. Throws Error.
-std::unique_ptr<const Scene> CompileScene(const RenderSettings&, SceneInput*);
+// Adds --checkpoint, --checkpoint-interval and --resume.
+void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options);
+
+// Adds --checkpoint-interval alone, for commands that name the file themselves.
+CLI::Option* AddCheckpointInterval(CLI::App& app, CheckpointOptions* options);
 
 // Returns whether a text NAME[:ARGUMENT] is of the rule of this name.
 bool IsRule(const std::string& rule, std::string_view name);
 // Returns N of "fixed:N", 0 for other rules.
 int FixedSpp(const std::string& rule);
 
+// Adds the file that a stopping rule names, "learned:M.h5" or "thresholds:F.csv:NAME", if it does.
+void AddFileOfRule(const std::string& rule, std::vector<NamedFile>* inputs);
+
 // Returns the folder of installed models, next to the program.
 std::string ModelFolder();
-
-// Reads a stopping rule for a scene. `option` names the option that the rule was given with in the
-// Error that a bad rule is; `measures` are RuleContext's.
-Rule ReadRuleOption(const std::string& option, const std::string& rule,
-                    const RenderSettings& settings, const PixelRect& region,
-                    std::map<std::string, SignalMeasure> measures = {});
-
-// Returns the provenance of an image, without the rule.
-Provenance MakeProvenance(const RenderSettings&, const Scene&, const FilmSettings&);
 
 // Returns the format of messages.
 inline Messages MessagesOf(const RenderSettings& settings) {
     return {.isJson = settings.jsonProgress};
 }
-
-// Creates the printer of progress on stderr; `adaptive` says whether blocks stop by themselves.
-ProgressPrinter MakePrinter(const RenderSettings&, bool adaptive);
 
 }  // namespace lull

@@ -43,6 +43,9 @@ inline constexpr int kColours = 3;  // R, G, B
 struct Halves {
     Planes a, b;
 };
+inline Halves MakeHalves(int width, int height, int count) {
+    return {Planes(width, height, count), Planes(width, height, count)};
+}
 
 // Returns the luminance of pixel i of an image with channels R, G, B.
 inline float LuminanceOf(const Planes& image, size_t i) {

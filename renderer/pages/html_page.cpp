@@ -43,6 +43,15 @@ std::vector<float> Shrink(std::span<const float> values, int width, int height, 
     return means;
 }
 
+// Returns the pixels of an image.
+std::vector<Rgb> PixelsOf(const RgbImage& image) {
+    std::vector<Rgb> pixels;
+    pixels.reserve(image.values.size() / 3);
+    for (size_t i = 0; i < image.values.size(); i += 3)
+        pixels.emplace_back(image.values[i], image.values[i + 1], image.values[i + 2]);
+    return pixels;
+}
+
 // Shows the estimated errors of pixels.
 std::string ErrorUri(const DenoisedImage& denoised) {
     std::vector<float> shares;
@@ -91,14 +100,6 @@ std::string FillPage(std::string_view frame, const std::map<std::string, std::st
         rest.remove_prefix(close + 2);
     }
     return page;
-}
-
-std::vector<Rgb> PixelsOf(const RgbImage& image) {
-    std::vector<Rgb> pixels;
-    pixels.reserve(image.values.size() / 3);
-    for (size_t i = 0; i < image.values.size(); i += 3)
-        pixels.emplace_back(image.values[i], image.values[i + 1], image.values[i + 2]);
-    return pixels;
 }
 
 std::string PictureUri(const RgbImage& image) {

@@ -22,9 +22,6 @@ std::string Base64(std::span<const std::byte>);
 std::string PictureUri(const RgbImage&);
 std::string MapUri(std::span<const float> values, int width, int height);
 
-// Returns the pixels of an image.
-std::vector<Rgb> PixelsOf(const RgbImage&);
-
 // Return how many pixels a side a page shows as one, so that its picture has at most 4 million; and
 // that picture, of the means of these pixels (fewer at the right and at the bottom).
 int PagePictureScale(int width, int height);

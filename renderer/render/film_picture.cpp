@@ -14,10 +14,6 @@ namespace lull {
 
 namespace {
 
-Halves MakeHalves(int width, int height, int count) {
-    return {Planes(width, height, count), Planes(width, height, count)};
-}
-
 // Returns the variance of the mean luminance, from the sum of the samples' squares; finite.
 float VarianceOfMean(double squares, double mean, double count) {
     const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);

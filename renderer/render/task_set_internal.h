@@ -24,11 +24,26 @@ class TaskSet {
         : doTile(std::move(doTile)), take(std::move(take)) {}
 
     // Spawns tasks of tiles, from within the arena.
-    void Spawn(int count);
+    void Spawn(int count) {
+        open += count;
+        tileTask.order.Leave();
+        for (int i = 0; i < count; ++i) group.run(std::ref(tileTask));
+    }
     // Has `work` done in the arena, from another thread.
-    void Enqueue(tbb::task_arena*, std::function<void()> work);
+    void Enqueue(tbb::task_arena* arena, std::function<void()> work) {
+        {
+            std::lock_guard lock(worksMutex);
+            works.push_back(std::move(work));
+        }
+        ++open;
+        workTask.order.Leave();
+        arena->enqueue(group.defer(std::ref(workTask)));
+    }
     // Waits until there is no task any more.
-    void Wait();
+    void Wait() {
+        group.wait();
+        tileTask.order.Enter();
+    }
     // Returns whether there is none now.
     bool IsIdle() const { return open == 0; }
 
@@ -37,17 +52,42 @@ class TaskSet {
     struct TileTask {
         TaskSet* set;
         TaskOrder order = {};
-        void operator()();
+        void operator()() {
+            order.Enter();
+            set->Guarded(set->doTile);
+            order.Leave();
+        }
     };
     // Does the oldest of `works`.
     struct WorkTask {
         TaskSet* set;
         TaskOrder order = {};
-        void operator()();
+        void operator()() {
+            order.Enter();
+            set->tileTask.order.Enter();
+            std::function<void()> work;
+            {
+                std::lock_guard lock(set->worksMutex);
+                work = std::move(set->works.front());
+                set->works.pop_front();
+            }
+            set->Guarded(work);
+            set->tileTask.order.Leave();
+        }
     };
 
-    template <typename Work>
-    void Guarded(const Work& work);
+    void Guarded(const std::function<void()>& work) {
+        struct Leaving {
+            std::atomic<int>& open;
+            ~Leaving() { --open; }
+        } leaving{open};
+        try {
+            work();
+        } catch (...) {
+            if (!take) throw;
+            take(std::current_exception());
+        }
+    }
 
     const std::function<void()> doTile;
     const std::function<void(std::exception_ptr)> take;

@@ -144,10 +144,6 @@ constexpr std::array<const char*, kColours> kEmissionNames = {"emission.R", "emi
                                                               "emission.B"};
 constexpr const char* kVarianceName = "variance.Y";
 
-Halves MakeHalves(int width, int height, int count) {
-    return {Planes(width, height, count), Planes(width, height, count)};
-}
-
 template <size_t N>
 void AddChannels(const std::string& layer, const Planes& planes,
                  const std::array<const char*, N>& names, std::vector<ExrChannel>* channels) {

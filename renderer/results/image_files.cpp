@@ -101,11 +101,6 @@ RowSource ChannelsOf(const ExrImage& exr, const RowSource& means, const RowSourc
     };
 }
 
-int64_t WriteExr(const std::string& file, const ExrImage& exr, const RowSource& means,
-                 const RowSource& spp) {
-    return WriteExr(file, exr, ChannelsOf(exr, means, spp));
-}
-
 // Returns the rows of the image, which is never held as a whole beside its sums.
 RowSource MeansOf(const Film& film) {
     return [&film](int y, std::span<float> row) {
@@ -275,12 +270,14 @@ int64_t WriteImage(const PictureFiles& files, const PictureOrigin& origin, Pictu
     if (origin.scene.rightEye)
         return WritePair(files, origin.scene, exr, colours, SppOf(film), shown, png, results);
     int64_t clamped = 0;
-    results->WriteAll(
-        {{files.exr,
-          [&](const std::string& file) { clamped = WriteExr(file, exr, colours, SppOf(film)); }},
-         {files.png, [&](const std::string& file) {
-              WritePng(file, shown, film.Region().Width(), film.Region().Height(), png);
-          }}});
+    results->WriteAll({{files.exr,
+                        [&](const std::string& file) {
+                            clamped = WriteExr(file, exr, ChannelsOf(exr, colours, SppOf(film)));
+                        }},
+                       {files.png, [&](const std::string& file) {
+                            WritePng(file, shown, film.Region().Width(), film.Region().Height(),
+                                     png);
+                        }}});
     return clamped;
 }
 
@@ -293,7 +290,8 @@ void WriteImage(const PictureFiles& files, const PictureOrigin& origin,
         samples += picture.blocks[i].pixels.Area() * picture.spp[i];
     const ExrImage exr = MakeExr(origin, region, samples, picture.seconds);
     results->Write(files.exr, [&](const std::string& file) {
-        WriteExr(file, exr, MeansOf(image), SppOf(region, picture.blocks, picture.spp));
+        WriteExr(file, exr,
+                 ChannelsOf(exr, MeansOf(image), SppOf(region, picture.blocks, picture.spp)));
     });
     results->Write(files.png, [&](const std::string& file) {
         WritePng(file, MeansOf(image), image.width, image.height);

@@ -145,12 +145,6 @@ std::string Dump(const Json& json) {
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string MakeReport(const Provenance& provenance, const RenderResult& result,
-                       int64_t rejectedSamples, const std::map<std::string, int>& warnings,
-                       const DenoisedImage* denoised) {
-    return Dump(ReportJson(provenance, result, rejectedSamples, warnings, denoised));
-}
-
 void WriteSppMap(const std::string& file, const Provenance& provenance,
                  const RenderResult& result) {
     const ScheduleOptions& schedule = provenance.schedule;

@@ -29,11 +29,6 @@ struct Savings {
 
 Savings ComputeSavings(const RenderResult&, int cap);
 
-// Returns the report as a JSON text. `warnings` are counts by kind; `denoised` is null where the
-// image is the mean of the samples.
-std::string MakeReport(const Provenance&, const RenderResult&, int64_t rejectedSamples,
-                       const std::map<std::string, int>& warnings, const DenoisedImage* denoised);
-
 // Writes the stops of the blocks of a render: files next to its image.
 
 // All write a file whole or not at all, and throw Error.
@@ -56,7 +51,8 @@ Json RectJson(const PixelRect&);
 Json ProvenanceJson(const Provenance&);
 // Lists decisions by column, which takes a tenth of the size of an object for each.
 Json DecisionsJson(const std::vector<BlockDecision>&);
-// Returns the report as JSON; MakeReport() writes it.
+// Returns the report. `warnings` are counts by kind; `denoised` is null where the image is the mean
+// of the samples.
 Json ReportJson(const Provenance&, const RenderResult&, int64_t rejectedSamples,
                 const std::map<std::string, int>& warnings, const DenoisedImage*);
 

@@ -4,8 +4,6 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 
-#include "renderer/commands/checkpoint_options.h"
-#include "renderer/commands/render_files.h"
 #include "renderer/commands/render_job.h"
 #include "renderer/lab/commands/compare_options.h"
 #include "renderer/lab/commands/lab_options.h"
@@ -110,16 +108,13 @@ MonitoredRule MakeRule(const std::string& name, const Rule& rule) {
 // Adds the rule of people, and that of denoised images, where they are asked for.
 void AddOtherRules(Compared* compared) {
     const CompareOptions& options = compared->options;
-    const PixelRect& region = compared->render.input.region;
     if (!options.human.empty() && !IsImageFile(options.human)) {
-        RenderSettings plain = options.render;
-        plain.caution = 1;
-        const Rule human = ReadRuleOption("--human", "thresholds:" + options.human, plain, region);
+        const Rule human = compared->render.ReadRule("--human", "thresholds:" + options.human, 1);
         compared->rules.push_back(MakeRule("human", human));
         compared->humanChecksum = human.checksum;
     }
     if (!options.denoise) return;
-    CheckFilmFits(region, {.layers = {.features = true}});
+    CheckFilmFits(compared->render.input.region, {.layers = {.features = true}});
     compared->render.DenoiseBlocks();
     compared->rules.push_back(
         MakeRule("denoised", compared->render.ReadRule("--denoise", kDenoisedRuleName)));
@@ -180,7 +175,7 @@ SessionOptions MakeOptions(Compared* compared) {
 // Renders the automatic image by itself.
 Verification Verify(const Compared& compared, int threads, const ComparedImage& expected) {
     const RenderJob& render = compared.render;
-    SessionOptions how = MakeSessionOptions(render.settings, true, nullptr);
+    SessionOptions how = render.MakeSessionOptions(true, false);
     how.render.schedule.smallestSide = compared.rules.front().smallestSide;
     how.render.threads = threads;
     how.render.makeCriterion = compared.rules.front().make;

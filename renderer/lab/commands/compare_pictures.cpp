@@ -1,7 +1,7 @@
 // `lull compare --images`: the images of a rule and of people, made of another renderer's pictures.
 #include <fmt/format.h>
 
-#include "renderer/commands/render_files.h"
+#include "renderer/commands/render_settings.h"
 #include "renderer/image/image_io.h"
 #include "renderer/lab/commands/compare_options.h"
 #include "renderer/lab/commands/lab_options.h"

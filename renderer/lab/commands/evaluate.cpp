@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "renderer/commands/command.h"
-#include "renderer/commands/render_files.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/lab_options.h"

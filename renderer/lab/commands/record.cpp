@@ -195,7 +195,7 @@ void AddCommand(CLI::App& app, Command* command, MpiJob* job) {
         "record", "Records block histories of a viewpoint, to train stopping rules.");
     auto options = std::make_shared<Options>();
     // Observers judged pbrt-v3's own noise.
-    options->render.purpose = Purpose::Recording;
+    options->render.sampler = SamplerKind::Random;
     options->render.estimator = Estimator::PbrtV3;
     AddOptions(*dataset, options.get());
     dataset->callback([=] {

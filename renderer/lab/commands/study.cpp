@@ -143,7 +143,7 @@ void AddCommand(CLI::App& app, Command* command) {
         "study", "Makes a page on which observers mark visible noise, and collects their answers.");
     auto settings = std::make_shared<Options>();
     // As lull record renders, so that answers are to what it records.
-    settings->render.purpose = Purpose::Recording;
+    settings->render.sampler = SamplerKind::Random;
     settings->render.estimator = Estimator::PbrtV3;
     AddOptions(*study, settings.get());
     study->callback([=] {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/command.h"
+#include "renderer/commands/render_job.h"
 #include "renderer/files/file_io.h"
 #include "renderer/lab/commands/tables.h"
 #include "renderer/lab/commands/train_options.h"

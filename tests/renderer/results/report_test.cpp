@@ -48,7 +48,7 @@ TEST(ComputeSavings, SavesNothingWithoutABlock) {
     EXPECT_EQ(ComputeSavings({}, 100).SecondShare(), 0);
 }
 
-TEST(MakeReport, HoldsBlocksTotalsAndProvenance) {
+TEST(ReportJson, HoldsBlocksTotalsAndProvenance) {
     Provenance provenance;
     provenance.version = "1.2.3";
     provenance.scene = "a \"quoted\" name\xff";
@@ -56,7 +56,7 @@ TEST(MakeReport, HoldsBlocksTotalsAndProvenance) {
     provenance.criterion = "dammertz:0.02";
     provenance.schedule.cap = 100;
     const auto report = nlohmann::json::parse(
-        MakeReport(provenance, TwoBlocks(), 3, {{"zero-area triangle", 7}}, nullptr));
+        Dump(ReportJson(provenance, TwoBlocks(), 3, {{"zero-area triangle", 7}}, nullptr)));
     EXPECT_EQ(report["provenance"]["seed"], 0xffffffffffffffffull);
     EXPECT_EQ(report["provenance"]["sampler"], "sobol");
     EXPECT_EQ(report["provenance"]["estimator"], "combined");
