@@ -9,6 +9,7 @@
 #include "renderer/input/gltf_loader.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
+#include "renderer/lab/pages/study_page.h"
 #include "renderer/render/checkpoint.h"
 #include "renderer/scene/cameras/lens_system.h"
 #include "renderer/scene/geometry/shape_table.h"
@@ -235,6 +236,14 @@ void FuzzCheckpoint(std::span<const char> bytes) {
     }
 }
 
+void FuzzStudyPage(std::span<const char> bytes) {
+    const std::string path = WriteInput(bytes);
+    try {
+        ReadStudyPage(path);
+    } catch (const Error&) {
+    }
+}
+
 void FuzzTrainingCheckpoint(std::span<const char> bytes) {
     const std::string path = WriteSealed(bytes);
     try {
@@ -275,6 +284,7 @@ std::vector<NamedFuzzTarget> FuzzTargets() {
             {"display", FuzzDisplay},
             {"dataset", FuzzDataset},
             {"checkpoint", FuzzCheckpoint},
+            {"study_page", FuzzStudyPage},
             {"training_checkpoint", FuzzTrainingCheckpoint},
             {"criterion_state", FuzzCriterionState}};
 }
