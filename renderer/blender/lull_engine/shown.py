@@ -1,4 +1,4 @@
-"""What a render shows, however it came about: objects, instances, particles, metaballs and text, as places of meshes. Copies share
+"""All that a render shows: objects, instances, particles, metaballs and text, as places of meshes. Copies share
 their mesh."""
 from dataclasses import dataclass
 
@@ -106,7 +106,7 @@ class Collector:
             self._place(instance, mesh, away)
 
     def _key(self, o):
-        """Returns what copies of a mesh share: data and materials, and the object if they ask who they are on."""
+        """Returns the key that copies of a mesh share: data and materials, and the object if they ask for it."""
         data, original = o.data, o.original
         known = data.as_pointer() if data else 0, original
         if known not in self._keys:
@@ -149,7 +149,7 @@ class Collector:
         return self._asked[key]
 
     def _note_copies(self):
-        """Notes those of the materials of copies that ask which copy they are on."""
+        """Notes materials of copies that depend on the copy."""
         copied = {m.name_full: m for key, n in self._copied.items() if n > 1 for m in self._meshes[key].materials if m}
         for material in copied.values():
             if self._asks(material, True):

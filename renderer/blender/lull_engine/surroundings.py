@@ -33,7 +33,7 @@ class Surroundings:
         lit = Tree(world, self._answered) if tree else None
         surface = _pruned(lit.output.inputs['Surface'].source) if tree else None
         if tree:
-            upstream(surface)  # reads all, and finds who asks for rays
+            upstream(surface)  # reads all nodes, and finds questions for kinds of rays
         r, is_seen = scene.render, getattr(visible, "camera", True)
         size = resolution(r)
         if not r.film_transparent and (self._is_asked or not lights or not is_seen or is_sharp and plain is None):
@@ -110,7 +110,7 @@ def _plain(world, tree):
 
 
 def _pruned(output):
-    """Leaves out what other rays see, which is no part of the light."""
+    """Leaves out surfaces for other rays, which are no part of the light."""
     while output.node.type == 'MIX_SHADER' and (factor := output.node.inputs[0].source) is not None and isinstance(factor.node, Made):
         seen = output.node.inputs[1 + int(factor.node.inputs[0].default_value)].source
         if seen is None:
