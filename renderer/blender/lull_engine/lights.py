@@ -24,7 +24,8 @@ class Lights:
         self._trees = {}  # kept, as the baker knows values by their outputs
 
     def read(self, notes):
-        """Returns the lights that shine, with the properties in _COPIED, and their lamps. To be called again while the baker lacks something."""
+        """Returns the lights that shine, with the properties in _COPIED, and their lamps. To be called again while the baker lacks
+        something."""
         folded, found = {}, []
         for lamp in self._lamps:
             with notes.of(lamp.original.name, "lights"):

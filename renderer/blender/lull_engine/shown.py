@@ -122,7 +122,8 @@ class Collector:
             is_mesh = o.type == 'MESH' and not o.data.is_editmode
             data = o.data if is_mesh else o.to_mesh()
             materials = [slot.material for slot in o.material_slots]
-            asks = any(m and m.use_nodes and _asks_generated(m.node_tree) for m in [*materials, self._override])
+            asks = any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n)
+                       for m in [*materials, self._override] if m and m.use_nodes for n in all_nodes(m.node_tree))
             mesh = meshes.of_blender(data, original.name, asks) if data else None
             if mesh is not None:
                 mesh.materials = materials or [None]
@@ -204,10 +205,6 @@ def _asks(tree, is_copy):
 def reads_generated(node):
     """Returns whether a texture has the generated coordinates without a link."""
     return node.type in _TEXTURES and not node.inputs['Vector'].is_linked
-
-
-def _asks_generated(tree):
-    return any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n) for n in all_nodes(tree))
 
 
 def _note_of(original, notes):

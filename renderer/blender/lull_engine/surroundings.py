@@ -58,7 +58,8 @@ class Surroundings:
             return {"name": world.name, "file": path,
                     "nodes": [output and described(output, ["worlds", world.original.name_full]) for output in outputs]}
 
-        behind = [_background(world)] if tree is None else [tree.output.inputs[name].source for name in ('Surface', 'Volume')]
+        behind = [tree.output.inputs[name].source for name in ('Surface', 'Volume')] if tree else [
+            Made('Background', 'BACKGROUND', (*world.color, 1.), 1.).output(0, 'SHADER')]
         baker.ask_world({
             "light": part(self.light, surface) if asks_light else None, "backdrop": part(self.backdrop, *behind) if asks_behind else None,
             "width": _width(surface) if asks_light else 0, "camera": view.data.original.name_full, "focus": view.focus(),
@@ -90,10 +91,6 @@ class Surroundings:
         if name not in ('Is Camera Ray', 'Is Diffuse Ray'):
             self._notes.say(f"the world '{self._world.name}' lights mirrors and glass as it lights diffuse surfaces")
         return computed('ADD', float(name in _OF_DIFFUSE_LIGHT), 0.)
-
-
-def _background(world):
-    return Made('Background', 'BACKGROUND', (*world.color, 1.), 1.).output(0, 'SHADER')
 
 
 def _plain(world, tree):
