@@ -5,8 +5,8 @@ import struct
 import zlib
 
 
-def png(width, height, pixel):
-    """Encodes an 8-bit PNG; pixel(x, y) returns 1 or 3 values in [0, 1]."""
+def write_png(path, width, height, pixel):
+    """Writes an 8-bit PNG; pixel(x, y) returns 1 or 3 values in [0, 1]."""
     channels = len(pixel(0, 0))
     rows = b''
     for y in range(height):
@@ -18,13 +18,7 @@ def png(width, height, pixel):
         return struct.pack('>I', len(data)) + kind + data + crc
 
     header = struct.pack('>IIBBBBB', width, height, 8, 2 if channels == 3 else 0, 0, 0, 0)
-    return (b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', header) +
-            chunk(b'IDAT', zlib.compress(rows, 9)) + chunk(b'IEND', b''))
-
-
-def write_png(path, width, height, pixel):
-    with open(path, 'wb') as f:
-        f.write(png(width, height, pixel))
+    path.write_bytes(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', header) + chunk(b'IDAT', zlib.compress(rows, 9)) + chunk(b'IEND', b''))
 
 
 def smooth(t):

@@ -24,7 +24,7 @@ class Baker:
         self.scene.render.bake.margin = 8
 
     def plain(self, described, what=None):
-        """Returns the R, G, B of a value that is the same everywhere, or on an object of which `what` tells as for body()."""
+        """Returns the R, G, B of a value that is the same everywhere, or on an object, described as in body()."""
         o = self._square(())
         if what is not None:
             _liken(o, what)
@@ -43,7 +43,7 @@ class Baker:
         return pixels[:, :, :3]
 
     def body(self, arrays, what):
-        """Returns a mesh of its arrays, unwrapped. `what` tells of its object: name, matrix, color, pass_index and properties."""
+        """Returns a mesh of its arrays, unwrapped. `what` has the name, matrix, color, pass_index and properties of its object."""
         return _Body(arrays, what, self)
 
     def _square(self, names):

@@ -30,7 +30,7 @@ def made(node, **parameters):
 
 
 def _note_roughness(surface, node, found):
-    """Marks what keeps all light, and notes what reflects much, and is so rough that single scattering loses light."""
+    """Marks surfaces that keep all light, and notes others so rough that single scattering loses light."""
     kind = getattr(node, "distribution", '')
     rough = next((least for name, least in _ROUGH if is_output(found[name]) or found[name] > 0), None)
     is_rough = rough is not None and (is_output(found['Roughness']) or found['Roughness'] > rough)

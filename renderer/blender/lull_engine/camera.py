@@ -1,4 +1,4 @@
-"""The camera of a render, with what glTF lacks as `extras`."""
+"""The camera of a render; parameters that glTF lacks become `extras`."""
 import math
 
 from mathutils import Matrix
@@ -14,7 +14,7 @@ def resolution(render):
 
 
 class View:
-    """What the camera of an evaluated scene sees. Raises: Failure."""
+    """The view of an evaluated scene's camera. Raises: Failure."""
 
     def __init__(self, scene, graph, notes):
         camera = self._camera = scene.camera

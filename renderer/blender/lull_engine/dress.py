@@ -33,7 +33,7 @@ class Dresser:
         self._surfaces = [self._read(material, of, notes) for material, of in self._users]
 
     def _read(self, material, users, notes):
-        """Returns the surface, two for materials whose sides differ, or a word for what has none."""
+        """Returns the surface, two for materials whose sides differ, or a word for a material without one."""
         if material is None:
             return 'plain'
         state = state_of(material)
@@ -100,7 +100,7 @@ class Dresser:
 
 
 def add_meshes(writer, shown, parts, notes):
-    """Writes meshes and their materials. Returns their numbers, and those that shine."""
+    """Writes meshes and their materials. Returns their numbers, and the set of meshes that shine."""
     known, numbers, shining = {}, {}, set()
 
     def material_of(part):

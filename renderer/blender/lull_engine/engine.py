@@ -209,7 +209,7 @@ class _Job:
 
     @staticmethod
     def _named(text, exported):
-        """Returns a message with the names of what it finds in the file, such as "object 'lamp'" for /nodes/6."""
+        """Returns a message with names in place of paths in the file, such as "object 'lamp'" for /nodes/6."""
         def name(found):
             names, number = exported.names.get(found[1], ()), int(found[2])
             kind = "object" if found[1] == "nodes" else found[1][:-1]

@@ -1,4 +1,4 @@
-"""Converts lights to those of glTF and lull."""
+"""Converts lights to lights of glTF and lull."""
 import math
 import os
 from types import SimpleNamespace
@@ -24,7 +24,8 @@ class Lights:
         self._trees = {}  # kept, as the baker knows values by their outputs
 
     def read(self, notes):
-        """Returns the lights that shine, of what _COPIED names, and their lamps. To be called again while the baker lacks something."""
+        """Returns the lights that shine, with the properties in _COPIED, and their lamps. To be called again while the baker lacks
+        something."""
         folded, found = {}, []
         for lamp in self._lamps:
             with notes.of(lamp.original.name, "lights"):
@@ -193,7 +194,7 @@ def punctual(light):
 
 
 def sun(said):
-    """Returns a sun of the world, and where it is; `said` is one of those of world.write()."""
+    """Returns a sun of the world, and its matrix; `said` is a result of world.write()."""
     light = SimpleNamespace(name="environment", type='SUN', energy=said["energy"], color=said["color"], own={"angle": said["angle"]})
     return light, Matrix(said["matrix"])
 

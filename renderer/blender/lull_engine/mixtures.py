@@ -73,7 +73,7 @@ def _halves(surface, sockets):
 
 
 def _keep_highlights(surface, both, a, b, factor):
-    """Gives a mixture the roughness and the colour of what reflects, and its own base to what scatters."""
+    """Gives a mixture the roughness and the colour of its reflecting half, and the base of the other."""
     shares = ((a, values.minus(factor)), (b, factor))
     reflecting = [(p, share) for p, share in shares if _reflects(p)]
     if len(reflecting) == 2 and not any(is_output(p['Roughness']) for p in (a, b)) and abs(a['Roughness'] - b['Roughness']) > 0.1:
@@ -106,8 +106,8 @@ def _hides_from_rays(surface, other, factor):
 
 
 def _mixed_by_view(surface, a, b, factor):
-    """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what lights
-    the scene holds, else what the camera sees."""
+    """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; by kinds of rays, the surface that lights
+    the scene is taken, else that for the camera."""
     kinds = {n.type for n in upstream(factor)}
     is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
     if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:

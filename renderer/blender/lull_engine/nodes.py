@@ -6,7 +6,7 @@ import bpy
 
 
 class Output:
-    """An output of a node. Those of one tree are the same object."""
+    """An output of a node. A tree has one object for each."""
 
     def __init__(self, node, index, name, type_):
         self.node, self.index, self.name, self.type = node, index, name, type_

@@ -6,7 +6,7 @@ from .process import Failure
 
 
 class Notes:
-    """Lists names by what happens to them, and sentences."""
+    """Lists names by consequences, and sentences."""
 
     def __init__(self):
         self._names, self._sentences = {}, []
@@ -27,7 +27,7 @@ class Notes:
 
     @contextlib.contextmanager
     def of(self, name, kind="objects"):
-        """Lets an exception end nothing but what concerns one thing."""
+        """Limits the effect of an exception to one thing."""
         try:
             yield
         except Failure:
@@ -47,7 +47,7 @@ class Notes:
         return lines
 
     def take(self, other):
-        """Adds what other notes have."""
+        """Adds other notes."""
         for sentence in other._sentences:
             self.say(sentence)
         for key, names in other._names.items():
@@ -70,7 +70,7 @@ def note_film(scene, layer, notes):
 
 
 def limits(scene, depth):
-    """Returns sentences about what Cycles has and lull has not, with one about all its settings that change the picture."""
+    """Returns sentences about features of Cycles that lull lacks, one of them about all settings that change the picture."""
     c, r, found = scene.cycles, scene.render, []
     if c.max_bounces < depth:
         found.append(f"{c.max_bounces} bounces")
@@ -91,7 +91,7 @@ def limits(scene, depth):
 
 
 def _unjudged(scene):
-    """Returns a sentence about what changes the colours of a picture and is unknown to lull, which only judges noise by them."""
+    """Returns a sentence about changes of colour that are unknown to lull, which judges noise without them."""
     view = scene.view_settings
     found = [f"the look '{view.look}'"] * (view.look != 'None') + ["gamma"] * (view.gamma != 1) + \
         ["curves"] * view.use_curve_mapping + [f"a display of {scene.display_settings.display_device}"] * \

@@ -1,4 +1,4 @@
-"""Shows what will look different, and exports the scene for the command line."""
+"""Lists differences from Cycles, and exports the scene for the command line."""
 import os
 import shlex
 import tempfile

@@ -1,4 +1,4 @@
-"""The settings of a scene, the panels of lull, and those of Blender that are for every engine."""
+"""The settings of a scene, the panels of lull, and panels of Blender that are for every engine."""
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
@@ -10,7 +10,7 @@ _BORROWED = ("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", 
              "VIEWLAYER_PT_layer_passes_lightgroups", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture")
 # Panels of features that lull does not support.
 _OTHERS = ("RENDER_PT_simplify", "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "RENDER_PT_gpencil")
-_TWICE = ("DATA_PT_light",)  # those that are borrowed, without nodes
+_TWICE = ("DATA_PT_light",)  # borrowed ones, without nodes
 
 
 class LullSettings(bpy.types.PropertyGroup):

@@ -1,4 +1,4 @@
-"""The passes of a render: those that lull always has, and those that the view layer asks for."""
+"""The passes of a render: passes that lull always has, and passes that the view layer asks for."""
 import json
 from dataclasses import dataclass
 from typing import Callable
@@ -14,7 +14,7 @@ _LACKED = ("vector", "uv", "shadow", "ambient_occlusion", "emit", "environment",
 
 @dataclass
 class Picture:
-    """What passes are made of: channels and attributes of an EXR, and the result of the export."""
+    """The source of passes: channels and attributes of an EXR, and the result of the export."""
     channels: dict
     attributes: dict
     exported: dict
@@ -47,7 +47,7 @@ def _turned(prefix):
 
 
 def _index(which):
-    """Returns what reads the numbers of objects or materials as Blender's pass indices."""
+    """Returns a function that reads the numbers of objects or materials as Blender's pass indices."""
     def fill(picture):
         names = json.loads(picture.attributes[which + "Names"].decode())
         numbers, indices = picture.channels[which + "ID"], getattr(picture.exported, which + "s")
@@ -90,8 +90,8 @@ _FIRST_HITS = (("Depth", "Z", "depth", _channels("Z")), ("Normal", "XYZ", "norma
 
 
 def wanted(scene, layer):
-    """Returns the passes of a view layer, besides Combined. Names that begin with Denoising, Noisy Image and Debug Sample Count are
-    those of Cycles, which composites link."""
+    """Returns the passes of a view layer, besides Combined. Denoising ..., Noisy Image and Debug Sample Count are
+    names of Cycles, which composites link."""
     of_cycles, stores = layer.cycles, layer.cycles.denoising_store_passes
     found = [Pass(*hit) for hit in _FIRST_HITS]
     found += [Pass("Samples", "X", "", _channels(["spp"])), Pass("Noise", "X", "noise", _channels(["noise"]))]

@@ -33,7 +33,7 @@ def ended(code):
 
 
 def run(command, stopped, heard):
-    """Runs a command, and calls `heard` with what it prints. Returns its exit code, its output, and whether `stopped` returned true."""
+    """Runs a command, and calls `heard` with its output. Returns its exit code, its output, and whether `stopped` returned true."""
     with _start(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as process:
         with selectors.DefaultSelector() as selector:
             selector.register(process.stdout, selectors.EVENT_READ)

@@ -1,4 +1,4 @@
-"""What a render shows, however it came about: objects, instances, particles, metaballs and text, as places of meshes. Copies share
+"""All that a render shows: objects, instances, particles, metaballs and text, as places of meshes. Copies share
 their mesh."""
 from dataclasses import dataclass
 
@@ -106,7 +106,7 @@ class Collector:
             self._place(instance, mesh, away)
 
     def _key(self, o):
-        """Returns what copies of a mesh share: data and materials, and the object if they ask who they are on."""
+        """Returns the key that copies of a mesh share: data and materials, and the object if they ask for it."""
         data, original = o.data, o.original
         known = data.as_pointer() if data else 0, original
         if known not in self._keys:
@@ -122,7 +122,8 @@ class Collector:
             is_mesh = o.type == 'MESH' and not o.data.is_editmode
             data = o.data if is_mesh else o.to_mesh()
             materials = [slot.material for slot in o.material_slots]
-            asks = any(m and m.use_nodes and _asks_generated(m.node_tree) for m in [*materials, self._override])
+            asks = any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n)
+                       for m in [*materials, self._override] if m and m.use_nodes for n in all_nodes(m.node_tree))
             mesh = meshes.of_blender(data, original.name, asks) if data else None
             if mesh is not None:
                 mesh.materials = materials or [None]
@@ -149,7 +150,7 @@ class Collector:
         return self._asked[key]
 
     def _note_copies(self):
-        """Notes those of the materials of copies that ask which copy they are on."""
+        """Notes materials of copies that depend on the copy."""
         copied = {m.name_full: m for key, n in self._copied.items() if n > 1 for m in self._meshes[key].materials if m}
         for material in copied.values():
             if self._asks(material, True):
@@ -204,10 +205,6 @@ def _asks(tree, is_copy):
 def reads_generated(node):
     """Returns whether a texture has the generated coordinates without a link."""
     return node.type in _TEXTURES and not node.inputs['Vector'].is_linked
-
-
-def _asks_generated(tree):
-    return any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n) for n in all_nodes(tree))
 
 
 def _note_of(original, notes):

@@ -10,7 +10,7 @@ _READERS = {**READERS, 'MIX_SHADER': mixed, 'ADD_SHADER': added}
 
 
 class Surface:
-    """`parameters` are those of bsdfs.DEFAULTS, and perhaps Normal; None where nothing is known of the surface. `own` are lull's own
+    """`parameters` are those of bsdfs.DEFAULTS, and perhaps Normal; None for an unknown surface. `own` are lull's own
     properties of the material."""
 
     def __init__(self, material, view, solid, notes, side=None):
@@ -29,7 +29,7 @@ class Surface:
             surface = self.root.inputs[side]
         self.parameters = dict(BLACK) if surface.source is None else self.closure(surface)
         self.absorbs = self._absorption(tree.output.inputs['Volume'].source)
-        self.kind = 'NORMAL'  # what is baked for the parameter Normal
+        self.kind = 'NORMAL'  # the kind of bake for the parameter Normal
         if self.parameters is None:
             self.note("in the viewport colour, as nothing is known of the surface")
             return
@@ -40,7 +40,7 @@ class Surface:
         self._note_what_holds_of_the_whole(moves)
 
     def _replaced(self, node, name):
-        """Lets nodes have what is known of strands, of the camera, and of images without a file; see nodes.Tree."""
+        """Replaces outputs that depend on strands, on the camera or on images without a file; see nodes.Tree."""
         path = images.missing(node.image) if node.type == 'TEX_IMAGE' else None
         if path is None:
             return values.strand(node, name) or values.of_camera(node, name, self._view)
@@ -52,7 +52,7 @@ class Surface:
         self._notes.add(consequence, self.name, "materials")
 
     def number_of(self, name, value):
-        """Returns what a parameter of one number has of an output of a colour or vector: always the same."""
+        """Returns the number that a parameter makes of an output of a colour or vector: always the same object."""
         if isinstance(DEFAULTS.get(name), tuple) or value.type in ('VALUE', 'INT', 'BOOLEAN'):
             return value
         return self._numbers.setdefault(name, values.number(value))

@@ -33,7 +33,7 @@ class Surroundings:
         lit = Tree(world, self._answered) if tree else None
         surface = _pruned(lit.output.inputs['Surface'].source) if tree else None
         if tree:
-            upstream(surface)  # reads all, and finds who asks for rays
+            upstream(surface)  # reads all nodes, and finds questions for kinds of rays
         r, is_seen = scene.render, getattr(visible, "camera", True)
         size = resolution(r)
         if not r.film_transparent and (self._is_asked or not lights or not is_seen or is_sharp and plain is None):
@@ -58,7 +58,8 @@ class Surroundings:
             return {"name": world.name, "file": path,
                     "nodes": [output and described(output, ["worlds", world.original.name_full]) for output in outputs]}
 
-        behind = [_background(world)] if tree is None else [tree.output.inputs[name].source for name in ('Surface', 'Volume')]
+        behind = [tree.output.inputs[name].source for name in ('Surface', 'Volume')] if tree else [
+            Made('Background', 'BACKGROUND', (*world.color, 1.), 1.).output(0, 'SHADER')]
         baker.ask_world({
             "light": part(self.light, surface) if asks_light else None, "backdrop": part(self.backdrop, *behind) if asks_behind else None,
             "width": _width(surface) if asks_light else 0, "camera": view.data.original.name_full, "focus": view.focus(),
@@ -92,10 +93,6 @@ class Surroundings:
         return computed('ADD', float(name in _OF_DIFFUSE_LIGHT), 0.)
 
 
-def _background(world):
-    return Made('Background', 'BACKGROUND', (*world.color, 1.), 1.).output(0, 'SHADER')
-
-
 def _plain(world, tree):
     """Returns the colour of an even world; None for others."""
     if tree is None:
@@ -110,7 +107,7 @@ def _plain(world, tree):
 
 
 def _pruned(output):
-    """Leaves out what other rays see, which is no part of the light."""
+    """Leaves out surfaces for other rays, which are no part of the light."""
     while output.node.type == 'MIX_SHADER' and (factor := output.node.inputs[0].source) is not None and isinstance(factor.node, Made):
         seen = output.node.inputs[1 + int(factor.node.inputs[0].default_value)].source
         if seen is None:

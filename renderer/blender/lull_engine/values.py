@@ -1,8 +1,8 @@
-"""Values of surfaces' parameters: numbers, colours as three numbers, and outputs of nodes. What is made of outputs are nodes of our own."""
+"""Values of surfaces' parameters: numbers, colours as three numbers, and outputs of nodes. Operations on outputs make nodes of our own."""
 from .nodes import Made, computed, is_output, upstream
 from .strands import STRANDS
 
-# What depends on the direction from which a surface is seen, or on who asks.
+# Nodes that depend on the direction from which a surface is seen, or on the kind of ray.
 _BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA', 'LIGHT_FALLOFF', 'TEX_IES'}
 _OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': {'Backfacing', 'Incoming'}, 'TEX_COORD': {'Camera', 'Window', 'Reflection'}}
 _BY_OBJECT = {'OBJECT_INFO', 'ATTRIBUTE'}  # the latter of objects alone
@@ -76,7 +76,7 @@ def number(value):
 
 
 def strand(node, name):
-    """Replaces what the nodes of a material ask of the strand by what UV maps know; see nodes.Tree."""
+    """Replaces an output that depends on the strand by its UV map; see nodes.Tree."""
     if node.type != 'HAIR_INFO' or name not in ('Is Strand', 'Intercept', 'Random'):
         return None
     parts = Made('SeparateXYZ', 'SEPXYZ', Made('UVMap', 'UVMAP', uv_map=STRANDS).output(0, 'VECTOR'))
@@ -136,7 +136,7 @@ def is_even(output):
 
 
 def is_by_view(output):
-    """Returns whether an output depends on the direction from which a surface is seen, or on who asks."""
+    """Returns whether an output depends on the direction from which a surface is seen, or on the kind of ray."""
     return any(n.type in _BY_VIEW or used & _OUTPUTS_BY_VIEW.get(n.type, set()) or
                n.type == 'VECT_TRANSFORM' and 'CAMERA' in (n.convert_from, n.convert_to) for n, used in upstream(output).items())
 
@@ -172,7 +172,7 @@ def _moves(node):
 
 
 def _above_images(output):
-    """Yields the nodes on which a value depends, but those that place images."""
+    """Yields the nodes on which a value depends, without the nodes that place images."""
     seen, todo = set(), [output.node]
     while todo:
         node = todo.pop()

@@ -102,7 +102,7 @@ def _take_suns(world, photograph):
     """Removes the discs of the suns from the nodes of a world. `photograph(world, camera, size)` returns the pixels of a world as a
     camera sees it.
 
-    Returns: what Lights need: their energy, colour, angle and direction.
+    Returns: the energy, colour, angle and matrix of each, for Lights.
     """
     found = []
     for node in _discs(world):
