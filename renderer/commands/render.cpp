@@ -11,7 +11,7 @@
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
 #include "stopping/base/input_file.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 
 namespace lull::render {
 

@@ -9,7 +9,7 @@
 #include "renderer/commands/render_files.h"
 #include "renderer/input/scene_hash.h"
 #include "renderer/mpi/job.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 
 namespace lull {
 

@@ -9,7 +9,7 @@
 #include "renderer/commands/output_options.h"
 #include "renderer/commands/render_files.h"
 #include "renderer/render/film_picture.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull::render {

@@ -6,7 +6,7 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/commands/command.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

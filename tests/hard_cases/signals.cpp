@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "stopping/features/block_memory.h"
+#include "stopping/features/model_inputs.h"
 #include "stopping/rules/learned.h"
 #include "stopping/rules/rule_table.h"
 #include "stopping/signals/svd_entropy.h"
