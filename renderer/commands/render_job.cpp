@@ -19,7 +19,7 @@
 #include "renderer/input/scene_hash.h"
 #include "renderer/mpi/job.h"
 #include "stopping/base/input_file.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

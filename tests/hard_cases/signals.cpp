@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "stopping/features/block_memory.h"
+#include "stopping/features/model_inputs.h"
+#include "stopping/rules/learned.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"

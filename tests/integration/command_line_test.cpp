@@ -165,8 +165,7 @@ TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
 TEST(CommandLine, HelpNamesChoices) {
     const TemporaryDirectory directory;
     for (const auto& [command, option] : {std::pair("render", "--png-bits 8|16=8 "),
-                                          {"evaluate", "--choose-by error|critical=error"},
-                                          {"train", "--m 4|25|100|400=100 "}}) {
+                                          {"evaluate", "--choose-by error|critical=error"}}) {
         const Outcome outcome = RunLull(directory, std::string(command) + " --help-all");
         EXPECT_TRUE(Contains(outcome.out, option)) << outcome.out;
     }
