@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/image/rgb_image.h"
+#include "renderer/image/image.h"
 #include "renderer/schedule/schedule.h"
 #include "stopping/signals/attributes26.h"
 #include "stopping/signals/svd_entropy.h"
