@@ -7,7 +7,7 @@
 
 #include "renderer/commands/checkpoint_options.h"
 #include "renderer/commands/render_files.h"
-#include "renderer/input/scene_hash.h"
+#include "renderer/input/description.h"
 #include "renderer/mpi/job.h"
 #include "stopping/rules/lnoise.h"
 
