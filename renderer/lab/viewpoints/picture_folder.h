@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/image/rgb_image.h"
+#include "renderer/image/image.h"
 #include "renderer/lab/comparison/comparison.h"
 #include "renderer/schedule/schedule.h"
 #include "stopping/rules/rule.h"
