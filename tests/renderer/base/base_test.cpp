@@ -1,9 +1,9 @@
-// Tests the small things everything uses: geometry, color and the counting of warnings.
+// Tests the small things everything uses: geometry, color and memory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <new>
 #include <numeric>
-#include <thread>
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
@@ -131,36 +131,6 @@ TEST(Color, WhiteHasLuminanceOne) {
     EXPECT_FLOAT_EQ(Luminance(Rgb(0, 1, 0)), 0.715160f);
 }
 
-FileLoc LocAt(int line) { return {std::make_shared<const std::string>("scene.pbrt"), line}; }
-
-TEST(FileLoc, FormatsItsPrefix) {
-    EXPECT_EQ(LocAt(7).Prefix(), "scene.pbrt:7: ");
-    EXPECT_EQ(LocAt(0).Prefix(), "scene.pbrt: ");
-    EXPECT_EQ(FileLoc().Prefix(), "");
-    EXPECT_STREQ(Error(LocAt(7), "broken").what(), "scene.pbrt:7: broken");
-}
-
-TEST(OneLine, JoinsWhatLibrariesSayInSeveral) {
-    EXPECT_EQ(OneLine("one"), "one");
-    EXPECT_EQ(OneLine("one\ntwo\r\n\nthree\n"), "one; two; three");
-    EXPECT_EQ(OneLine("\n"), "");
-    EXPECT_EQ(OneLine("abcdefgh", 8), "abcdefgh");
-    EXPECT_EQ(OneLine("abcdefghi", 4), "ab ... hi");
-    EXPECT_EQ(OneLine("\u00e4\u00e4\u00e4\u00e4", 6), "\u00e4 ... \u00e4");  // no half characters
-}
-
-TEST(OneLine, EscapesWhatNoTerminalPrints) {
-    EXPECT_EQ(OneLine("a\x1b\x7f"), "a\\x1b\\x7f");
-    EXPECT_EQ(OneLine("\u00e4\u20ac\U0001f600"), "\u00e4\u20ac\U0001f600");
-    EXPECT_EQ(OneLine("a\xe4 b"), "a\\xe4 b");              // Latin-1
-    EXPECT_EQ(OneLine("\xe2\x82"), "\\xe2\\x82");           // cut short
-    EXPECT_EQ(OneLine("\xc2"), "\\xc2");                    // its second byte is missing
-    EXPECT_EQ(OneLine("\xc2\x9b"), "\\xc2\\x9b");           // a control character
-    EXPECT_EQ(OneLine("\xc0\xaf"), "\\xc0\\xaf");           // too long for its character
-    EXPECT_EQ(OneLine("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // half of a pair
-    EXPECT_EQ(OneLine("\xff\xfe"), "\\xff\\xfe");
-}
-
 TEST(LengthOf, IsRightAlsoWhereSquaresAreNot) {
     for (const float scale : {1e-30f, 1e-20f, 1.f, 1e20f, 1e30f}) {
         const Vec3f v = scale * Vec3f(2, -3, 6);
@@ -171,46 +141,31 @@ TEST(LengthOf, IsRightAlsoWhereSquaresAreNot) {
     EXPECT_EQ(UnitOf(Vec3f::Zero()), Vec3f::Zero());
 }
 
-TEST(PrintToStderr, GoesOnWhereNothingCanBeWritten) {
-    std::FILE* full = std::fopen("/dev/full", "w");
-    if (!full) GTEST_SKIP() << "there is no /dev/full";
-    std::setbuf(full, nullptr);
-    EXPECT_NO_THROW(PrintTo(full, "{} of {}\n", 1, 2));
-    EXPECT_TRUE(std::ferror(full));
-    std::fclose(full);
-}
+using Zeros = std::vector<float, ZeroAllocator<float>>;
 
-TEST(Warnings, ShowsTheFirstOfAKindAndCountsAll) {
-    std::vector<std::string> messages;
-    Warnings warnings([&](const std::string& m) { messages.push_back(m); });
-    warnings.Add(LocAt(3), "odd thing", "first");
-    warnings.Add(LocAt(4), "odd thing", "second");
-    warnings.Add(LocAt(5), "other thing");
-    ASSERT_EQ(messages.size(), 2u);
-    EXPECT_EQ(messages[0].find("scene.pbrt:3: "), 0u) << messages[0];
-    EXPECT_NE(messages[0].find("odd thing"), std::string::npos);
-    EXPECT_NE(messages[0].find("first"), std::string::npos);
-    EXPECT_EQ(warnings.Total(), 3);
-    EXPECT_EQ(warnings.Counts(),
-              (std::map<std::string, int>{{"odd thing", 2}, {"other thing", 1}}));
-    warnings.Summarize();
-    ASSERT_EQ(messages.size(), 3u);
-    EXPECT_NE(messages[2].find("odd thing"), std::string::npos);
-    EXPECT_NE(messages[2].find("2"), std::string::npos);
-}
-
-TEST(Warnings, CountsFromManyThreads) {
-    int shown = 0;
-    Warnings warnings([&](const std::string&) { ++shown; });
-    {
-        std::vector<std::jthread> threads;
-        for (int t = 0; t < 4; ++t)
-            threads.emplace_back([&] {
-                for (int i = 0; i < 1000; ++i) warnings.Add({}, i % 2 ? "odd" : "even");
-            });
+TEST(ZeroAllocator, BeginsWithZerosAndCopiesValues) {
+    const auto isZero = [](float v) { return v == 0; };
+    for (const size_t count : {size_t(7), size_t(10'000'000)}) {
+        Zeros dirty(count);
+        EXPECT_TRUE(std::ranges::all_of(dirty, isZero));
+        std::ranges::fill(dirty, 3.f);
+        const Zeros copy = dirty;
+        dirty = {};
+        EXPECT_TRUE(std::ranges::all_of(Zeros(count), isZero));
+        EXPECT_EQ(copy, Zeros(count, 3.f));
     }
-    EXPECT_EQ(shown, 2);
-    EXPECT_EQ(warnings.Counts(), (std::map<std::string, int>{{"even", 2000}, {"odd", 2000}}));
+}
+
+TEST(ForgetValues, LeavesWhatIsBeside) {
+    Zeros values(1 << 16, 5.f);
+    ForgetValues({});
+    ForgetValues(std::as_bytes(std::span(values).subspan(10, 3)));
+    EXPECT_EQ(values[11], 5);  // less than a page
+    ForgetValues(std::as_bytes(std::span(values).subspan(100, 50'000)));
+    EXPECT_TRUE(std::all_of(values.begin(), values.begin() + 100, [](float v) { return v == 5; }));
+    EXPECT_TRUE(std::all_of(values.begin() + 50'100, values.end(), [](float v) { return v == 5; }));
+    std::ranges::fill(values, 7.f);
+    EXPECT_EQ(values[20'000], 7);
 }
 
 TEST(LazyZeros, AreZerosThatCanBeWritten) {

@@ -4,7 +4,7 @@
 
 #include <future>
 
-#include "tests/renderer/render/queue_peers.h"
+#include "tests/renderer/render/ranks/shared_render.h"
 
 namespace lull {
 namespace {

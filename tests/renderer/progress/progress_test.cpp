@@ -119,7 +119,7 @@ TEST(ProgressText, FitsTheTerminal) {
 // The blocks that are left over are the slow ones: an average over the whole run would promise
 // far too early an end.
 TEST(RateMeter, ForgetsWhatIsLongPast) {
-    RateMeter rate(30);
+    RateMeter rate;
     EXPECT_EQ(rate.SamplesPerSecond(), 0);
     int64_t samples = 0;
     for (int second = 1; second <= 100; ++second)

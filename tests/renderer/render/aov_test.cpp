@@ -31,10 +31,7 @@ struct Rendered {
         options.source = SyntheticSample;
         options.film = &film;
     }
-    void Run(const RenderState* interrupted = nullptr) {
-        options.interrupted = interrupted;
-        result = Render(options, options);
-    }
+    void Run() { result = Render(options, options); }
 };
 
 // Adds the same samples one by one.
@@ -88,43 +85,11 @@ TEST(Aovs, AreThoseOfTheImageWhenTheTimeIsUp) {
     render.options.threads = 2;
     render.options.makeCriterion = nullptr;
     render.options.secondsLeft = [&] { return taken < 100000 ? 1. : 0.; };
-    render.options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t k,
-                                PathSample* sample) {
-        ++taken;
-        SyntheticSample(sampler, pixel, k, sample);
-    };
+    render.options.source = Counted(&taken);
     render.Run();
     EXPECT_TRUE(render.result.timeUp);
     EXPECT_LT(render.film.SampleCount(), taken);  // some were undone
     EXPECT_TRUE(SameSums(render.film, Expected(render.film)));
-}
-
-TEST(Aovs, GoOnFromCheckpoints) {
-    const TemporaryDirectory directory;
-    const std::string path = directory.File("c.h5");
-    const RenderIdentity identity = {{"scene", "a"}};
-    Rendered whole;
-    whole.Run();
-    RenderState state;
-    {
-        Rendered first;
-        std::atomic<int> taken = 0;
-        first.options.source = [&](Sampler& s, const Vec2i& pixel, uint32_t k, PathSample* sample) {
-            ++taken;
-            SyntheticSample(s, pixel, k, sample);
-        };
-        first.options.isCancelled = [&] { return taken > 50001; };
-        first.options.checkpoints.write = [&](const RenderState& s) {
-            WriteCheckpoint(path, identity, s, first.film);
-        };
-        first.options.checkpoints.interval = 1e6;
-        first.Run();
-        EXPECT_TRUE(first.result.cancelled);
-    }
-    Rendered second;
-    state = ReadCheckpoint(path, identity, &second.film);
-    second.Run(&state);
-    EXPECT_TRUE(SameSums(second.film, whole.film));
 }
 
 // Those that a render asks for must be in the checkpoint; others there are left out.

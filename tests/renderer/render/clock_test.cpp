@@ -26,16 +26,21 @@ struct Clocked {
     Film film{{{0, 0}, {80, 20}}};
     std::atomic<int64_t> taken = 0;
     RenderSetup setup;
+    RenderState state;  // of its checkpoint
     RenderResult result;
 
-    // `samples` is how many fit in the time; 0: all.
-    explicit Clocked(int64_t samples, int threads = 1, const RenderState* state = nullptr,
+    // `samples` is how many fit in the time; 0: all. Goes on from `before`, if that is given.
+    explicit Clocked(int64_t samples, int threads = 1, const Clocked* before = nullptr,
                      const std::function<void(RenderSetup*)>& change = {}) {
         setup.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
         setup.sampler = Sampler(SamplerKind::Random, 0);
         setup.threads = threads;
         setup.film = &film;
-        setup.interrupted = state;
+        if (before) {
+            film = before->film;
+            setup.interrupted = &before->state;
+        }
+        setup.checkpoints.write = [this](const RenderState& s) { state = s; };
         if (samples > 0)
             setup.secondsLeft = [this, samples] { return double(samples - taken) / 1e6; };
         setup.makeCriterion = [](const BlockInfo&) {
@@ -136,10 +141,7 @@ TEST(Clock, EndsWithinTheFirstPassWhereThereIsNoTimeForIt) {
     const int64_t times[] = {Pixels(4) / 4, Pixels(4) / 2, Pixels(4) * 9 / 10};
     for (const auto& [time, threads] :
          {std::pair(times[0], 1), {times[1], 1}, {times[2], 1}, {times[1], 2}}) {
-        RenderState state;
-        Clocked render(time, threads, nullptr, [&](RenderSetup* o) {
-            o->checkpoints.write = [&](const RenderState& s) { state = s; };
-        });
+        const Clocked render(time, threads);
         EXPECT_TRUE(render.result.timeUp);
         EXPECT_LT(render.taken, time + 2 * 8 * 8 * 20);
         ExpectEvenBlocks(render);
@@ -151,58 +153,26 @@ TEST(Clock, EndsWithinTheFirstPassWhereThereIsNoTimeForIt) {
         for (const BlockResult& b : render.result.blocks)
             for (const BlockDecision& decision : b.decisions) EXPECT_EQ(decision.spp, 20);
 
-        const RenderResult whole = Render(
-            {.source = UnevenSample, .film = &render.film, .interrupted = &state}, render.setup);
-        const Clocked reference(0);
-        EXPECT_TRUE(SamePixels(render.film, reference.film));
+        const Clocked whole(0, threads, &render), reference(0);
+        EXPECT_TRUE(SamePixels(whole.film, reference.film));
         for (size_t i = 0; i < 4; ++i)
-            EXPECT_EQ(whole.blocks[i].decisions.size(),
+            EXPECT_EQ(whole.result.blocks[i].decisions.size(),
                       reference.result.blocks[i].decisions.size());
     }
 }
 
 // A render without a clock is cut off within a pass; what goes on by the clock completes it.
 TEST(Clock, GoesOnFromInterruptedRenders) {
-    RenderState state;
-    std::unique_ptr<Film> film;
-    {
-        Clocked first(0, 1, nullptr, [&](RenderSetup* o) {
-            o->checkpoints.write = [&](const RenderState& s) { state = s; };
-            o->isCancelled = [calls = std::make_shared<int>(0)] { return ++*calls > 50; };
-        });
-        EXPECT_TRUE(first.result.cancelled);
-        film = std::make_unique<Film>(first.film);
-    }
-    RenderSetup options;
-    options.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
-    options.sampler = Sampler(SamplerKind::Random, 0);
-    options.threads = 2;
-    options.makeCriterion = [](const BlockInfo&) {
-        return MakeCriterion(LightnessNoiseRule(0.07));
-    };
-    std::atomic<int64_t> left = Pixels(9);
-    options.secondsLeft = [&] { return double(left); };
-    options.source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
-        --left;
-        UnevenSample(sampler, pixel, index, sample);
-    };
-    RenderState ended;
-    options.checkpoints.write = [&](const RenderState& s) { ended = s; };
-    options.film = film.get();
-    options.interrupted = &state;
-    const RenderResult result = Render(options, options);
-    EXPECT_TRUE(result.timeUp);
-    for (const BlockResult& b : result.blocks) {
-        EXPECT_GE(b.block.spp, 20);
-        EXPECT_EQ(int(film->At(b.block.pixels.min).count), b.block.spp);
-        EXPECT_EQ(int(film->At(b.block.pixels.max - Vec2i(1, 1)).count), b.block.spp);
-    }
+    const Clocked first(0, 1, nullptr, [](RenderSetup* o) {
+        o->isCancelled = [calls = std::make_shared<int>(0)] { return ++*calls > 50; };
+    });
+    EXPECT_TRUE(first.result.cancelled);
+    const Clocked timed(Pixels(9), 2, &first);
+    EXPECT_TRUE(timed.result.timeUp);
+    for (const BlockResult& b : timed.result.blocks) EXPECT_GE(b.block.spp, 20);
+    ExpectEvenBlocks(timed);
     // And what the clock has ended goes on to the same bits without.
-    options.secondsLeft = nullptr;
-    const RenderState before = ended;
-    options.interrupted = &before;
-    Render(options, options);
-    EXPECT_TRUE(SamePixels(*film, Clocked(0).film));
+    EXPECT_TRUE(SamePixels(Clocked(0, 2, &timed).film, Clocked(0).film));
 }
 
 TEST(Clock, TakesBlocksOfAnySize) {

@@ -4,48 +4,15 @@
 
 #include <numeric>
 
-#include "renderer/base/error.h"
 #include "tests/renderer/film/add_sample.h"
-#include "tests/renderer/render/feature_render.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
 
-// What a render keeps for the denoiser: sums by halves, through checkpoints and files, to the bit.
 namespace {
 
 double SumOfValues(const Planes& planes) {
     return std::accumulate(planes.values.begin(), planes.values.end(), 0.0);
-}
-
-TEST(Features, IsTheSameForAnyThreads) {
-    const FeatureRender one(1), three(3);
-    EXPECT_TRUE(SameSums(one.film, three.film));
-    // The film beside it is what it is without.
-    Film film(kPictureRegion);
-    RenderOptions options;
-    options.schedule = {.blockSize = 30, .passLength = 6, .cap = 36};
-    options.makeCriterion = [](const BlockInfo&) {
-        return std::make_unique<ScriptedCriterion>(1000);
-    };
-    Render({.source = SyntheticSample, .film = &film}, options);
-    EXPECT_TRUE(SamePixels(one.film, film));
-}
-
-TEST(Features, GoesThroughCheckpoints) {
-    const TemporaryDirectory directory;
-    const std::string path = directory.File("c.h5");
-    FeatureRender render(1);
-    RenderState state;
-    state.blocks.push_back({.block = {.pixels = kPictureRegion}, .decisions = {}});
-    state.criteria.resize(1);
-    WriteCheckpoint(path, {{"seed", "1"}}, state, render.film);
-    Film film(kPictureRegion, {.layers = {.features = true}});
-    ReadCheckpoint(path, {{"seed", "1"}}, &film);
-    EXPECT_TRUE(SameSums(film, render.film));
-
-    WriteCheckpoint(path, {{"seed", "1"}}, state, Film(kPictureRegion));
-    EXPECT_THROW(ReadCheckpoint(path, {{"seed", "1"}}, &film), Error);
 }
 
 TEST(PictureOf, HasBothHalvesOfTheMean) {

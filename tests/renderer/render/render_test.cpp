@@ -60,15 +60,6 @@ TEST(Render, IsTheSameBitsForAnyBlocksTilesAndPasses) {
             }
 }
 
-TEST(Render, GivesACropTheSamePixels) {
-    const Film whole = Rendered(SmallRender());
-    const PixelRect crop = {{13, 40}, {99, 71}};
-    const Film part = Rendered(SmallRender(), crop);
-    for (int y = crop.min.y(); y < crop.max.y(); ++y)
-        for (int x = crop.min.x(); x < crop.max.x(); ++x)
-            ASSERT_EQ(part.At({x, y}).sum, whole.At({x, y}).sum);
-}
-
 TEST(Render, StopsEachBlockWhenItsCriterionSaysSo) {
     for (const int threads : {1, 4}) {
         RenderOptions options = SmallRender();
@@ -152,12 +143,7 @@ TEST(Render, EndsAfterTheTilesUnderWayWhenCancelled) {
     options.schedule = {.blockSize = 50, .passLength = 20, .cap = 10000};
     options.isCancelled = [&] { return taken > 400000; };
     Film film(kRegion);
-    const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                            PathSample* sample) {
-        ++taken;
-        SyntheticSample(sampler, pixel, index, sample);
-    };
-    const RenderResult result = Render({.source = source, .film = &film}, options);
+    const RenderResult result = Render({.source = Counted(&taken), .film = &film}, options);
     EXPECT_TRUE(result.cancelled);
     EXPECT_EQ(film.SampleCount(), taken);
     EXPECT_EQ(result.progress.samples, taken);

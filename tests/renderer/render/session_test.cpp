@@ -87,19 +87,6 @@ TEST(Session, GoesOnFromWhereverItWasInterrupted) {
     EXPECT_EQ(resumed, interruptions);
 }
 
-TEST(Session, RefusesCheckpointsOfOtherLayers) {
-    const auto scene = MakeBox();
-    const TemporaryDirectory directory;
-    SessionOptions options = OptionsFor(directory.File("c.h5"));
-    options.checkpoint.isKept = true;
-    Session(*scene, kBoxRegion, options).Run();
-    Session same(*scene, kBoxRegion, options);
-    EXPECT_NO_THROW(same.Resume());
-    options.film.layers.aovs.object = true;
-    Session other(*scene, kBoxRegion, options);
-    EXPECT_THROW(other.Resume(), Error);
-}
-
 TEST(Session, TakesLightGroupsUpAgain) {
     const auto scene = MakeBox();
     const TemporaryDirectory directory;

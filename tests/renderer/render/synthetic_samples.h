@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "renderer/render/render.h"
@@ -33,6 +34,15 @@ inline void SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index
     const float spike = u.y() < 1e-3f ? 1e9f : 1.f;
     sample->radiance = Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y());
     sample->rejected = u.x() < 1e-3f;
+}
+
+// Returns the same as a source that counts its samples.
+template <typename Count>
+SampleSource Counted(std::atomic<Count>* taken) {
+    return [taken](Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
+        ++*taken;
+        SyntheticSample(sampler, pixel, index, sample);
+    };
 }
 
 // Context and options of a render, where a test changes either.
@@ -78,6 +88,25 @@ class ScriptedCriterion : public Criterion {
 
   private:
     int stopAt;
+};
+
+// A render without a scene that keeps the inputs of a denoiser.
+
+inline const PixelRect kPictureRegion = {{3, 5}, {63, 45}};
+
+struct FeatureRender {
+    Film film{kPictureRegion, {.layers = {.features = true}}};
+
+    explicit FeatureRender(int threads, int spp = 36,
+                           const SampleSource& source = SyntheticSample) {
+        RenderOptions options;
+        options.schedule = {.blockSize = 30, .passLength = 6, .cap = spp};
+        options.threads = threads;
+        options.makeCriterion = [](const BlockInfo&) {
+            return std::make_unique<ScriptedCriterion>(1000);
+        };
+        Render({.source = source, .film = &film}, options);
+    }
 };
 
 }  // namespace lull

@@ -8,7 +8,7 @@
 #include "renderer/render/film_picture.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
-#include "tests/renderer/render/feature_render.h"
+#include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {
 namespace {

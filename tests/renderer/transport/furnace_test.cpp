@@ -9,8 +9,6 @@
 namespace lull::furnace_test {
 namespace {
 
-constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
-
 std::unique_ptr<const Scene> MakeScene(const std::string& world, const char* integrator = "",
                                        int size = 8, const char* camera = "0 0 -3  0 0 0  0 1 0",
                                        int fov = 40) {
@@ -28,16 +26,8 @@ struct Total {
 
 // Averages the green channel over the whole image.
 Total TotalOf(const PixelStatistics& pixels) {
-    Total total;
-    double variance = 0;
-    for (size_t i = 0; i < pixels.mean.size(); ++i) {
-        total.mean += pixels.mean[i].y();
-        variance += pixels.variance[i].y();
-    }
-    const double n = double(pixels.mean.size());
-    total.mean /= n;
-    total.standardError = std::sqrt(variance / pixels.samples) / n;
-    return total;
+    const ImageMean image = MeanOf(pixels);
+    return {image.mean.y(), image.error.y()};
 }
 
 Total Measure(const Scene& scene, Estimator estimator, int samples = 256, uint64_t seed = 1) {

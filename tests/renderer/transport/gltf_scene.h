@@ -12,8 +12,6 @@
 // Its names would be in the way of those of other tests.
 namespace lull::gltf_test {
 
-inline constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
-
 inline CompileOptions ImageOf(int size) {
     CompileOptions options;
     options.threads = 1;
@@ -65,14 +63,8 @@ inline Total Measure(const Scene& scene, Estimator estimator = Estimator::Combin
                      int samples = 256) {
     const PixelStatistics pixels = MeasurePixels(scene, estimator, SamplerKind::Random, samples, 3);
     EXPECT_EQ(pixels.rejected, 0);
-    Eigen::Array3d mean = Eigen::Array3d::Zero();
-    double variance = 0;
-    const double n = double(pixels.mean.size());
-    for (size_t i = 0; i < pixels.mean.size(); ++i) {
-        mean += pixels.mean[i] / n;
-        variance += pixels.variance[i].y();
-    }
-    return {mean.cast<float>(), float(std::sqrt(variance / samples) / n)};
+    const ImageMean image = MeanOf(pixels);
+    return {image.mean.cast<float>(), float(image.error.y())};
 }
 
 // Adds the square from -1 to 1 in the plane z = 0, its front towards +z and its image upright.
@@ -107,6 +99,13 @@ inline json Matte(double r, double g, double b) {
     return {{"pbrMetallicRoughness",
              {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
             {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
+}
+
+// Returns a black material that emits.
+inline json Lamp() {
+    json lamp = Matte(0, 0, 0);
+    lamp["emissiveFactor"] = {1, 1, 1};
+    return lamp;
 }
 
 inline int AddLight(GltfFile* file, const json& light) {

@@ -159,8 +159,7 @@ TEST(GltfMaterial, NeverAddsEnergy) {
 TEST(GltfMaterial, EmitsBelowItsCoat) {
     for (const double tilt : {0., 1.2}) {
         GltfFile file;
-        json lamp = Matte(0, 0, 0);
-        lamp["emissiveFactor"] = {1, 1, 1};
+        json lamp = Lamp();
         lamp["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 0.5}};
         file.Node({{"mesh", Square(&file, lamp)},
                    {"scale", {9, 9, 9}},
@@ -230,9 +229,7 @@ void AddBox(GltfFile* file, const json& color, double size, double z) {
 
 GltfFile LampBelow() {
     GltfFile file;
-    json lamp = Matte(0, 0, 0);
-    lamp["emissiveFactor"] = {1, 1, 1};
-    file.Node({{"mesh", Square(&file, lamp)}, {"translation", {0, 0, -4}}});
+    file.Node({{"mesh", Square(&file, Lamp())}, {"translation", {0, 0, -4}}});
     return file;
 }
 
@@ -338,8 +335,7 @@ TEST(GltfMaterial, FollowsItsNormalMap) {
 // The front that emits is where triangles run counterclockwise, in the node's space, whatever their
 // normals say: mirrored nodes keep it.
 TEST(GltfMaterial, EmitsOnTheFrontOfTriangles) {
-    json lamp = Matte(0, 0, 0);
-    lamp["emissiveFactor"] = {1, 1, 1};
+    json lamp = Lamp();
     for (const json& scale : {json{1, 1, 1}, {-1, 1, 1}, {1, 1, -1}, {-1, -1, -1}, {-1, -1, 1}})
         for (const float normal : {0.f, 1.f, -1.f})
             for (const bool isInstanced : {false, true}) {
@@ -436,8 +432,7 @@ TEST(GltfMaterial, MayBeOpenBehind) {
     for (const bool isOpen : {false, true})
         for (const bool fromBehind : {false, true})
             for (const bool isInstanced : {false, true}) {
-                json panel = Matte(0, 0, 0);
-                panel["emissiveFactor"] = {1, 1, 1};
+                json panel = Lamp();
                 if (isOpen) panel["extras"] = {{"lull", {{"openBehind", true}}}};
                 GltfFile file;
                 const int mesh = Square(&file, panel);
@@ -468,9 +463,8 @@ TEST(GltfMaterial, ColoursItsVertices) {
 // it lights.
 TEST(GltfMaterial, EmitsByItsTexture) {
     GltfFile file;
-    json lamp = Matte(0, 0, 0);
+    json lamp = Lamp();
     lamp["doubleSided"] = true;
-    lamp["emissiveFactor"] = {1, 1, 1};
     lamp["emissiveTexture"] = {{"index", Texture(&file, {{255, 255, 255}, {0, 0, 0}}, 2)}};
     file.Node({{"mesh", Square(&file, lamp, true)}});
     const Total seen = Measure(*Compiled(file));

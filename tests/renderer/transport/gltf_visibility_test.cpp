@@ -84,8 +84,7 @@ TEST(GltfNode, HidesTheSphereOfItsLight) {
 // of 1, each is lit by 0.4153 of what the other sends (Hottel's form factor).
 TEST(GltfNode, ShinesWhereItIsHidden) {
     GltfFile file;
-    json lamp = Matte(0, 0, 0);
-    lamp["emissiveFactor"] = {1, 1, 1};
+    json lamp = Lamp();
     lamp["doubleSided"] = true;
     file.Node({{"mesh", Square(&file, lamp)},
                {"translation", {0, 0, 1}},

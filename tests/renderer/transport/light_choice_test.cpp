@@ -44,7 +44,7 @@ std::string World() {
 }
 
 struct Total {
-    double mean = 0, variance = 0;  // the variance is that of the mean
+    double mean = 0, standardError = 0;
 };
 
 Total Measure(const char* strategy, bool lightsAsPbrtV3, Estimator estimator) {
@@ -58,21 +58,16 @@ Total Measure(const char* strategy, bool lightsAsPbrtV3, Estimator estimator) {
     const auto scene = SceneOf(WorldText(World(), before), options);
     const auto pixels = MeasurePixels(*scene, estimator, SamplerKind::Random, 256, 1);
     EXPECT_EQ(pixels.rejected, 0);
-    Total total;
-    const double n = double(pixels.mean.size());
-    for (size_t i = 0; i < pixels.mean.size(); ++i) {
-        total.mean += pixels.mean[i].mean() / n;
-        total.variance += pixels.variance[i].mean() / (pixels.samples * n * n);
-    }
-    return total;
+    // The channels are nearly fully correlated.
+    const ImageMean image = MeanOf(pixels);
+    return {image.mean.mean(), std::sqrt(image.error.square().mean())};
 }
 
 TEST(LightChoice, LeavesTheMeanAsItIs) {
     const Total power = Measure("power", false, Estimator::Combined);
     EXPECT_GT(power.mean, 0);
     const auto expectSame = [&](const Total& total, const char* name) {
-        // The channels are nearly fully correlated.
-        const double error = std::sqrt(power.variance + total.variance);
+        const double error = std::hypot(power.standardError, total.standardError);
         EXPECT_NEAR(total.mean, power.mean, 4 * error) << name;
         EXPECT_LT(error, 0.02 * power.mean) << name;
     };

@@ -11,8 +11,6 @@
 namespace lull::light_groups_test {
 namespace {
 
-constexpr Estimator kBothEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
-
 // Which lights of the scenes below shine; all are there all the same.
 struct Lit {
     bool sky = true, lamp = true, point = true;
@@ -96,7 +94,7 @@ struct GroupedScene {
 // 100 samples of each pixel; the paths of samples with groups are those without.
 TEST(GroupRadiance, AddsUpToThatOfTheSample) {
     for (const Room& room : kRooms)
-        for (const Estimator estimator : kBothEstimators) {
+        for (const Estimator estimator : kEstimators) {
             const GroupedScene grouped(RoomText(room.things, {}, room.integrator));
             ASSERT_EQ(grouped.groups.Count(), 3);
             Sampler a(SamplerKind::Sobol, 3), b = a;
@@ -122,13 +120,9 @@ TEST(GroupRadiance, AddsUpToThatOfTheSample) {
         }
 }
 
-// Means of a function of samples over all pixels, with standard errors.
-struct Means {
-    Eigen::Array3d mean, error;
-};
-
+// Returns the means of a function of samples over all pixels.
 template <typename Take>
-Means MeansOf(const Take& take) {
+ImageMean MeansOf(const Take& take) {
     constexpr int kSamples = 64 * 600;
     Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = sum;
     Sampler sampler(SamplerKind::Random, 7);
@@ -143,11 +137,11 @@ Means MeansOf(const Take& take) {
 
 TEST(GroupRadiance, IsThatOfTheSceneWithItsLightsAlone) {
     for (const Room& room : kRooms)
-        for (const Estimator estimator : kBothEstimators) {
+        for (const Estimator estimator : kEstimators) {
             const GroupedScene all(RoomText(room.things, {}, room.integrator));
             const Lit alone[] = {{true, false, false}, {false, false, true}, {false, true, false}};
             GroupRadiance groups(all.groups);
-            const Means ofGroups = MeansOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
+            const ImageMean ofGroups = MeansOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
                 PathSample sample{.groups = &groups};
                 RenderSample(*all.scene, estimator, sampler, p, k, &sample);
                 const auto of = [&](size_t g) { return double(Luminance(groups.All()[g])); };
@@ -155,7 +149,7 @@ TEST(GroupRadiance, IsThatOfTheSceneWithItsLightsAlone) {
             });
             for (int g = 0; g < 3; ++g) {
                 const GroupedScene one(RoomText(room.things, alone[g], room.integrator));
-                const Means own = MeansOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
+                const ImageMean own = MeansOf([&](Sampler& sampler, const Vec2i& p, uint32_t k) {
                     const Rgb L = RenderSample(*one.scene, estimator, sampler, p, k).radiance;
                     return Eigen::Array3d::Constant(double(Luminance(L)));
                 });

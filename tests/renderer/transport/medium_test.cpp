@@ -9,8 +9,6 @@
 namespace lull {
 namespace {
 
-constexpr Estimator kBothEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
-
 std::unique_ptr<const Scene> MakeMediumScene(const std::string& world,
                                              const std::string& before = "", int depth = 1000,
                                              const char* view = "0 0 -2.5  0 0 0  0 1 0") {
@@ -26,13 +24,8 @@ void ExpectMean(const Scene& scene, Estimator estimator, double expected, int sa
                 double slack = 1e-4) {
     const auto pixels = MeasurePixels(scene, estimator, SamplerKind::Random, samples, 1);
     EXPECT_EQ(pixels.rejected, 0);
-    double mean = 0, variance = 0;
-    for (size_t i = 0; i < pixels.mean.size(); ++i) {
-        mean += pixels.mean[i].y();
-        variance += pixels.variance[i].y();
-    }
-    const double n = double(pixels.mean.size());
-    EXPECT_NEAR(mean / n, expected, 4.5 * std::sqrt(variance / samples) / n + slack);
+    const ImageMean image = MeanOf(pixels);
+    EXPECT_NEAR(image.mean.y(), expected, 4.5 * image.error.y() + slack);
 }
 
 std::string Medium(double absorption, double scattering, double g = 0) {
@@ -48,7 +41,7 @@ constexpr const char* kMediumBall =
 
 // Nothing is lost in a medium of albedo 1, however often it scatters: 1,000 times and more.
 TEST(Medium, WhiteFurnace) {
-    for (const Estimator estimator : kBothEstimators)
+    for (const Estimator estimator : kEstimators)
         for (const auto& [scattering, g, samples] :
              {std::tuple(0.3, 0.0, 256), std::tuple(3.0, 0.7, 128), std::tuple(20.0, -0.5, 8)})
             ExpectMean(
@@ -62,7 +55,7 @@ TEST(Medium, WhiteFurnaceOfGridsAndGlass) {
         "MakeNamedMedium \"m\" \"string type\" \"heterogeneous\" \"integer nx\" 2 "
         "\"float density\" [1 4] \"point p0\" [-2 -2 -2] \"point p1\" [2 2 2] "
         "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [.7 .7 .7] \"float g\" .2\n";
-    for (const Estimator estimator : kBothEstimators) {
+    for (const Estimator estimator : kEstimators) {
         ExpectMean(*MakeMediumScene(grid + kWhiteSky + kMediumBall, "", 100000), estimator, 1, 128,
                    2e-3);
         ExpectMean(*MakeMediumScene(Medium(0, 1) + kWhiteSky +
@@ -83,7 +76,7 @@ TEST(Medium, AbsorbsByBeerAndLambert) {
         "Translate 0 0 .5\nReverseOrientation\nShape \"disk\" \"float radius\" 50\n"
         "AttributeEnd\nAttributeBegin\nMaterial \"none\"\nMediumInterface \"m\" \"\"\n"
         "Translate 0 0 1\nShape \"disk\" \"float radius\" 50\nAttributeEnd\n";
-    for (const Estimator estimator : kBothEstimators) {
+    for (const Estimator estimator : kEstimators) {
         // A pencil of rays along z: those of the narrow view differ by less than 1e-4 in length.
         const auto narrow = [&](const std::string& world, const std::string& before) {
             return MakeMediumScene(world, "Scale 100 100 1\n" + before, 5);
@@ -101,10 +94,9 @@ TEST(Medium, OfDensityZeroChangesNothing) {
     const std::string light = "LightSource \"point\" \"point from\" [1 2 -4] \"rgb I\" [9 9 9]\n";
     const auto plain = MakeMediumScene(light + floor, "", 5);
     const auto pixels = MeasurePixels(*plain, Estimator::PbrtV3, SamplerKind::Random, 256, 3);
-    double expected = 0;
-    for (const auto& mean : pixels.mean) expected += mean.y() / double(pixels.mean.size());
+    const double expected = MeanOf(pixels).mean.y();
     EXPECT_FALSE(plain->isVolumetric);
-    for (const Estimator estimator : kBothEstimators) {
+    for (const Estimator estimator : kEstimators) {
         const auto scene = MakeMediumScene(Medium(0, 0) + light + floor + kMediumBall, "", 5);
         EXPECT_TRUE(scene->isVolumetric);
         ExpectMean(*scene, estimator, expected, 256, 3e-2);
@@ -112,15 +104,13 @@ TEST(Medium, OfDensityZeroChangesNothing) {
 }
 
 void ExpectEstimatorsAgree(const Scene& scene) {
-    const auto a = MeasurePixels(scene, Estimator::Combined, SamplerKind::Random, 1000, 1);
-    const auto b = MeasurePixels(scene, Estimator::PbrtV3, SamplerKind::Random, 1000, 2);
-    Eigen::Array3d difference = Eigen::Array3d::Zero(), variance = Eigen::Array3d::Zero();
-    for (size_t i = 0; i < a.mean.size(); ++i) {
-        difference += a.mean[i] - b.mean[i];
-        variance += (a.variance[i] + b.variance[i]) / 1000;
-    }
-    EXPECT_TRUE((difference.abs() < 4 * variance.sqrt()).all())
-        << difference.transpose() << " with variances " << variance.transpose();
+    const auto meanOf = [&](Estimator estimator, uint64_t seed) {
+        return MeanOf(MeasurePixels(scene, estimator, SamplerKind::Random, 1000, seed));
+    };
+    const ImageMean a = meanOf(Estimator::Combined, 1), b = meanOf(Estimator::PbrtV3, 2);
+    const Eigen::Array3d error = (a.error.square() + b.error.square()).sqrt();
+    EXPECT_TRUE(((a.mean - b.mean).abs() < 4 * error).all())
+        << a.mean.transpose() << ", " << b.mean.transpose() << " with " << error.transpose();
 }
 
 // The two estimators agree where neither surfaces nor media alone would.

@@ -81,25 +81,14 @@ std::unique_ptr<const Scene> Compiled(const std::string& world, int maxDepth,
                    options);
 }
 
-struct Measured {
-    Eigen::Array3d mean = Eigen::Array3d::Zero(), error = Eigen::Array3d::Zero();
-};
-
-Measured Measure(const Scene& scene, Estimator estimator, uint64_t seed, int samples = 300) {
+ImageMean Measure(const Scene& scene, Estimator estimator, uint64_t seed, int samples = 300) {
     const PixelStatistics pixels =
         MeasurePixels(scene, estimator, SamplerKind::Random, std::max(1, samples / kFewer), seed);
     EXPECT_EQ(pixels.rejected, 0);
-    Measured sum;
-    const double n = double(pixels.mean.size());
-    for (size_t i = 0; i < pixels.mean.size(); ++i) {
-        sum.mean += pixels.mean[i] / n;
-        sum.error += pixels.variance[i];
-    }
-    sum.error = (sum.error / pixels.samples).sqrt() / n;
-    return sum;
+    return MeanOf(pixels);
 }
 
-void ExpectEqual(const Measured& a, const Measured& b, const std::string& what) {
+void ExpectEqual(const ImageMean& a, const ImageMean& b, const std::string& what) {
     for (int c = 0; c < 3; ++c) {
         EXPECT_GT(a.mean[c], 0) << what;
         EXPECT_NEAR(a.mean[c], b.mean[c],
@@ -116,8 +105,8 @@ TEST_P(Panes, LetTheirShareThrough) {
     const std::string pane = std::string(kSheet) + kTint + kNoInterface;
     const std::string lit = GetParam().lights + kBox;
     for (const int depth : {1, 6})
-        for (const Estimator estimator : {Estimator::Combined, Estimator::PbrtV3}) {
-            Measured open = Measure(*Compiled(lit, depth), estimator, 1);
+        for (const Estimator estimator : kEstimators) {
+            ImageMean open = Measure(*Compiled(lit, depth), estimator, 1);
             const Eigen::Array3d share = Eigen::Array3d(0.9, 0.6, 0.3).square();
             open.mean *= share;
             open.error *= share;
@@ -156,7 +145,7 @@ TEST_P(Panes, HaveOneMean) {
         "AttributeEnd\n";
     const auto scene = Compiled(world, 5), misty = Compiled(world + mist, 5, "volpath");
     ASSERT_TRUE(scene->hasPanes && !scene->isVolumetric && misty->isVolumetric);
-    const Measured combined = Measure(*scene, Estimator::Combined, 1);
+    const ImageMean combined = Measure(*scene, Estimator::Combined, 1);
     ExpectEqual(Measure(*scene, Estimator::PbrtV3, 2), combined, "pbrt-v3's estimator");
     ExpectEqual(Measure(*misty, Estimator::Combined, 3), combined, "in a medium");
     ExpectEqual(Measure(*misty, Estimator::PbrtV3, 4), combined, "in a medium, pbrt-v3's");
@@ -170,8 +159,9 @@ TEST(PaneLight, DependsOnTheAngle) {
     const double cosine = std::cos(60 * double(kPi) / 180);
     const std::string world =
         "LightSource \"distant\" \"point from\" [0 .5 .8660254] \"point to\" [0 0 0]\n" + kBox;
-    const Measured open = Measure(*Compiled(world, 1), Estimator::Combined, 1, 64),
-                   closed = Measure(*Compiled(world + Roof(kSheet), 1), Estimator::Combined, 1, 64);
+    const ImageMean open = Measure(*Compiled(world, 1), Estimator::Combined, 1, 64),
+                    closed =
+                        Measure(*Compiled(world + Roof(kSheet), 1), Estimator::Combined, 1, 64);
     const double reflected = 0.04 + 0.96 * std::pow(1 - cosine, 5);
     EXPECT_NEAR(closed.mean.y() / open.mean.y(), 1 - reflected, 1e-4);
 }

@@ -42,18 +42,12 @@ TEST(Pbrt4Features, HaveTheirValues) {
         const auto scene = SceneIn((root / row.file).string());
         const auto pixels = MeasurePixels(*scene, Estimator::Combined, SamplerKind::Random, 256, 1);
         EXPECT_EQ(pixels.rejected, 0) << row.file;
-        Eigen::Array3d mean = Eigen::Array3d::Zero(), variance = Eigen::Array3d::Zero();
-        for (size_t i = 0; i < pixels.mean.size(); ++i) {
-            mean += pixels.mean[i];
-            variance += pixels.variance[i] / pixels.samples;
-        }
-        const double n = double(pixels.mean.size());
-        mean *= double(scene->film.scale) / n;
+        auto [mean, error] = MeanOf(pixels);
+        mean *= double(scene->film.scale);
         const bool isRelative = row.file == "spot-falloff.pbrt";
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(
-                mean[c], row.rgb[c],
-                row.tolerance * (isRelative ? row.rgb[c] : 1) + 4 * std::sqrt(variance[c]) / n)
+            EXPECT_NEAR(mean[c], row.rgb[c],
+                        row.tolerance * (isRelative ? row.rgb[c] : 1) + 4 * error[c])
                 << row.file;
     }
 }
@@ -128,8 +122,7 @@ TEST(Coat, ConductorIsThatOfTheWalk) {
             c.parameters));
         const auto pixels =
             MeasurePixels(*scene, Estimator::Combined, SamplerKind::Random, 1000, 1);
-        Eigen::Array3d mean = Eigen::Array3d::Zero();
-        for (const auto& m : pixels.mean) mean += m / double(pixels.mean.size());
+        const Eigen::Array3d mean = MeanOf(pixels).mean;
         for (const auto& [found, expected] :
              {std::pair(mean[0], c.red), {mean[1], c.green}, {mean[2], c.blue}})
             EXPECT_NEAR(found, expected, .01) << c.parameters;

@@ -14,6 +14,8 @@
 
 namespace lull {
 
+inline constexpr Estimator kEstimators[] = {Estimator::Combined, Estimator::PbrtV3};
+
 struct PixelStatistics {
     int width = 0, height = 0, samples = 0;
     std::vector<Eigen::Array3d> mean, variance;  // row-major; variance of one sample, unbiased
@@ -73,6 +75,20 @@ inline PixelStatistics ReadStatistics(const std::string& path) {
 inline int FromEnvironment(const char* name, int otherwise) {
     const char* value = std::getenv(name);
     return value ? std::max(2, std::atoi(value)) : otherwise;
+}
+
+// The mean over an image, with its standard error.
+struct ImageMean {
+    Eigen::Array3d mean = Eigen::Array3d::Zero(), error = Eigen::Array3d::Zero();
+};
+
+inline ImageMean MeanOf(const PixelStatistics& pixels) {
+    ImageMean image;
+    const double n = double(pixels.mean.size());
+    for (const Eigen::Array3d& mean : pixels.mean) image.mean += mean / n;
+    for (const Eigen::Array3d& variance : pixels.variance) image.error += variance;
+    image.error = (image.error / pixels.samples).sqrt() / n;
+    return image;
 }
 
 }  // namespace lull

@@ -31,7 +31,7 @@ Shared RenderPart(const Scene& scene, int ranks, const Part& part = {}) {
     return RenderShared(
         ranks, change, part.before,
         [&](int rank) { return SamplesOf(scene, Estimator::Combined, lights[size_t(rank)].get()); },
-        part.how, true);
+        part.how);
 }
 
 // Each traces a part of the light of a round; one of them is given up in a round, or while light is

@@ -1,6 +1,7 @@
 // Renders are the same with any number of ranks, whatever happens to these.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "renderer/render/ranks/rank.h"
@@ -26,14 +27,19 @@ std::vector<int> StopsOf(const Shared& shared) {
     return stops;
 }
 
+// Expects the same sums, of layers as well, and stops.
+void ExpectSame(const Shared& shared, const Shared& reference, int what) {
+    EXPECT_TRUE(SameSums(*shared.film, *reference.film)) << what;
+    EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << what;
+}
+
 TEST(Ranks, ComeToTheSameBits) {
     const Shared reference = RenderShared(0);
     ASSERT_EQ(reference.result.blocks.size(), 9u);
     for (const auto& [ranks, threads] : {std::pair(1, 1), {2, 3}, {3, 4}, {4, 5}}) {
         const Shared shared =
             RenderShared(ranks, [threads = threads](RenderSetup* o, int) { o->threads = threads; });
-        EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks << " " << threads;
-        EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
+        ExpectSame(shared, reference, ranks);
         EXPECT_EQ(shared.result.progress.samples, reference.film->SampleCount());
         EXPECT_FALSE(shared.result.cancelled);
         for (size_t i = 0; i < 9; ++i)
@@ -48,7 +54,7 @@ TEST(Ranks, CanBeMoreThanTiles) {
         o->schedule = {.blockSize = 10, .cap = 20, .tileSize = 8};
         o->makeCriterion = nullptr;
     };
-    EXPECT_TRUE(SamePixels(*RenderShared(5, change).film, *RenderShared(0, change).film));
+    ExpectSame(RenderShared(5, change), RenderShared(0, change), 5);
 }
 
 // What criteria are shown is the same numbers.
@@ -84,9 +90,7 @@ TEST(Ranks, GoOnFromCheckpointsOfOthers) {
         const Shared begun = RenderShared(first, SignalToLast(first));
         ASSERT_TRUE(begun.result.cancelled);
         EXPECT_LT(begun.film->SampleCount(), reference.film->SampleCount());
-        const Shared ended = RenderShared(second, {}, &begun);
-        EXPECT_TRUE(SamePixels(*ended.film, *reference.film)) << first << " " << second;
-        EXPECT_EQ(StopsOf(ended), StopsOf(reference));
+        ExpectSame(RenderShared(second, {}, &begun), reference, second);
     }
 }
 
@@ -107,43 +111,48 @@ TEST(Ranks, PauseForCheckpoints) {
     };
     const Shared shared = RenderShared(3, change, nullptr, [&](int) { return slow; });
     EXPECT_GT(checkpoints, 2);
-    EXPECT_TRUE(SamePixels(*shared.film, *reference.film));
-    EXPECT_EQ(StopsOf(shared), StopsOf(reference));
+    ExpectSame(shared, reference, 3);
 }
 
 // Others are quiet, and say so, before rank 0 has looked for messages.
 TEST(Ranks, MayAnswerAtOnce) {
     const auto change = [](RenderSetup* o, int) { o->makeCriterion = nullptr; };
     const auto nap = std::chrono::milliseconds(20);
-    EXPECT_TRUE(SamePixels(*RenderShared(2, change, nullptr, SameForAll, {.nap = nap}).film,
-                           *RenderShared(0, change).film));
+    ExpectSame(RenderShared(2, change, nullptr, SameForAll, {.nap = nap}), RenderShared(0, change),
+               2);
 }
 
-// The clock of rank 0 is that of all.
+// The clock of rank 0 is that of all. Passes that the time does not suffice for are undone.
 TEST(Ranks, EndByTheClockWithWholePasses) {
-    for (const int64_t time : {int64_t(1), kImage.Area() * 35}) {
-        std::atomic<int64_t> taken = 0;
-        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                PathSample* sample) {
-            ++taken;
-            SyntheticSample(sampler, pixel, index, sample);
-        };
-        const Shared shared = RenderShared(
-            3,
-            [&](RenderSetup* o, int rank) {
-                o->makeCriterion = nullptr;
-                o->secondsLeft = [&taken, time, rank] {
-                    return rank > 0 ? 1 : double(time - taken);
-                };
-            },
-            nullptr, [&](int) { return source; });
-        EXPECT_TRUE(shared.result.timeUp);
-        const Shared again =
-            RenderShared(2, [&](RenderSetup* o, int) { StopAs(shared.result, o); });
-        EXPECT_TRUE(SamePixels(*again.film, *shared.film));
-        // How far each has got by then is for the machine to decide.
-        for (const BlockResult& b : shared.result.blocks) EXPECT_GE(b.block.spp, 1);
-    }
+    bool undone = false;
+    for (int attempt = 0; attempt < 20 && !undone; ++attempt)
+        for (const int64_t time : {int64_t(1), kImage.Area() * 35}) {
+            std::atomic<int64_t> taken = 0;
+            const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
+                                    PathSample* sample) {
+                if (taken > time && index % 20 == 0)
+                    std::this_thread::sleep_for(std::chrono::microseconds(100));
+                Counted (&taken)(sampler, pixel, index, sample);
+            };
+            const Shared timed = RenderShared(
+                3,
+                [&](RenderSetup* o, int rank) {
+                    o->schedule.tileSize = 4;
+                    o->makeCriterion = nullptr;
+                    o->secondsLeft = [&taken, time, rank] {
+                        return rank > 0 ? 1 : double(time - taken);
+                    };
+                },
+                nullptr, [&](int) { return source; });
+            EXPECT_TRUE(timed.result.timeUp);
+            undone |= timed.film->SampleCount() < taken;
+            const Shared again =
+                RenderShared(2, [&](RenderSetup* o, int) { StopAs(timed.result, o); });
+            EXPECT_TRUE(SameSums(*again.film, *timed.film));
+            // How far each has got by then is for the machine to decide.
+            for (const BlockResult& b : timed.result.blocks) EXPECT_GE(b.block.spp, 1);
+        }
+    EXPECT_TRUE(undone);
 }
 
 TEST(Ranks, PassOnWhatTasksThrow) {
@@ -157,6 +166,64 @@ TEST(Ranks, PassOnWhatTasksThrow) {
         throw std::bad_alloc();
     };
     EXPECT_THROW(Render({.source = broken, .film = &film}, options), std::bad_alloc);
+}
+
+double ShareOf(const std::vector<int>& deal, int rank) {
+    return double(std::ranges::count(deal, rank)) / double(deal.size());
+}
+
+TEST(EvenDeal, NamesEachRankOnce) {
+    EXPECT_EQ(EvenDeal(1), std::vector<int>{0});
+    EXPECT_EQ(EvenDeal(3), (std::vector<int>{0, 1, 2}));
+}
+
+TEST(DealBySpeed, GivesByHowFastTheyAre) {
+    for (const std::vector<double>& speeds :
+         {std::vector<double>{1, 1}, {3, 1}, {1, 2, 5}, {700, 20, 300, 100, 90}, {4}}) {
+        const std::vector<int> deal = DealBySpeed(speeds);
+        double all = 0;
+        for (const double speed : speeds) all += speed;
+        for (size_t r = 0; r < speeds.size(); ++r)
+            EXPECT_NEAR(ShareOf(deal, int(r)), speeds[r] / all, 1.0 / double(deal.size())) << r;
+        EXPECT_LT(GainOfDealing(speeds, deal), 1.3);
+    }
+}
+
+// So that a block of few tiles is shared as well as one of many.
+TEST(DealBySpeed, SpreadsRanksEvenly) {
+    const std::vector<int> deal = DealBySpeed({6, 3, 1});
+    for (size_t first = 0; first < deal.size(); ++first) {
+        std::vector<int> counts(3, 0);
+        for (size_t k = 0; k < 10; ++k) ++counts[size_t(deal[(first + k) % deal.size()])];
+        EXPECT_NEAR(counts[0], 6, 1.1) << first;
+        EXPECT_NEAR(counts[1], 3, 1.1) << first;
+        EXPECT_NEAR(counts[2], 1, 1.1) << first;
+    }
+}
+
+TEST(DealBySpeed, LeavesNobodyOut) {
+    const std::vector<int> deal = DealBySpeed({1e9, 1e-9, 1});
+    for (int rank = 0; rank < 3; ++rank) EXPECT_GT(ShareOf(deal, rank), 0) << rank;
+    EXPECT_GT(ShareOf(deal, 0), 0.9);
+}
+
+TEST(RankSpeeds, TellsWhatItKnows) {
+    RankSpeeds speeds(2);
+    EXPECT_TRUE(speeds.Speeds(1).empty());
+    speeds.Add(0, 100, 2);
+    EXPECT_TRUE(speeds.Speeds(1).empty());
+    speeds.Add(1, 10, 0.5);
+    speeds.Add(1, 30, 1.5);
+    EXPECT_TRUE(speeds.Speeds(3).empty());
+    EXPECT_EQ(speeds.Speeds(2), (std::vector<double>{50, 20}));
+    speeds.Forget();
+    EXPECT_TRUE(speeds.Speeds(0).empty());
+}
+
+TEST(GainOfDealing, ComparesWithThePaceOfTheSlowest) {
+    EXPECT_DOUBLE_EQ(GainOfDealing({1, 1}, {0, 1}), 1);
+    EXPECT_DOUBLE_EQ(GainOfDealing({3, 1}, {0, 1}), 2);
+    EXPECT_DOUBLE_EQ(GainOfDealing({3, 1}, {0, 0, 1, 0}), 1);
 }
 
 TEST(Ranks, DealOutEveryTileOnce) {
@@ -199,8 +266,7 @@ TEST(Ranks, MoveTilesToWhereThereIsTime) {
         const Shared shared =
             RenderShared(ranks, change, nullptr,
                          SlowWhere([ranks](int rank, uint32_t) { return rank == ranks - 1; }));
-        EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks;
-        EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
+        ExpectSame(shared, reference, ranks);
         ASSERT_EQ(shared.result.shares.size(), size_t(ranks));
         EXPECT_LT(shared.result.shares.back(), 0.7 / ranks);
     }
@@ -222,45 +288,8 @@ TEST(Ranks, MoveTilesAsOftenAsSpeedsChange) {
             o->checkpoints.write = [&](const RenderState&) { ++checkpoints; };
         },
         nullptr, source);
-    EXPECT_TRUE(SamePixels(*moved.film, *reference.film));
-    EXPECT_EQ(StopsOf(moved), StopsOf(reference));
+    ExpectSame(moved, reference, 3);
     EXPECT_GT(checkpoints, 0);
-}
-
-Shared RenderLayers(int ranks, const Change& change = {}, const Shared* before = nullptr,
-                    const SourceOfRank& sourceOf = SameForAll) {
-    return RenderShared(ranks, change, before, sourceOf, {}, true);
-}
-
-void ExpectSameLayers(const Shared& shared, const Shared& reference, int ranks) {
-    EXPECT_TRUE(SamePixels(*shared.film, *reference.film)) << ranks;
-    EXPECT_TRUE(SameSums(*shared.film, *reference.film)) << ranks;
-    EXPECT_EQ(StopsOf(shared), StopsOf(reference)) << ranks;
-}
-
-TEST(Ranks, ShareLayers) {
-    const Shared reference = RenderLayers(0);
-    EXPECT_TRUE(SamePixels(*reference.film, *RenderShared(0).film));
-    for (const auto& [ranks, threads] : {std::pair(1, 2), {2, 3}, {3, 4}, {3, 7}})
-        ExpectSameLayers(
-            RenderLayers(ranks, [n = threads](RenderSetup* o, int) { o->threads = n; }), reference,
-            ranks);
-}
-
-TEST(Ranks, GoOnWithTheLayersOfOthers) {
-    const Shared reference = RenderLayers(0);
-    for (const auto& [first, second] : {std::pair(1, 3), {3, 2}, {2, 0}}) {
-        const Shared begun = RenderLayers(first, SignalToLast(first));
-        ASSERT_TRUE(begun.result.cancelled);
-        ExpectSameLayers(RenderLayers(second, {}, &begun), reference, second);
-    }
-}
-
-TEST(Ranks, MoveLayersWithTheirTiles) {
-    const auto source =
-        SlowWhere([](int rank, uint32_t index) { return rank == int(index / 20) % 3; });
-    const auto change = [](RenderSetup* o, int) { o->dealInterval = 0; };
-    ExpectSameLayers(RenderLayers(3, change, nullptr, source), RenderLayers(0), 3);
 }
 
 struct GivenUp {
@@ -279,7 +308,7 @@ struct GivenUp {
 // One falls asleep at the beginning, amid the passes, and when many blocks have stopped; with
 // checkpoints rank 0 has some of its samples.
 TEST(Ranks, GoOnWithoutOneThatSleeps) {
-    const Shared reference = RenderLayers(0);
+    const Shared reference = RenderShared(0);
     for (const auto& [messages, interval] :
          {std::pair(0, 60.0), {3, 0.002}, {12, 60.0}, {25, 0.002}}) {
         GivenUp givenUp;
@@ -287,8 +316,8 @@ TEST(Ranks, GoOnWithoutOneThatSleeps) {
             RenderShared(3, givenUp.Soon([seconds = interval](RenderSetup* o, int) {
                 o->checkpoints.interval = seconds;
             }),
-                         nullptr, SameForAll, {.sleeper = 2, .messagesBefore = messages}, true);
-        ExpectSameLayers(shared, reference, messages);
+                         nullptr, SameForAll, {.sleeper = 2, .messagesBefore = messages});
+        ExpectSame(shared, reference, messages);
         EXPECT_EQ(givenUp.ranks, std::vector<int>{2}) << messages;
         EXPECT_EQ(shared.result.shares.at(2), 0);
         EXPECT_EQ(shared.result.progress.samples, reference.film->SampleCount());
@@ -299,11 +328,6 @@ TEST(Ranks, GoOnWithoutOneThatSleeps) {
 TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
     for (const int messages : {0, 8, 20}) {
         std::atomic<int64_t> taken = 0;
-        const auto source = [&](Sampler& sampler, const Vec2i& pixel, uint32_t index,
-                                PathSample* sample) {
-            ++taken;
-            SyntheticSample(sampler, pixel, index, sample);
-        };
         GivenUp givenUp;
         const Shared shared = RenderShared(3, givenUp.Soon([&](RenderSetup* o, int rank) {
             o->makeCriterion = nullptr;
@@ -311,7 +335,7 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
                 return rank > 0 ? 1 : double(kImage.Area() * 35 - taken);
             };
         }),
-                                           nullptr, [&](int) { return source; },
+                                           nullptr, [&](int) { return Counted(&taken); },
                                            {.sleeper = 1, .messagesBefore = messages});
         EXPECT_EQ(givenUp.ranks, std::vector<int>{1}) << messages;
         EXPECT_FALSE(shared.result.cancelled);
@@ -321,35 +345,6 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
                     ASSERT_EQ(int(shared.film->At({x, y}).count), b.block.spp);
         for (const BlockResult& b : shared.result.blocks) EXPECT_GE(b.block.spp, 1);
     }
-}
-
-// Passes that the time does not suffice for are undone in the layers of all ranks.
-TEST(Ranks, UndoLayers) {
-    const int64_t time = kImage.Area() * 35;
-    bool undone = false;
-    for (int attempt = 0; attempt < 20 && !undone; ++attempt) {
-        std::atomic<int64_t> taken = 0;
-        const auto source = [&](int) -> SampleSource {
-            return [&](Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
-                if (++taken > time && index % 20 == 0)
-                    std::this_thread::sleep_for(std::chrono::microseconds(100));
-                SyntheticSample(sampler, pixel, index, sample);
-            };
-        };
-        const Shared timed = RenderLayers(
-            3,
-            [&](RenderSetup* o, int rank) {
-                o->schedule.tileSize = 4;
-                o->makeCriterion = nullptr;
-                o->secondsLeft = [&, rank] { return rank > 0 ? 1 : double(time - taken); };
-            },
-            nullptr, source);
-        undone = timed.film->SampleCount() < taken;
-        const Shared again = RenderLayers(0, [&](RenderSetup* o, int) { StopAs(timed.result, o); });
-        EXPECT_TRUE(SamePixels(*timed.film, *again.film));
-        EXPECT_TRUE(SameSums(*timed.film, *again.film));
-    }
-    EXPECT_TRUE(undone);
 }
 
 }  // namespace
