@@ -20,7 +20,8 @@ fi
 install_packages debootstrap git rsync util-linux
 if [[ ! -e $root/etc/lull-root ]]; then
     echo "== a root of $suite in $root"
-    rm -rf "$root"
+    umount -q "$root/proc" || true # left there by a debootstrap that failed
+    rm -rf --one-file-system "$root"
     mkdir -p "$root"
     debootstrap --variant=minbase "$suite" "$root" "${LULL_MIRROR:-http://deb.debian.org/debian}" >"$root.log" ||
         { tail -3 "$root.log" >&2; exit 1; }
