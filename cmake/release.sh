@@ -54,7 +54,6 @@ echo "== portable folder"
 name=lull-$version-linux-x86_64
 tree=$work/$name
 cmake --install "$build" --strip --prefix "$tree" >/dev/null
-cp -r "$tree" "$work/wheel"
 rm -r "$tree"/lib/python3* # of one version of Python: in the wheel
 bundle "$tree"
 "$tree/bin/lull" selftest
@@ -63,7 +62,6 @@ tar -C "$work" --sort=name --owner=0 --group=0 --mtime=@0 -cf - "$name" | xz -T0
 echo "== add-on with the program"
 mkdir "$work/addon"
 (cd "$work/addon" && unzip -q "$tree/share/lull/lull-blender.zip")
-mkdir -p "$work/addon/lull_engine/program"
 mkdir -p "$work/addon/lull_engine/program/share/lull" "$work/addon/lull_engine/program/lib"
 cp -r "$tree/bin" "$work/addon/lull_engine/program/"
 cp -r "$tree/lib/lull" "$work/addon/lull_engine/program/lib/"
@@ -72,14 +70,10 @@ rm -f "$out/lull-$version-blender-linux-x86_64.zip"
 (cd "$work/addon" && zip -qr -X "$out/lull-$version-blender-linux-x86_64.zip" .)
 
 echo "== wheel"
-python=$(/usr/bin/python3 -c 'import sys; print("python%d.%d" % sys.version_info[:2])')
-mkdir -p "$work/wheel/lib/$python/site-packages"
-mv "$work"/wheel/lib/python3/dist-packages/* "$work/wheel/lib/$python/site-packages/"
-rm -r "$work/wheel/lib/python3"
-rm -rf "$work"/wheel/include "$work"/wheel/lib/{cmake,pkgconfig} "$work"/wheel/share/{doc,bash-completion}
+cmake --install "$build" --component python --strip --prefix "$work/wheel" >/dev/null
 bundle "$work/wheel"
 glibc=$(ldd --version | sed -n '1s/.* //p')
-/usr/bin/python3 cmake/wheel.py "$work/wheel" "lib/$python/site-packages" "$version" "" "$out" "manylinux_${glibc/./_}_x86_64"
+/usr/bin/python3 cmake/wheel.py "$work/wheel" lib/python3/dist-packages "$version" "" "$out" "manylinux_${glibc/./_}_x86_64"
 
 cd "$out"
 sha256sum -- *.tar.xz *.zip *.whl *.deb >SHA256SUMS

@@ -7,8 +7,6 @@ import contextlib
 import math
 import re
 
-from make import numbers
-
 
 def sheet(f, nu, nv, closed=False, caps=False):
     """Returns a grid of nu x nv cells, points f(u, v) with u and v in [0, 1]; closed along u, ends capped."""
@@ -178,7 +176,8 @@ class PbrtScene:
     @staticmethod
     def short(values, digits=3):
         """Returns numbers as text, without the 0 in front of the point."""
-        return re.sub(r'-0\b(?!\.)', '0', re.sub(r'\b0\.', '.', numbers(values, digits)))
+        text = ' '.join(f'{v:.{digits}f}'.rstrip('0').rstrip('.') for v in values)
+        return re.sub(r'-0\b(?!\.)', '0', re.sub(r'\b0\.', '.', text))
 
     def write(self, folder):
         for name, text in self.files.items():

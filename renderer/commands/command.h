@@ -137,7 +137,7 @@ inline constexpr std::array kRemoved = {
     Removed{"study", "--procedure", "there is one procedure, adjustment"},
     Removed{"study", "--questions", "ask observers yourself"},
     Removed{"study", "--text", "edit the texts in the page"},
-    Removed{"train", "--bnorm", "use --snorm, as the paper"},
+    Removed{"train", "--bnorm", "inputs are normalised as in the paper"},
     Removed{"train", "--noisy-weight", "use lull render --caution"},
 };
 

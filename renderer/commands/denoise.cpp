@@ -155,8 +155,7 @@ ExitCode RunDenoise(Options options) {
     results.Write(png, [&](const std::string& file) {
         WriteShown(file, shown, DataWindow(exr), denoised.image);
     });
-    for (const std::string& name : results.Names()) fmt::print("{}\n", name);
-    results.Check();
+    results.PrintAndCheck();
     return kDone;
 }
 

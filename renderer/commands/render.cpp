@@ -13,7 +13,7 @@
 #include "renderer/results/report.h"
 #include "renderer/scene/light_groups.h"
 #include "stopping/base/input_file.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 
 namespace lull::render {
 

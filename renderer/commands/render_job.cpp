@@ -16,10 +16,10 @@
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
 #include "renderer/files/file_io.h"
-#include "renderer/input/scene_hash.h"
+#include "renderer/input/description.h"
 #include "renderer/mpi/job.h"
 #include "stopping/base/input_file.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

@@ -16,7 +16,7 @@
 #include "renderer/image/grade.h"
 #include "renderer/progress/forecast.h"
 #include "renderer/render/film_picture.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull::render {

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "renderer/embedding/denoising.h"
 #include "renderer/embedding/picture.h"
 #include "renderer/embedding/stopper.h"
 #include "stopping/signals/attributes26.h"

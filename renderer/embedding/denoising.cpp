@@ -1,4 +1,4 @@
-#include "renderer/embedding/denoising.h"
+#include "renderer/embedding/picture.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,7 +9,6 @@
 
 #include "renderer/denoise/denoiser.h"
 #include "renderer/denoise/dependent_halves.h"
-#include "renderer/embedding/picture.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

@@ -36,6 +36,10 @@ bool HasFourthChannel(const lull_picture& picture);
 // which are possible.
 PictureValues ValuesOf(const lull_picture& picture, const void* origin, const lull_rect& part);
 
+// Denoises a picture. Throws std::invalid_argument, with nothing written, for pictures and outputs
+// that lull/lull.h does not allow.
+void Denoise(const lull_noisy_picture& noisy, lull_denoised_picture* clean);
+
 // Notices pictures of a block that lie too far apart for rules that compare them: these then look
 // at none, and never stop the block.
 

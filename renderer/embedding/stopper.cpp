@@ -16,7 +16,7 @@
 #include "renderer/embedding/picture.h"
 #include "stopping/base/parallel.h"
 #include "stopping/base/state.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

@@ -146,6 +146,11 @@ void ResultFiles::RemoveOld(const std::string& path) {
     if (fs::is_regular_file(path, error)) fs::remove(path, error);
 }
 
+void ResultFiles::PrintAndCheck() const {
+    for (const std::string& name : names) fmt::print("{}\n", name);
+    Check();
+}
+
 void ResultFiles::Check() const {
     if (failures.empty()) return;
     std::string text = failures;

@@ -40,6 +40,8 @@ class ResultFiles {
     const std::vector<std::string>& Names() const { return names; }
     // Throws Error if a file is not where it should be; it says why, and where it is.
     void Check() const;
+    // Prints the names, a line each, and checks.
+    void PrintAndCheck() const;
 
   private:
     void Note(const File&, const std::optional<std::string>& failure);

@@ -4,12 +4,8 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "renderer/base/color.h"
-#include "renderer/base/error.h"
-#include "renderer/image/files/other_formats.h"
-#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -39,15 +35,6 @@ void ApplyGrade(const Grade& grade, std::span<float> rgb) {
     for (float& v : rgb)
         v = isEncoded ? LinearFromSrgb(v > 0 ? std::min(v, 1.f) : 0)
                       : (v > 0 ? std::min(v, std::numeric_limits<float>::max()) : 0);
-}
-
-std::shared_ptr<const ViewTransform> LoadView(const std::string& config,
-                                              const std::string& view) try {
-    static auto* const open = reinterpret_cast<OpenViewFunction*>(
-        ModuleFunction("LullOpenView", "views of OpenColorIO are made by the module"));
-    return std::shared_ptr<const ViewTransform>(open(config.c_str(), view.c_str()));
-} catch (const std::runtime_error& e) {
-    throw Error((config.empty() ? "--view" : config) + ": " + Printable(OneLine(e.what()), 1000));
 }
 
 }  // namespace lull

@@ -1,19 +1,21 @@
 #include "renderer/image/image_io.h"
 
+#include <dlfcn.h>
 #include <fmt/core.h>
 
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
 #include "renderer/files/file_io.h"
 #include "renderer/image/files/exr_file.h"
 #include "renderer/image/files/exr_header.h"
-#include "renderer/image/files/other_formats.h"
 #include "renderer/image/files/png_file.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
@@ -67,6 +69,34 @@ struct FoundFile {
         if (IsPng(bytes) || IsExr(bytes)) contents = ReadFile(path);
     }
 };
+
+// The path from the program to the module is the same in the build tree as where it is installed.
+std::string ModulePath() {
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+    return (program.parent_path().parent_path() / LULL_MODULE_FOLDER / "formats.so").string();
+}
+
+// Returns a function of the module by its name. The first call loads the module, which takes 0.2 s.
+// Throws std::runtime_error if it cannot be loaded: `purpose` is the beginning of the message.
+void* ModuleFunction(const char* name, const char* purpose) {
+    const std::string path = ModulePath();
+    void* module = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    void* function = module ? dlsym(module, name) : nullptr;
+    if (!function)
+        throw std::runtime_error(fmt::format(
+            "{} \"{}\", which cannot be loaded ({}); reinstall lull", purpose, path, dlerror()));
+    return function;
+}
+
+// Opens the file `path` or, if there are bytes, these, whose format is named by the extension of
+// `path`. Throws std::runtime_error with the reason, without the path.
+std::unique_ptr<ImageFile> OpenOtherFormat(const std::string& path,
+                                           std::span<const std::byte> bytes = {}) {
+    static auto* const open = reinterpret_cast<OpenImageFunction*>(ModuleFunction(
+        "LullOpenImage",
+        "it is neither PNG nor OpenEXR, and all other formats are read by the module"));
+    return std::unique_ptr<ImageFile>(open(path.c_str(), bytes.data(), bytes.size()));
+}
 
 std::unique_ptr<ImageFile> Open(const FoundFile& file) {
     if (IsPng(file.Bytes())) return OpenPng(file.Bytes());
@@ -186,6 +216,15 @@ ExrImage ReadExr(const std::string& path) {
     const FoundFile file(path);
     if (IsExr(file.Bytes())) return ReadExr(file);
     return ExrOf(Read(path, file.size, [&] { return Open(file); }));
+}
+
+std::shared_ptr<const ViewTransform> LoadView(const std::string& config,
+                                              const std::string& view) try {
+    static auto* const open = reinterpret_cast<OpenViewFunction*>(
+        ModuleFunction("LullOpenView", "views of OpenColorIO are made by the module"));
+    return std::shared_ptr<const ViewTransform>(open(config.c_str(), view.c_str()));
+} catch (const std::runtime_error& e) {
+    throw Error((config.empty() ? "--view" : config) + ": " + Printable(OneLine(e.what()), 1000));
 }
 
 }  // namespace lull

@@ -80,12 +80,6 @@ std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int hei
 // Error.
 std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height);
 
-// Write PNGs, whole or not at all: of linear RGB, of linear RGB that comes row by row, and of 8-bit
-// sRGB. Throw Error.
-void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height);
-void WritePng(const std::string& path, const RowSource& rows, int width, int height);
-void WritePng(const std::string& path, std::span<const uint8_t> srgb, int width, int height);
-
 // How a PNG shows linear RGB.
 struct PngFormat {
     int bits = 8;  // a component, or 16
@@ -96,11 +90,13 @@ struct PngFormat {
     std::map<std::string, std::string> text = {};  // for the header: name (letters only), value
 };
 
-// Write PNGs in this format, whole or not at all, otherwise as WritePng() does. Throw Error.
+// Write PNGs, whole or not at all: of linear RGB, of linear RGB that comes row by row, and of 8-bit
+// sRGB. Throw Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
-              const PngFormat& format);
+              const PngFormat& format = {});
 void WritePng(const std::string& path, const RowSource& rows, int width, int height,
-              const PngFormat& format);
+              const PngFormat& format = {});
+void WritePng(const std::string& path, std::span<const uint8_t> srgb, int width, int height);
 
 // Returns the 8-bit display value of a linear value; NaN is black.
 uint8_t Encode8Bit(float linear);

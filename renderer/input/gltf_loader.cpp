@@ -8,14 +8,11 @@
 #include <map>
 #include <tuple>
 
-#include "renderer/input/gltf/animations.h"
 #include "renderer/input/gltf/cameras.h"
 #include "renderer/input/gltf/document.h"
-#include "renderer/input/gltf/lights.h"
 #include "renderer/input/gltf/materials.h"
 #include "renderer/input/gltf/nodes.h"
 #include "renderer/input/gltf/primitives.h"
-#include "renderer/input/gltf/uri.h"
 
 namespace lull {
 namespace {
@@ -232,9 +229,8 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
     }
     if (!description.media.empty()) description.integrator.name = "volpath";  // which sees them
     description.sources = {file};
-    for (const tinygltf::Buffer& buffer : document.model.buffers)
-        if (!buffer.uri.empty() && !IsDataUri(buffer.uri))
-            description.sources.push_back(ResolvePath(description, DecodeUri(buffer.uri)));
+    const std::vector<std::string>& files = document.bufferFiles;
+    description.sources.insert(description.sources.end(), files.begin(), files.end());
     for (const GltfNode& node : nodes)
         if (node.isVisible) AddLight(document, node, &description, warnings);
     SetView(document, nodes, framing, options, &description);

@@ -71,9 +71,8 @@ HalfEdgeMesh MakeMesh(std::span<const float> p, std::span<const int> indices, co
         const int v = mesh.origin[h];
         if (v < 0 || size_t(v) >= mesh.p.size())
             throw Error(loc, "loopsubdiv: index " + std::to_string(v) +
-                                 " is out of range, there "
-                                 "are " +
-                                 std::to_string(mesh.p.size()) + " vertices");
+                                 " is out of range, there are " + std::to_string(mesh.p.size()) +
+                                 " vertices");
         if (v == mesh.Target(h))
             throw Error(loc, "loopsubdiv: face " + std::to_string(h / 3) + " repeats vertex " +
                                  std::to_string(v));

@@ -15,7 +15,6 @@
 #include "renderer/files/file_io.h"
 #include "renderer/input/inflate.h"
 #include "renderer/input/ply/ply_header.h"
-#include "renderer/input/ply/polygon.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
@@ -76,14 +75,6 @@ Column ColumnOf(MeshData* mesh, int slot) {
     return {mesh->uvs.data()->data() + (slot - kU), 2};
 }
 
-void CopyColumn(PlyType type, const char* bytes, size_t rowBytes, size_t rows, bool swap,
-                float* values, size_t stride) {
-    WithTypeOf(type, [&](auto t) {
-        for (size_t i = 0; i < rows; ++i)
-            values[i * stride] = float(LoadPlyValue<decltype(t)>(bytes + i * rowBytes, swap));
-    });
-}
-
 // Returns the least bytes that a row of the element can take; a list may be empty.
 size_t LeastRowBytes(const PlyElement& element, PlyFormat format) {
     size_t bytes = 0;
@@ -99,40 +90,12 @@ bool HasFixedRows(const PlyElement& element, PlyFormat format) {
            std::ranges::none_of(element.properties, &PlyProperty::isList);
 }
 
-// Reads rows of fixed size by columns, in chunks that stay in the cache.
-void ReadFixedVertices(const PlyElement& element, const SlotMap& slots, PlyCursor& cursor,
-                       MeshData* mesh) {
-    constexpr size_t kChunk = 1024;
-    std::vector<size_t> offsets;
-    size_t rowBytes = 0;
-    for (const PlyProperty& property : element.properties) {
-        offsets.push_back(rowBytes);
-        rowBytes += PlyTypeSize(property.type);
-    }
-    const bool swap = cursor.format == PlyFormat::BigEndian;
-    const size_t count = size_t(element.count);
-    for (size_t begin = 0; begin < count; begin += kChunk) {
-        const size_t rows = std::min(kChunk, count - begin);
-        const char* const bytes = cursor.Skip(rows * rowBytes);
-        for (int slot = 0; slot < kSlots; ++slot) {
-            if (slots[slot] < 0) continue;
-            const Column column = ColumnOf(mesh, slot);
-            CopyColumn(element.properties[slots[slot]].type, bytes + offsets[slots[slot]], rowBytes,
-                       rows, swap, column.values + begin * column.stride, column.stride);
-        }
-    }
-}
-
 void ReadVertices(const PlyElement& element, PlyCursor& cursor, MeshData* mesh) {
     const SlotMap slots = MapSlots(element, {cursor.loc.file});
     const size_t count = size_t(element.count);
     mesh->positions.resize(count);
     if (slots[kNx] >= 0) mesh->normals.resize(count);
     if (slots[kU] >= 0) mesh->uvs.resize(count);
-    if (HasFixedRows(element, cursor.format)) {
-        ReadFixedVertices(element, slots, cursor, mesh);
-        return;
-    }
     // A property fills at most one slot, for no name belongs to two.
     std::vector<int> slotOf(element.properties.size(), -1);
     for (int slot = 0; slot < kSlots; ++slot)

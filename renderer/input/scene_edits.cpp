@@ -16,6 +16,12 @@ Eigen::Vector3d UpOf(const Eigen::Matrix3d& cameraFromWorld, std::optional<int> 
     return (cameraFromWorld(1, axis) < 0 ? -1. : 1.) * Eigen::Vector3d::Unit(axis);
 }
 
+Mat4d FromAxes(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& z) {
+    Mat4d m = Mat4d::Identity();
+    m.topLeftCorner<3, 3>() << x, y, z;
+    return m;
+}
+
 // Returns the transform of a studio's light space to the world: +z is up, +x where the camera is,
 // +y to its right.
 Mat4d WorldFromStudio(const Mat4d& cameraFromWorld) {
@@ -25,11 +31,7 @@ Mat4d WorldFromStudio(const Mat4d& cameraFromWorld) {
     right = (right - right.dot(up) * up).normalized();
     Eigen::Vector3d back = up.cross(right);
     if (back.dot(m.row(2).transpose()) > 0) back = -back;
-    Mat4d result = Mat4d::Identity();
-    result.col(0).head<3>() = back;
-    result.col(1).head<3>() = right;
-    result.col(2).head<3>() = up;
-    return result;
+    return FromAxes(back, right, up);
 }
 
 // Returns the transform of light space, whose +z is the top of an environment map, to the world.
@@ -46,11 +48,7 @@ Mat4d WorldFromEnvironment(const Mat4d& cameraFromWorld, std::optional<int> upAx
     const Eigen::Vector3d y = (isRightHanded ? -1. : 1.) * up.cross(x);
     const double angle = degrees * std::numbers::pi / 180;
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, up).toRotationMatrix();
-    Mat4d result = Mat4d::Identity();
-    result.col(0).head<3>() = turn * x;
-    result.col(1).head<3>() = turn * y;
-    result.col(2).head<3>() = up;
-    return result;
+    return FromAxes(turn * x, turn * y, up);
 }
 
 bool IsEnvironment(const LightEntity& light) {
@@ -65,23 +63,22 @@ void SetIntegrator(const std::string& name, Description* description) {
 }
 
 void SetExposure(double stops, Description* description) {
-    description->film.parameters.Add({ParameterType::Float, "exposure", description->film.loc,
-                                      std::vector<float>{float(stops)}});
+    ParameterWriter(&description->film.parameters, description->film.loc).Float("exposure", stops);
 }
 
 void SetStereo(const std::vector<float>& numbers, const std::string& eye, Description* d) {
-    Parameters& camera = d->camera.parameters;
-    camera.Add({ParameterType::Float, "eyedistance", {}, std::vector<float>{numbers.at(0)}});
-    camera.Add({ParameterType::Float, "convergence", {}, std::vector<float>{numbers.at(1)}});
-    camera.Add({ParameterType::String, "eye", {}, std::vector<std::string>{eye}});
+    const ParameterWriter camera(&d->camera.parameters, {});
+    camera.Float("eyedistance", numbers.at(0));
+    camera.Float("convergence", numbers.at(1));
+    camera.String("eye", eye);
 }
 
 void SetEnvironment(const std::string& file, double rotation, Description* description) {
     std::erase_if(description->lights, IsEnvironment);
     LightEntity light;
     light.name = "infinite";
-    light.parameters.Add({ParameterType::String, "mapname", light.loc,
-                          std::vector<std::string>{std::filesystem::absolute(file).string()}});
+    ParameterWriter(&light.parameters, {})
+        .String("mapname", std::filesystem::absolute(file).string());
     light.worldFromLight =
         WorldFromEnvironment(description->cameraFromWorld, description->upAxis, rotation);
     description->lights.push_back(std::move(light));
@@ -95,7 +92,7 @@ void LightIfDark(Description* description, Warnings& warnings) {
     warnings.Add({}, "the scene has no lights: a studio's light it, --environment gives others");
     LightEntity light;
     light.name = "infinite";
-    light.parameters.Add({ParameterType::Bool, "studio", light.loc, std::vector<int>{1}});
+    ParameterWriter(&light.parameters, {}).Bool("studio", true);
     light.worldFromLight = WorldFromStudio(description->cameraFromWorld);
     description->lights.push_back(std::move(light));
 }

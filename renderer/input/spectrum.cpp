@@ -12,7 +12,6 @@
 
 #include "renderer/base/math.h"
 #include "renderer/files/file_io.h"
-#include "renderer/input/cie_table.h"
 
 namespace lull {
 namespace {
@@ -26,9 +25,9 @@ Rgb Integrate(const Spectrum& spectrum) {
     double x = 0, y = 0, z = 0;
     for (int i = 0; i < kCieRows; ++i) {
         const double value = spectrum(double(kCieFirst + i)) * kScale;
-        x += value * kCieTable[i].x;
-        y += value * kCieTable[i].y;
-        z += value * kCieTable[i].z;
+        x += value * kCieX[i];
+        y += value * kCieY[i];
+        z += value * kCieZ[i];
     }
     return RgbFromXyz(x, y, z);
 }

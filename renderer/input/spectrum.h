@@ -1,6 +1,7 @@
 // Converts every form of spectrum in a scene file to linear RGB, as pbrt-v3's RGBSpectrum does.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,11 @@
 #include "renderer/input/description.h"
 
 namespace lull {
+
+// The colour matching functions of the CIE 1931 2-degree standard observer.
+inline constexpr int kCieFirst = 360, kCieLast = 830;  // nm, in steps of 1
+inline constexpr int kCieRows = kCieLast - kCieFirst + 1;
+extern const std::array<float, kCieRows> kCieX, kCieY, kCieZ;
 
 // Returns the linear sRGB of CIE XYZ.
 Rgb RgbFromXyz(double x, double y, double z);

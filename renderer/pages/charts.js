@@ -1,16 +1,13 @@
 "use strict";
 // Draws charts of curves over a logarithmic axis with uPlot.
 
-// Draws marks that can be told apart without colour.
-function drawMark(u, kind, x, y, size) {
-  const c = u.ctx, s = size;
-  c.beginPath();
-  if (kind === 0) c.arc(x, y, s, 0, 7);
-  else if (kind === 1) c.rect(x - s, y - s, 2 * s, 2 * s);
-  else if (kind === 2) { c.moveTo(x, y - 1.3 * s); c.lineTo(x + 1.2 * s, y + s); c.lineTo(x - 1.2 * s, y + s); c.closePath(); }
-  else if (kind === 3) { c.moveTo(x, y - 1.4 * s); c.lineTo(x + 1.4 * s, y); c.lineTo(x, y + 1.4 * s); c.lineTo(x - 1.4 * s, y); c.closePath(); }
-  else { c.moveTo(x - s, y - s); c.lineTo(x + s, y + s); c.moveTo(x + s, y - s); c.lineTo(x - s, y + s); }
-  kind < 4 ? c.fill() : c.stroke();
+// Returns the path, as of SVG, of a mark that can be told apart without colour; the last kind is stroked, the others are filled.
+function markPath(kind, x, y, s) {
+  return [`M${x - s} ${y}a${s} ${s} 0 1 0 ${2 * s} 0a${s} ${s} 0 1 0 ${-2 * s} 0z`,
+    `M${x - s} ${y - s}h${2 * s}v${2 * s}h${-2 * s}z`,
+    `M${x} ${y - 1.3 * s}l${1.2 * s} ${2.3 * s}h${-2.4 * s}z`,
+    `M${x} ${y - 1.4 * s}l${1.4 * s} ${1.4 * s}l${-1.4 * s} ${1.4 * s}l${-1.4 * s} ${-1.4 * s}z`,
+    `M${x - s} ${y - s}l${2 * s} ${2 * s}m${-2 * s} 0l${2 * s} ${-2 * s}`][kind];
 }
 
 // The same marks as characters, for legends.
@@ -100,7 +97,8 @@ function drawChart(parent, series, options) {
         points: s.mark == null ? {show: false} : {show: (u, i) => {
           const c = u.ctx, [xs, ys] = [u.data[0], u.data[i]];
           c.save(); c.fillStyle = c.strokeStyle = s.colour || themeColour("--ink"); c.lineWidth = 2 * devicePixelRatio;
-          xs.forEach((x, k) => { if (isNumber(ys[k])) drawMark(u, s.mark, u.valToPos(x, "x", true), u.valToPos(ys[k], "y", true), 3.5 * devicePixelRatio); });
+          const path = new Path2D(xs.map((x, k) => isNumber(ys[k]) ? markPath(s.mark, u.valToPos(x, "x", true), u.valToPos(ys[k], "y", true), 3.5 * devicePixelRatio) : "").join(""));
+          s.mark < 4 ? c.fill(path) : c.stroke(path);
           c.restore();
           return false; }}
       }))],

@@ -25,7 +25,7 @@ const byId = id => document.getElementById(id);
 
 // Makes an element; attributes that are functions listen to events.
 function make(tag, attributes = {}, ...children) {
-  const svg = ["svg", "rect", "text", "g", "title", "path", "circle"].includes(tag);
+  const svg = ["svg", "rect", "text", "g", "title", "path"].includes(tag);
   const element = svg ? document.createElementNS("http://www.w3.org/2000/svg", tag)
                       : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes))
@@ -41,6 +41,35 @@ function makeTable(caption, head, rows) {
     head ? make("thead", {}, make("tr", {}, ...head.map(h => make("th", {scope: "col"}, h)))) : null,
     make("tbody", {}, ...rows.map(row => make("tr", {}, ...row.map((cell, i) =>
       make(i ? "td" : "th", i ? {} : {scope: "row"}, cell))))));
+}
+
+function makeChoice(label, options, value, set) {
+  const select = make("select", {"aria-label": label, change: () => set(select.value)},
+    ...options.map(([v, text]) => make("option", {value: v, selected: String(v) === String(value)}, text)));
+  return make("label", {}, label + " ", select);
+}
+
+function saveText(name, type, text) {
+  const url = URL.createObjectURL(new Blob([text], {type}));
+  make("a", {href: url, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+// Returns the number of the block that an arrow key leads to from one of `blocks`; null for other keys, -1 at the border.
+function blockByKey(blocks, from, event) {
+  const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+  if (!step || !from) return null;
+  event.preventDefault();
+  const x = from.x + (step[0] < 0 ? -1 : step[0] > 0 ? from.width : 0);
+  const y = from.y + (step[1] < 0 ? -1 : step[1] > 0 ? from.height : 0);
+  return blocks.findIndex(b => x >= b.x && x < b.x + b.width && y >= b.y && y < b.y + b.height);
+}
+
+// Returns the scale of a colour map, with the texts at its ends.
+function makeScale(colour, ends) {
+  const stops = [...Array(17).keys()].map(i => colour(i / 16)).join(",");
+  return [make("div", {class: "bar", style: `background:linear-gradient(to right,${stops})`}),
+    make("div", {class: "ends"}, ...ends.map(e => make("span", {}, e)))];
 }
 
 // Viridis: ordered by lightness for every kind of colour vision.

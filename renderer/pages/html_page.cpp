@@ -186,7 +186,8 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
              {"label", "error that is left (yellow: 2 in lightness, of 0 to 100)"},
              {"src", ErrorUri(*denoised)}});
     }
-    return FillPage("page.html", {{"data", JsonForScript(page)}});
+    return FillPage("page.html", {{"data", JsonForScript(page)},
+                                  {"report.js", std::string(EmbeddedFile("render.js"))}});
 }
 
 }  // namespace lull

@@ -19,8 +19,8 @@ function sayRender(data) {
 function showTotals(data) {
   const t = data.totals;
   if (!t) return;
-  byId("totals").hidden = false;
-  byId("totals-table").append(makeTable("", null, [
+  byId("summary").hidden = false;
+  byId("summary-tables").append(makeTable("", null, [
     ["clean blocks", `${t.stoppedBlocks} of ${t.blocks}`],
     ...(t.blocksAtCap ? [["at the cap, still noisy", String(t.blocksAtCap)]] : []),
     ...(isNumber(t.neededCap) ? [["estimated maximum spp needed", showCount(t.neededCap) + " spp"]] : []),

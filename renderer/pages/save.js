@@ -1,12 +1,6 @@
 "use strict";
 // Saves charts as SVG, and charts and tables as CSV.
 
-function saveText(name, type, text) {
-  const url = URL.createObjectURL(new Blob([text], {type}));
-  make("a", {href: url, download: name}).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
-}
-
 // Names a file after the page and a title.
 const fileName = (title, extension) =>
   (document.title.split(" \u2013 ")[0] + "-" + title).replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-+|-+$/g, "") + extension;
@@ -29,15 +23,8 @@ function withCsv(table, title) {
   return make("div", {}, saveButton("CSV", title, () => saveText(fileName(title, ".csv"), "text/csv", csvOf([...table.rows].map(cells)))), table);
 }
 
-// The mark of a series in an SVG, as drawMark() has it.
-function svgMark(kind, x, y, colour) {
-  const s = 3.5, paint = {fill: colour};
-  if (kind === 0) return make("circle", {cx: x, cy: y, r: s, ...paint});
-  if (kind === 1) return make("rect", {x: x - s, y: y - s, width: 2 * s, height: 2 * s, ...paint});
-  if (kind === 2) return make("path", {d: `M${x} ${y - 1.3 * s}l${1.2 * s} ${2.3 * s}h${-2.4 * s}z`, ...paint});
-  if (kind === 3) return make("path", {d: `M${x} ${y - 1.4 * s}l${1.4 * s} ${1.4 * s}l${-1.4 * s} ${1.4 * s}l${-1.4 * s} ${-1.4 * s}z`, ...paint});
-  return make("path", {d: `M${x - s} ${y - s}l${2 * s} ${2 * s}m${-2 * s} 0l${2 * s} ${-2 * s}`, fill: "none", stroke: colour, "stroke-width": 2});
-}
+const svgMark = (kind, x, y, colour) =>
+  make("path", {d: markPath(kind, x, y, 3.5), ...(kind < 4 ? {fill: colour} : {fill: "none", stroke: colour, "stroke-width": 2})});
 
 // Draws a chart as an SVG with a white background: as on the page at the time, with its legend below.
 function chartSvg(plot, series, options) {

@@ -54,14 +54,8 @@ function setPlace(rect, b) {
 }
 
 function moveWithKeys(data, event) {
-  const from = data.blocks[view.block];
-  const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
-  if (!step || !from) return;
-  event.preventDefault();
-  const x = from.x + (step[0] < 0 ? -1 : step[0] > 0 ? from.width : 0);
-  const y = from.y + (step[1] < 0 ? -1 : step[1] > 0 ? from.height : 0);
-  const to = data.blocks.findIndex(b => x >= b.x && x < b.x + b.width && y >= b.y && y < b.y + b.height);
-  if (to >= 0) chooseBlock(to);
+  const to = blockByKey(data.blocks, data.blocks[view.block], event);
+  if (to !== null && to >= 0) chooseBlock(to);
 }
 
 // Sets the place of the divider, a share of the width.
@@ -156,17 +150,7 @@ function showLegend(data) {
   const numbers = overlayNumbers(data);
   const map = [view.a, view.mode === "one" ? view.a : view.b].map(i => layers[i]).find(l => l.ends);
   if (!numbers && !map) return;
-  const colour = numbers ? numbers.colour : viridis;
-  const stops = [...Array(17).keys()].map(i => colour(i / 16)).join(",");
-  const ends = (numbers || map).ends;
-  legend.append(make("div", {class: "bar", style: `background:linear-gradient(to right,${stops})`}),
-    make("div", {class: "ends"}, ...ends.map(e => make("span", {}, e))));
-}
-
-function makeChoice(label, options, value, set) {
-  const select = make("select", {"aria-label": label, change: () => set(select.value)},
-    ...options.map(([v, text]) => make("option", {value: v, selected: String(v) === String(value)}, text)));
-  return make("label", {}, label + " ", select);
+  legend.append(...makeScale(numbers ? numbers.colour : viridis, (numbers || map).ends));
 }
 
 function startViewer(data) {

@@ -57,8 +57,6 @@ void WarnOfColours(const py::array& values, const std::string& name) {
              "and undo their gamma, or scale it to how it is shown");
 }
 
-namespace py = pybind11;
-
 namespace {
 
 py::array ToPixels(const py::array& array, const std::string& name, int width, int height) {

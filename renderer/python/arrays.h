@@ -11,13 +11,8 @@
 
 namespace lull {
 
-// The parts of the extension beside the Stopper.
-
-// Adds svd_entropy(), the type SvdEntropy of its results, and attributes26().
-void BindEntropies(pybind11::module_& module);
-
-// Adds denoise() and the type Denoised of its results.
-void BindDenoising(pybind11::module_& module);
+// Adds the functions svd_entropy(), attributes26() and denoise(), and the types of their results.
+void BindFunctions(pybind11::module_& module);
 
 // Converts errors of the C interface to exceptions.
 

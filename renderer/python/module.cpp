@@ -334,6 +334,5 @@ PYBIND11_MODULE(_lull, module) {
     lull::BindBlockAnswer(module);
     lull::BindAnswer(module);
     lull::BindStopper(module);
-    lull::BindEntropies(module);
-    lull::BindDenoising(module);
+    lull::BindFunctions(module);
 }

@@ -2,7 +2,7 @@
 
 #include "renderer/base/clocks.h"
 #include "renderer/render/peers.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/signals/lightness_noise.h"
 
 namespace lull {

@@ -4,7 +4,7 @@
 
 #include "renderer/base/clocks.h"
 #include "stopping/base/state.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"
 #include "stopping/signals/svd_entropy.h"

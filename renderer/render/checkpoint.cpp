@@ -9,8 +9,8 @@
 
 #include "renderer/files/file_io.h"
 #include "renderer/render/block_criteria_internal.h"
-#include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
+#include "stopping/base/input_file.h"
 #include "stopping/base/state.h"
 
 namespace lull {
@@ -233,12 +233,12 @@ RenderState ReadCheckpoint(const std::string& path, const RenderIdentity& identi
     CheckPlanes(ParseIdentity(root.Strings("planes")), *film);
     RenderState state;
     state.seconds = root.Array<double>("seconds", std::array<int64_t, 1>{1})[0];
-    if (root.HasArray("shares")) state.shares = SharesIn(root);
-    for (size_t i = 0; root.HasGroup(GroupName(i)); ++i) {
+    if (root.Has("shares")) state.shares = SharesIn(root);
+    for (size_t i = 0; root.Has(GroupName(i)); ++i) {
         const Hdf5Group group = root.Group(GroupName(i));
         state.blocks.push_back(UnpackBooks(BytesOf(group, "books")));
         state.criteria.push_back(BytesOf(group, "criterion"));
-        if (group.HasGroup("pixels"))
+        if (group.Has("pixels"))
             ReadPlanes(group.Group("pixels"), state.blocks.back().block.pixels, film);
     }
     if (mayDiffer == MayDiffer::Stops) GoOnTo(identity, found, &state);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "renderer/progress/forecast.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

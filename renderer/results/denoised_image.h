@@ -7,8 +7,8 @@
 #include "renderer/denoise/denoise.h"
 #include "renderer/denoise/denoiser.h"
 #include "renderer/film/film.h"
+#include "renderer/image/image.h"
 #include "renderer/image/image_io.h"
-#include "renderer/image/rgb_image.h"
 #include "renderer/schedule/schedule.h"
 
 namespace lull {

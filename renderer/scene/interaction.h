@@ -1,5 +1,7 @@
-// The surface point that a ray has hit.
+// Points of surfaces: those that a ray has hit, and samples of emitting shapes.
 #pragma once
+
+#include <optional>
 
 #include "renderer/base/math.h"
 
@@ -36,6 +38,34 @@ struct Hit {
 struct ShapeHit {
     float t, u, v;
 };
+
+struct ShapeSample {
+    Vec3f p, pError, n;  // world; n unit, on the side that emits
+    float pdf = 0;       // 1/sr, as seen from the reference point; positive and finite. Or 1/m^2
+};
+
+// Bounds normals by a cone about an axis.
+struct NormalBounds {
+    Vec3f axis = Vec3f::UnitZ();
+    float cosAngle = -1;      // -1: any normal
+    bool isTwoSided = false;  // the cone about the opposite of the axis as well
+};
+
+// Converts a density by area to one by solid angle; 0 if that would not be finite.
+inline float SolidAnglePdf(float areaPdf, const Vec3f& from, const Vec3f& p, const Vec3f& n) {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    // |cos| = |n.d| / |d|, so the density is areaPdf |d|^3 / |n.d|.
+    const float pdf = areaPdf * distance2 * std::sqrt(distance2) / std::abs(n.dot(d));
+    return std::isfinite(pdf) ? pdf : 0;
+}
+
+// Returns a sample by area with its density as seen from a point; nothing where it is edge-on.
+inline std::optional<ShapeSample> SeenFrom(const Vec3f& from, ShapeSample sample) {
+    sample.pdf = SolidAnglePdf(sample.pdf, from, sample.p, sample.n);
+    if (!(sample.pdf > 0)) return {};
+    return sample;
+}
 
 struct SurfaceInteraction {
     Vec3f p;       // world

@@ -1,8 +1,24 @@
 """The images of the room: grain of wood, a kilim, spines of books, a print, weave, and two skies."""
 import math
 import random
+import struct
+import zlib
 
-from make import write_png
+
+def write_png(path, width, height, pixel):
+    """Writes an 8-bit PNG; pixel(x, y) returns 1 or 3 values in [0, 1]."""
+    channels = len(pixel(0, 0))
+    rows = b''
+    for y in range(height):
+        row = (max(0, min(255, round(255 * v))) for x in range(width) for v in pixel(x, y))
+        rows += b'\0' + bytes(row)
+
+    def chunk(kind, data):
+        crc = struct.pack('>I', zlib.crc32(kind + data))
+        return struct.pack('>I', len(data)) + kind + data + crc
+
+    header = struct.pack('>IIBBBBB', width, height, 8, 2 if channels == 3 else 0, 0, 0, 0)
+    path.write_bytes(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', header) + chunk(b'IDAT', zlib.compress(rows, 9)) + chunk(b'IEND', b''))
 
 
 def smooth(t):

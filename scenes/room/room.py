@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 """Makes the files that room.pbrt and room-night.pbrt include: the things in the room, and the images on them.
 
-room.py [FOLDER]: writes to FOLDER (this one by default). room.py --gltf FOLDER: writes room.glb and room-night.glb
-there, the same room as glTF. Everything is a function of the numbers below, so that
-the files are the same, byte for byte, each time. Metres; x to the right, y up, z away from the camera.
+room.py [FOLDER]: writes to FOLDER (this one by default). Everything is a function of the numbers below, so that the files
+are the same, byte for byte, each time. Metres; x to the right, y up, z away from the camera.
 materials.pbrt has the materials that are named here. Soft and turned things are cages that the renderer
 subdivides; planks, books, leaves and the like are instances.
 """
@@ -15,7 +14,6 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from cages import PbrtScene, box, cushion, group, joined, lathe, sheet, torus, tube  # noqa: E402
-from gltf import write_rooms  # noqa: E402
 from images import write_images  # noqa: E402
 
 LEFT, RIGHT, FRONT, BACK, HEIGHT = -2.2, 2.5, -1.9, 5.0, 2.75  # of the room, inside
@@ -396,9 +394,6 @@ PARTS = walls, floor, curtains, rug, armchair, bookcase, tables, lamps, plants, 
 
 
 def main():
-    if sys.argv[1:2] == ['--gltf']:
-        write_rooms(PARTS, HERE, pathlib.Path(sys.argv[2]))
-        return
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     scene = PbrtScene('geometry.pbrt', 'Things in the room. Made by room.py.')
     for part in PARTS:

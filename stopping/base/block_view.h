@@ -1,7 +1,9 @@
 // Describes a block of an image to those who measure and judge it.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <stdexcept>
 
 namespace lull {
 
@@ -24,7 +26,14 @@ struct BlockView {
 enum class ViewNeed { Nothing, Mean, MeanAndHalf, Measured };
 
 // Checks that a view has a size, samples and the spans in `need`. Throws std::invalid_argument.
-void CheckView(const BlockView& view, ViewNeed need);
+inline void CheckView(const BlockView& view, ViewNeed need) {
+    if (view.width < 1 || view.height < 1 || view.spp < 1)
+        throw std::invalid_argument("a block needs pixels and samples");
+    const size_t values = 3 * size_t(view.width) * size_t(view.height);
+    if ((need != ViewNeed::Nothing && view.mean.size() != values) ||
+        (need >= ViewNeed::MeanAndHalf && view.halfMean.size() != values))
+        throw std::invalid_argument("the means of a block do not have its size");
+}
 
 // Pixels a side below which a block is too small for meaningful statistics.
 inline constexpr int kSmallestVotingSide = 40;

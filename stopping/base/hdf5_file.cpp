@@ -7,13 +7,68 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
+#include <type_traits>
 
-#include "stopping/base/hdf5_heaps.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
 
 namespace {
+
+constexpr std::string_view kSignature("GCOL\1\0\0\0", 8);  // with the version
+constexpr size_t kHeaderBytes = 16, kChunkBytes = size_t(1) << 20;
+
+template <typename T>
+T Load(std::span<const char> bytes, size_t at) {
+    T value;
+    std::memcpy(&value, &bytes[at], sizeof(T));
+    return value;
+}
+
+// Checks the objects of a heap; `bytes` end with the heap or with the file.
+void CheckHeap(std::span<const char> bytes) {
+    for (size_t at = kHeaderBytes; at + kHeaderBytes <= bytes.size();) {
+        const bool isFreeSpace = Load<uint16_t>(bytes, at) == 0;
+        const auto size = Load<uint64_t>(bytes, at + 8);
+        const size_t rest = bytes.size() - at;
+        // The size of free space includes its header.
+        if (isFreeSpace && size >= kHeaderBytes && size <= rest)
+            at += size;
+        else if (!isFreeSpace && size <= rest)
+            at += kHeaderBytes + (size + 7) / 8 * 8;
+        else
+            throw std::runtime_error("cannot read its texts: a heap of them is damaged");
+    }
+}
+
+// Throws std::runtime_error if an object in a global heap of the file, where texts of variable
+// length are kept, has no end: up to version 1.14 the library searches behind it for ever. Heaps
+// are found by their signature ("HDF5 File Format Specification", III.E), lengths have 8 bytes, as
+// writers have them by default.
+void CheckGlobalHeaps(std::FILE* file) {
+    if (std::fseek(file, 0, SEEK_END) != 0) return;
+    const long end = std::ftell(file);
+    std::vector<char> bytes;
+    const auto read = [&](long start, uint64_t most) -> std::span<const char> {
+        bytes.resize(size_t(std::min(most, uint64_t(end - start))));
+        if (std::fseek(file, start, SEEK_SET) != 0) return {};
+        return {bytes.data(), std::fread(bytes.data(), 1, bytes.size(), file)};
+    };
+    for (long start = 0; end - start >= long(kHeaderBytes);) {
+        const std::span<const char> chunk = read(start, kChunkBytes);
+        if (chunk.size() < kHeaderBytes) return;
+        const size_t found = std::string_view(chunk.data(), chunk.size()).find(kSignature);
+        if (found == std::string_view::npos) {
+            start += long(chunk.size() - kSignature.size() + 1);  // one may lie across the end
+        } else if (found > 0) {
+            start += long(found);  // the heap begins the next chunk
+        } else {
+            CheckHeap(read(start, Load<uint64_t>(chunk, 8)));
+            start += long(kSignature.size());
+        }
+    }
+}
 
 static_assert(std::is_same_v<hid_t, int64_t>);
 
@@ -83,36 +138,21 @@ size_t Count(hid_t space) {
     return size_t(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
 }
 
-// The library's name of the C++ type T. (Its names are variables, set when it starts.)
+// The library's names of the C++ type T. (They are variables, set when it starts.)
 template <typename T>
-struct ElementType;
-template <>
-struct ElementType<float> {
-    static constexpr H5T_class_t kClass = H5T_FLOAT;
-    static constexpr const char* kName = "floating-point numbers";
-    static hid_t File() { return H5T_IEEE_F32LE; }
-    static hid_t Memory() { return H5T_NATIVE_FLOAT; }
-};
-template <>
-struct ElementType<double> {
-    static constexpr H5T_class_t kClass = H5T_FLOAT;
-    static constexpr const char* kName = "floating-point numbers";
-    static hid_t File() { return H5T_IEEE_F64LE; }
-    static hid_t Memory() { return H5T_NATIVE_DOUBLE; }
-};
-template <>
-struct ElementType<int32_t> {
-    static constexpr H5T_class_t kClass = H5T_INTEGER;
-    static constexpr const char* kName = "integers";
-    static hid_t File() { return H5T_STD_I32LE; }
-    static hid_t Memory() { return H5T_NATIVE_INT32; }
-};
-template <>
-struct ElementType<std::byte> {
-    static constexpr H5T_class_t kClass = H5T_INTEGER;
-    static constexpr const char* kName = "integers";
-    static hid_t File() { return H5T_STD_U8LE; }
-    static hid_t Memory() { return H5T_NATIVE_UINT8; }
+struct ElementType {
+    static constexpr bool kIsReal = std::is_floating_point_v<T>;
+    static constexpr H5T_class_t kClass = kIsReal ? H5T_FLOAT : H5T_INTEGER;
+    static constexpr const char* kName = kIsReal ? "floating-point numbers" : "integers";
+
+    static hid_t File() {
+        if constexpr (kIsReal) return sizeof(T) == 4 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+        return sizeof(T) == 4 ? H5T_STD_I32LE : H5T_STD_U8LE;
+    }
+    static hid_t Memory() {
+        if constexpr (kIsReal) return sizeof(T) == 4 ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+        return sizeof(T) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_UINT8;
+    }
 };
 
 void WriteAttribute(hid_t object, const std::string& name, hid_t type, hid_t space,
@@ -121,6 +161,24 @@ void WriteAttribute(hid_t object, const std::string& name, hid_t type, hid_t spa
     const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
                            H5Aclose, what);
     Check(H5Awrite(attribute, type, data), what);
+}
+
+template <typename T>
+void WriteScalar(hid_t object, const std::string& name, T value) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
+    WriteAttribute(object, name, ElementType<T>::Memory(), space, &value);
+}
+
+template <typename T>
+T ReadScalar(hid_t object, const std::string& name, const char* kind) {
+    const std::string what = "read attribute '" + name + "', which must be " + kind;
+    const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    const Handle type(H5Aget_type(attribute), H5Tclose, what);
+    const Handle space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tget_class(type) != ElementType<T>::kClass || Count(space) != 1) Fail(what);
+    T value = 0;
+    Check(H5Aread(attribute, ElementType<T>::Memory(), &value), what);
+    return value;
 }
 
 }  // namespace
@@ -164,7 +222,7 @@ std::span<const std::byte> Hdf5Group::Content() {
 
 void Hdf5Group::Flush() { Check(H5Fflush(*id, H5F_SCOPE_GLOBAL), "write it to the end"); }
 
-bool Hdf5Group::HasGroup(const std::string& name) const {
+bool Hdf5Group::Has(const std::string& name) const {
     return H5Lexists(*id, name.c_str(), H5P_DEFAULT) > 0;
 }
 
@@ -200,25 +258,11 @@ bool Hdf5Group::HasAttribute(const std::string& name) const {
 }
 
 int Hdf5Group::Int(const std::string& name) const {
-    const std::string what = "read attribute '" + name + "', which must be an integer";
-    const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
-    const Handle type(H5Aget_type(attribute), H5Tclose, what);
-    const Handle space(H5Aget_space(attribute), H5Sclose, what);
-    if (H5Tget_class(type) != H5T_INTEGER || Count(space) != 1) Fail(what);
-    int value = 0;
-    Check(H5Aread(attribute, H5T_NATIVE_INT, &value), what);
-    return value;
+    return ReadScalar<int>(*id, name, "an integer");
 }
 
 double Hdf5Group::Real(const std::string& name) const {
-    const std::string what = "read attribute '" + name + "', which must be a real number";
-    const Handle attribute(H5Aopen(*id, name.c_str(), H5P_DEFAULT), H5Aclose, what);
-    const Handle type(H5Aget_type(attribute), H5Tclose, what);
-    const Handle space(H5Aget_space(attribute), H5Sclose, what);
-    if (H5Tget_class(type) != H5T_FLOAT || Count(space) != 1) Fail(what);
-    double value = 0;
-    Check(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), what);
-    return value;
+    return ReadScalar<double>(*id, name, "a real number");
 }
 
 std::vector<std::string> Hdf5Group::Strings(const std::string& name) const {
@@ -252,15 +296,9 @@ std::string Hdf5Group::String(const std::string& name) const {
     return strings[0];
 }
 
-void Hdf5Group::SetInt(const std::string& name, int value) {
-    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
-    WriteAttribute(*id, name, H5T_NATIVE_INT, space, &value);
-}
+void Hdf5Group::SetInt(const std::string& name, int value) { WriteScalar(*id, name, value); }
 
-void Hdf5Group::SetReal(const std::string& name, double value) {
-    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
-    WriteAttribute(*id, name, H5T_NATIVE_DOUBLE, space, &value);
-}
+void Hdf5Group::SetReal(const std::string& name, double value) { WriteScalar(*id, name, value); }
 
 void Hdf5Group::SetString(const std::string& name, const std::string& text) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
@@ -283,10 +321,6 @@ void Hdf5Group::SetStrings(const std::string& name, std::span<const std::string>
     const hsize_t count = texts.size();
     const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, "make an array of texts");
     WriteAttribute(*id, name, type, space, padded.data());
-}
-
-bool Hdf5Group::HasArray(const std::string& name) const {
-    return H5Lexists(*id, name.c_str(), H5P_DEFAULT) > 0;
 }
 
 std::vector<int64_t> Hdf5Group::Shape(const std::string& path) const {

@@ -27,7 +27,8 @@ class Hdf5Group {
     // Writes everything so far to disk.
     void Flush();
 
-    bool HasGroup(const std::string& name) const;
+    // Returns whether there is a group or an array of that name.
+    bool Has(const std::string& name) const;
     Hdf5Group Group(const std::string& name) const;
     Hdf5Group MakeGroup(const std::string& name);
     // Returns the names of the groups in this one, in alphabetical order.
@@ -46,7 +47,6 @@ class Hdf5Group {
 
     // Read and write arrays of T, one of float, double, int32_t and std::byte, row-major. Array()
     // checks the shape before it allocates memory.
-    bool HasArray(const std::string& name) const;
     std::vector<int64_t> Shape(const std::string& path) const;
     template <typename T>
     std::vector<T> Array(const std::string& path, std::span<const int64_t> shape) const;

@@ -12,35 +12,21 @@ file of `lull train --preset paper` or of Keras. It fixes k, n, the sub-blocks, 
 """
 import argparse
 import pathlib
-import re
 
 import lull
 import numpy as np
+from drive_renderer import by_spp, read
 
 CAP = 10000  # spp of the picture that people compared with
 PASS = 20  # spp between the published pictures
 
 
-def read(path):
-    from PIL import Image
-    return np.asarray(Image.open(path).convert("RGB"))
-
-
 def pictures_in(folder):
-    """Returns the pictures of a folder as (spp, path), by their spp: 9 before 20, which comes before 100."""
-    found = []
-    for path in pathlib.Path(folder).glob("*.png"):
-        numbers = re.findall(r"\d+", path.stem)
-        if not numbers or int(numbers[-1]) == 0:
-            raise SystemExit(f"{path}: has no number of samples in its name")
-        found.append((int(numbers[-1]), path))
-    found.sort()
-    if not found:
+    """Returns the pictures of a folder as (spp, path), by their spp."""
+    files = list(pathlib.Path(folder).glob("*.png"))
+    if not files:
         raise SystemExit(f"{folder}: has no PNG files")
-    for (spp, path), (after, other) in zip(found, found[1:]):
-        if spp == after:
-            raise SystemExit(f"{path} and {other} have the same number of samples")
-    return found
+    return by_spp(files)
 
 
 def thresholds_of(pictures, model="paper", block=200):

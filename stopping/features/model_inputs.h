@@ -1,8 +1,11 @@
 // Turns measures of a block into the inputs of a network, in the same way for training, from
-// recordings, and for judging, from pixels.
+// recordings, and for judging, from pixels; and inputs over its passes into windows.
 #pragma once
 
+#include <Eigen/Core>
+
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,6 +62,8 @@ struct ModelSettings {
     double peakLimit = 0;
     // Multiplies noise; not part of a model, but of how it is used.
     double caution = 1;
+
+    bool operator==(const ModelSettings&) const = default;
 };
 
 bool Needs(const ModelSettings& settings, Feature feature);
@@ -72,7 +77,7 @@ inline constexpr int kMeasuredSubBlocks = 100;
 
 // The measures of a block at one spp: for each feature the values of its sub-blocks,
 // row-major (m entropies, kMeasuredSubBlocks of other statistics), or the attributes of the block;
-// empty if it is not asked for.
+// empty if it is not asked for (of entropies, if none is).
 struct BlockMeasures {
     int spp = 0;
     std::array<std::vector<double>, size_t(Feature::Attributes26) + 1> values = {};
@@ -107,5 +112,55 @@ bool LooksAtNoiseOnly(const ModelSettings& settings);
 // Convert that noise, >= 0, times the caution, to the network's input, and back.
 double InputOfNoise(double noise);
 double NoiseOfInput(double input);
+
+// Collects the features of a block over its passes into the sequence that a network reads.
+
+// Collects the features of a block over its passes into the sequence that a network reads.
+
+// Returns (v - min) / (max - min + 2.2e-16) for each value: in [0, 1], and all 0 if they are
+// equal. At least one value; they and their spread must be finite.
+Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values);
+
+// Adds an InputVector() and discards steps that no later window can need. Throws
+// std::invalid_argument if it does not have InputCount() values, and as History::Add() does.
+void AddInputs(int spp, std::vector<double> inputs, const ModelSettings& settings,
+               History<double>* history);
+
+// Returns the window that ends at `spp`, InputCount() x k, the oldest step first, its entropies and
+// attributes normalised as the settings say (for other features the level matters); nothing unless
+// there are inputs for spp, spp - n, ..., spp - (k - 1) n. With geometric spacing the steps are the
+// stored ones nearest to spp / ratio, spp / ratio^2, ..., eight an octave: for k steps 2 + 8 (k -
+// 1) log2(ratio) inputs at most; `spp` is the last one added.
+std::optional<Eigen::MatrixXf> WindowOf(const History<double>& history,
+                                        const ModelSettings& settings, int spp);
+
+// Turns the measures of a block, check by check, into windows: adds how far entropies have fallen
+// since half as many samples, and keeps the inputs.
+class BlockMemory {
+  public:
+    // Throws std::invalid_argument if the settings are out of range.
+    explicit BlockMemory(const ModelSettings& settings);
+
+    // Adds measures, with increasing spp; those without an earlier state to compare with give no
+    // inputs. Throws as InputVector() and History::Add() do.
+    void Add(BlockMeasures measures);
+
+    // Returns the window that ends at `spp`, as WindowOf() does.
+    std::optional<Eigen::MatrixXf> WindowAt(int spp) const {
+        return WindowOf(inputs, settings, spp);
+    }
+
+    // Write and read all that Add() has left behind. Restore() throws std::runtime_error if it is
+    // damaged.
+    void Save(StateWriter* writer) const;
+    void Restore(StateReader* reader);
+
+  private:
+    bool Complete(BlockMeasures* measures);
+
+    ModelSettings settings;
+    History<double> inputs;
+    History<float> entropies;  // where their falls are asked for
+};
 
 }  // namespace lull

@@ -23,6 +23,7 @@ struct LstmLayer {
 
     Eigen::Index Units() const { return recurrent.cols(); }
     Eigen::Index Inputs() const { return kernel.cols(); }
+    bool operator==(const LstmLayer&) const = default;
 };
 
 struct DenseLayer {
@@ -30,6 +31,8 @@ struct DenseLayer {
     Eigen::MatrixXf kernel;  // outputs x inputs
     Eigen::VectorXf bias;    // outputs
     Activation activation = Activation::Sigmoid;
+
+    bool operator==(const DenseLayer&) const = default;
 };
 
 // LSTM layers, each of which hands its output at every time step to the next one, followed by
@@ -37,6 +40,8 @@ struct DenseLayer {
 struct Network {
     std::vector<LstmLayer> lstm;
     std::vector<DenseLayer> dense;  // may be none
+
+    bool operator==(const Network&) const = default;
 };
 
 // Checks that there is an LSTM layer, that the shapes fit together and that all weights are finite.

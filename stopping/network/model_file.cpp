@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
+#include "stopping/base/input_file.h"
 #include "stopping/network/keras_config.h"
 
 namespace lull {
@@ -93,7 +93,7 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
     if (inputs > 1000000) throw std::runtime_error("the network takes too many values");
     if (timeSteps > 0) s.k = timeSteps;
     bool saysM = false;
-    if (file.HasGroup("lull")) {
+    if (file.Has("lull")) {
         const Hdf5Group group = file.Group("lull");
         auto read = [&](const char* name, int standard) {
             return group.HasAttribute(name) ? group.Int(name) : standard;
@@ -221,7 +221,7 @@ Model ReadModel(const std::string& path) {
 
 std::map<std::string, std::vector<int>> ReadTrainingBlocks(const std::string& path) try {
     const Hdf5Group file = Hdf5Group::Open(path);
-    if (!file.HasGroup("lull") || !file.Group("lull").HasGroup("training")) return {};
+    if (!file.Has("lull") || !file.Group("lull").Has("training")) return {};
     const Hdf5Group training = file.Group("lull").Group("training");
     if (!training.HasAttribute("training_blocks")) return {};
     std::map<std::string, std::vector<int>> blocks;

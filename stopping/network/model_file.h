@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/features/block_memory.h"
+#include "stopping/features/model_inputs.h"
 #include "stopping/network/lstm.h"
 
 namespace lull {

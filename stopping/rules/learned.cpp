@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "stopping/base/input_file.h"
-#include "stopping/features/block_memory.h"
+#include "stopping/features/model_inputs.h"
 #include "stopping/rules/rule.h"
 
 namespace lull {

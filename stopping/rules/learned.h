@@ -5,14 +5,14 @@
 #include <span>
 #include <string>
 
-#include "stopping/features/block_memory.h"
+#include "stopping/features/model_inputs.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule.h"
 #include "stopping/signals/svd_entropy.h"
 
 namespace lull {
 
-// Returns the probability that the block of a window (see block_memory.h) is noisy, in
+// Returns the probability that the block of a window (WindowOf()) is noisy, in
 // [0, 1]; 1 where the network's values overflow, so that nonsense never stops a block.
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 

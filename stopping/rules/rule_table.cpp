@@ -9,7 +9,6 @@
 #include "stopping/base/input_file.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/learned.h"
-#include "stopping/rules/lnoise.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "stopping/base/checksum.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

@@ -3,7 +3,6 @@ import bpy
 
 IS_FOUR = bpy.app.version >= (4, 0)
 LINEAR, RAW = ("Linear Rec.709", "Non-Color") if IS_FOUR else ("Linear", "Raw")
-UV_WARP = 'UV_WARP' if 'UV_WARP' in bpy.types.Modifier.bl_rna.properties["type"].enum_items else 'UVWARP'
 _INPUTS = {"Specular": "Specular IOR Level", "Transmission": "Transmission Weight", "Clearcoat": "Coat Weight",
            "Clearcoat Roughness": "Coat Roughness", "Clearcoat Normal": "Coat Normal", "Emission": "Emission Color",
            "Subsurface": "Subsurface Weight", "Sheen": "Sheen Weight"}

@@ -76,13 +76,11 @@ def all_names():
 
 def run(o):
     """Renders named features, or those missing in OUT."""
-    engines = ['CYCLES'] if o.cycles else ['CYCLES', 'LULL']
     names = o.names or [name for name in all_names() if o.again or not (o.out / f"{name}.json").exists()]
     with tempfile.TemporaryDirectory() as folder:
         blender = Blender(o.blender, o.addon, o.lull, folder)
-        for name, title, lines in blender.render([(name, name, "", engines) for name in names], o.out, o.spp):
-            if not o.cycles:
-                (o.out / f"{name}.json").write_text(json.dumps({"title": title, "said": said(lines)}), encoding="utf-8")
+        for name, title, lines in blender.render([(name, name, "", ['CYCLES', 'LULL']) for name in names], o.out, o.spp):
+            (o.out / f"{name}.json").write_text(json.dumps({"title": title, "said": said(lines)}), encoding="utf-8")
             print(name, flush=True)
     (o.out / "version.txt").write_text(blender.version, encoding="utf-8")
 
@@ -195,7 +193,6 @@ def main():
     parser.add_argument("out", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("names", nargs="*", help="features, by the names of their functions [all]")
     parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--cycles", action="store_true", help="render Cycles' pictures alone, for later runs")
     parser.add_argument("--again", action="store_true", help="render all of lull's pictures again")
     parser.add_argument("--table", action="store_true", help="render nothing, and judge the pictures in OUT")
     parser.add_argument("--write", action="store_true", help="replace features-VERSION.csv and the table in renderer/docs/blender.md")

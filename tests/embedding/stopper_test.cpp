@@ -5,7 +5,7 @@
 #include <limits>
 #include <thread>
 
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 #include "stopping/signals/lightness.h"
 #include "tests/embedding/stopper_of.h"

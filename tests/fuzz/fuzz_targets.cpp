@@ -16,7 +16,7 @@
 #include "renderer/scene/materials/fourier.h"
 #include "renderer/scene/media/medium_table.h"
 #include "renderer/vision/display_model.h"
-#include "stopping/base/checksum.h"
+#include "stopping/base/input_file.h"
 #include "stopping/lab/evaluation/answer_scores.h"
 #include "stopping/lab/observers/observers.h"
 #include "stopping/lab/recordings/dataset.h"

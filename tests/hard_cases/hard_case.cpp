@@ -12,10 +12,8 @@ bool HardCaseResult::Passed() const { return std::abs(ours - answer) <= toleranc
 
 std::vector<HardCase> AllHardCases() {
     std::vector<HardCase> all;
-    for (const auto& theme :
-         {EnergyCases, ScaleCases, DegenerateCases, DielectricCases, RoughnessCases, LightCases,
-          AccumulationCases, ImageSizeCases, SignalCases, HeavyTailCases, SparsePointCases,
-          DenoisingCases, StructureCases, RandomCases}) {
+    for (const auto& theme : {MaterialCases, GeometryCases, LightCases, SignalCases, HeavyTailCases,
+                              SparsePointCases, DenoisingCases}) {
         std::vector<HardCase> cases = theme();
         std::move(cases.begin(), cases.end(), std::back_inserter(all));
     }

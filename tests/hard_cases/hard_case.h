@@ -30,23 +30,16 @@ struct HardCase {
     std::function<HardCaseResult(const HardCaseOptions&)> run;
 };
 
-// Lists all cases, theme by theme. The files of this folder hold one theme each.
+// Lists all cases, theme by theme.
 std::vector<HardCase> AllHardCases();
 
-std::vector<HardCase> EnergyCases();
-std::vector<HardCase> ScaleCases();
-std::vector<HardCase> DegenerateCases();
-std::vector<HardCase> DielectricCases();
-std::vector<HardCase> RoughnessCases();
+std::vector<HardCase> MaterialCases();
+std::vector<HardCase> GeometryCases();
 std::vector<HardCase> LightCases();
-std::vector<HardCase> AccumulationCases();
-std::vector<HardCase> ImageSizeCases();
 std::vector<HardCase> SignalCases();
 std::vector<HardCase> HeavyTailCases();
 std::vector<HardCase> SparsePointCases();
 std::vector<HardCase> DenoisingCases();
-std::vector<HardCase> StructureCases();
-std::vector<HardCase> RandomCases();
 
 // Returns the result that is furthest out of its tolerance, or closest to it. At least one.
 HardCaseResult Worst(std::span<const HardCaseResult> results);

@@ -190,12 +190,6 @@ TEST(Install, PkgConfigFindsTheLibrary) {
     if (RunShell(tree, "command -v pkg-config").exitCode != 0) GTEST_SKIP() << "no pkg-config";
     const std::string flags = "PKG_CONFIG_PATH=TREE/" LULL_LIBDIR "/pkgconfig pkg-config ";
     EXPECT_EQ(Do(tree, flags + "--modversion lull"), LULL_VERSION "\n");
-    Do(tree, "eval \"'" LULL_CXX
-             "' -std=c++17 TREE/share/doc/lull/examples/watch_pngs.cpp -o judge " +
-                 ("$(" + flags + "--cflags --libs lull libpng)\""));
-    const std::string pictures = WritePictures(tree, 2, 60, "p{1}.png");
-    const std::string run = "LD_LIBRARY_PATH=TREE/" LULL_LIBDIR " ./judge" + pictures;
-    EXPECT_TRUE(Do(tree, run).starts_with("p60.png: 60 spp, 1 of 1 blocks go on\n"));
     tree.Write("use.c",
                "#include <lull/lull.h>\n"
                "int main(void) { return lull_denoise(0, 0) == LULL_OK; }\n");
@@ -241,7 +235,8 @@ TEST(Install, DebianPackageHoldsAllThatItNeeds) {
     const auto here = [&](const std::string& command) { return Do(directory, command); };
     if (RunShell(directory, "command -v dpkg-deb && command -v dpkg-shlibdeps").exitCode != 0)
         GTEST_SKIP() << "there is no dpkg-shlibdeps (dpkg-dev)";
-    here("'" LULL_CPACK "' -G DEB --config '" LULL_BUILD_DIR "/CPackConfig.cmake' -B . >&2");
+    here("'" LULL_CPACK "' -G DEB --config '" LULL_BUILD_DIR
+         "/CPackConfig.cmake' -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip -B . >&2");
     const std::string fields = here("dpkg-deb -f lull_*.deb");
     EXPECT_TRUE(Contains(fields, "Package: lull\n")) << fields;
     EXPECT_TRUE(Contains(fields, "Version: " LULL_VERSION)) << fields;

@@ -5,7 +5,7 @@
 #include "stopping/lab/recordings/dataset.h"
 #include "tests/integration/run_lull.h"
 #include "tests/stopping/golden_data.h"
-#include "tests/stopping/lab/recordings/channel_recordings.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 
 namespace lull {
 namespace {

@@ -12,16 +12,13 @@
 
 #include "renderer/base/color.h"
 #include "renderer/image/image_io.h"
-#include "tests/integration/run_and_signal.h"
+#include "tests/integration/run_lull.h"
 #include "tests/renderer/film/viewer_server.h"
 
 namespace lull {
 namespace {
 
 constexpr const char* kAll = "--aov albedo,normal,depth,position,object,material,noise ";
-
-constexpr const char* kAllAndMattes =
-    "--aov albedo,normal,depth,position,object,material,noise,alpha,cryptomatte ";
 
 // A sky, a point light, and a lamp over a ball.
 constexpr const char* kLamps = R"(
@@ -142,49 +139,6 @@ TEST_F(LayersTest, HaveTheNamesThatOtherProgramsRead) {
     EXPECT_NEAR(exr.At("noise", 0, 0), 0, 1e-3f);
 }
 
-TEST_F(LayersTest, LeaveTheImageAsItIs) {
-    Render(std::string("--spp 16 -o with.exr ") + kAll);
-    Render("--spp 16 -o without.exr");
-    const ExrImage with = ReadExr(directory.File("with.exr")),
-                   without = ReadExr(directory.File("without.exr"));
-    ASSERT_EQ(without.channels.size(), 4u);
-    for (const ExrChannel& c : without.channels) EXPECT_EQ(with.Find(c.name)->values, c.values);
-    EXPECT_FALSE(without.attributes.contains("aov"));
-    EXPECT_EQ(ReadBytes(directory.File("with.png")), ReadBytes(directory.File("without.png")));
-}
-
-TEST_F(LayersTest, AreTheSameAfterAnInterruption) {
-    const std::string options = std::string(kAllAndMattes) +
-                                "--resolution 60x50 --block 20 --stop "
-                                "dammertz:0.01 --cap 500 --pass 20 ";
-    Render(options + "--threads 1 -o whole.exr");
-    const std::string render =
-        "LULL render scene.pbrt --quiet " + options + "--threads 2 -o parts.exr --checkpoint c.h5 ";
-    const Outcome interrupted =
-        RunAndSignal(directory, render + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
-    ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
-    ExpectFailure(directory, render.substr(5) + "--resume --aov-through-specular",
-                  {"of the first surface", "here through mirrors and glass"});
-    ExpectSuccess(RunShell(directory, render + "--resume"));
-    EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
-}
-
-// The sums of AOVs are in the checkpoint: some can be left out afterwards, and none added.
-TEST_F(LayersTest, AreThoseOfTheCheckpoint) {
-    const std::string render = "--stop dammertz:0.001 --pass 20 ";
-    Render(render + "--cap 40 --aov depth,noise -o whole.exr");
-    const std::string parts =
-        "LULL render scene.pbrt --quiet --checkpoint c.h5 -o parts.exr " + render;
-    ExpectSuccess(RunShell(directory, parts + "--cap 20 --aov depth,noise --keep-checkpoint"));
-    ExpectFailure(directory, parts.substr(5) + "--cap 40 --resume --aov albedo",
-                  {"c.h5", "without the albedo and normal", "go on with the AOVs"});
-    ExpectSuccess(RunShell(directory, parts + "--cap 40 --resume --aov noise"));
-    const ExrImage whole = ReadExr(directory.File("whole.exr")),
-                   part = ReadExr(directory.File("parts.exr"));
-    EXPECT_EQ(part.channels.size(), 5u);
-    for (const ExrChannel& c : part.channels) EXPECT_EQ(whole.Find(c.name)->values, c.values);
-}
-
 TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
     directory.Write("scene.pbrt", SceneText(kLamps));
     const std::string groups = "--light-groups bulb,key ";
@@ -214,40 +168,6 @@ TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
     Render("--spp 40 --exr-half -o d.exr " + groups);
     ExpectSum("d.exr", {"bulb", "key", "rest"}, 2e-3f);
     EXPECT_TRUE(Contains(OpenExr(directory.File("d.exr")).Channels(), "light.key.G:half"));
-}
-
-TEST_F(LayersTest, OfLightGroupsLackTheBackgroundAsTheImageDoes) {
-    directory.Write("scene.pbrt", SceneText(kLamps));
-    for (const char* denoise : {"", "--denoise "}) {
-        Render(std::string(denoise) + "--spp 40 --transparent --light-groups bulb,key -o a.exr");
-        ExpectSum("a.exr", {"bulb", "key", "rest"});
-        OpenExr exr(directory.File("a.exr"));
-        const std::vector<float> alpha = exr.Channel("A");
-        EXPECT_EQ(std::ranges::min(alpha), 0);
-        for (const char* channel : {"G", "light.bulb.G", "light.rest.G"}) {
-            const std::vector<float> values = exr.Channel(channel);
-            for (size_t i = 0; i < values.size(); ++i)
-                ASSERT_TRUE(alpha[i] > 0 || values[i] == 0) << channel;
-        }
-    }
-}
-
-TEST_F(LayersTest, OfLightGroupsAreTheSameAfterAnInterruption) {
-    directory.Write("scene.pbrt", SceneText(kLamps));
-    const std::string options =
-        "--resolution 60x50 --block 20 --pass 20 --denoise --stop denoised:0.2 --cap 400 ";
-    const std::string groups = options + "--light-groups bulb,key ";
-    Render(groups + "--threads 1 -o whole.exr");
-    const std::string render =
-        "LULL render scene.pbrt --quiet " + groups + "--threads 2 -o parts.exr --checkpoint c.h5 ";
-    const Outcome interrupted =
-        RunAndSignal(directory, render + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
-    ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
-    const std::string other = "render scene.pbrt --quiet -o parts.exr --checkpoint c.h5 --resume " +
-                              options + "--light-groups key";
-    ExpectFailure(directory, other, {"light group 00 is bulb,key,rest of", "here key,rest of"});
-    ExpectSuccess(RunShell(directory, render + "--resume"));
-    EXPECT_TRUE(SameChannels("whole.exr", "parts.exr"));
 }
 
 // Names of channels are UTF-8 of up to 255 bytes; those of lights can be anything.
@@ -298,10 +218,16 @@ TEST_F(LayersTest, LetTheBackgroundOut) {
     EXPECT_EQ(without.Channels(), "A:float B:float G:float R:float spp:float ");
     const std::vector<float> alpha = without.Channel("A"), all = with.Channel("R"),
                              left = without.Channel("R");
+    Render("--spp 16 --transparent --aov cryptomatte -o mattes.exr");
+    const std::vector<float> share =  // of the only object
+        OpenExr(directory.File("mattes.exr")).Channel("CryptoObject00.G");
+    EXPECT_TRUE(
+        Contains(ReadBytes(directory.File("mattes.exr")), std::string("/manifest\0string\0", 17)));
     bool isPartial = false;
     for (size_t i = 0; i < alpha.size(); ++i) {
         // The sky is white.
         EXPECT_NEAR(left[i], all[i] - (1 - alpha[i]), 1e-5f);
+        EXPECT_NEAR(share[i], alpha[i], 1e-5f);
         isPartial |= alpha[i] > 0 && alpha[i] < 1;
     }
     EXPECT_TRUE(isPartial);
@@ -317,16 +243,6 @@ TEST_F(LayersTest, LetTheBackgroundOutOfTheSamplesToo) {
         EXPECT_EQ(denoised.Channel("noisy." + c), noisy.Channel(c));
 }
 
-TEST_F(LayersTest, AreRefusedWhereTheyCannotBe) {
-    const Outcome unknown = RunLull(directory, "render scene.pbrt --aov albedo,colour");
-    EXPECT_EQ(unknown.exitCode, 2);
-    EXPECT_TRUE(Contains(unknown.err, "no layer \"colour\"")) << unknown.err;
-    EXPECT_EQ(RunLull(directory, "render scene.pbrt --aov-through-specular").exitCode, 2);
-    EXPECT_EQ(RunLull(directory, "render scene.pbrt --display nowhere").exitCode, 2);
-    EXPECT_EQ(RunLull(directory, "render scene.pbrt --png-bits 12").exitCode, 2);
-    EXPECT_EQ(RunLull(directory, "render scene.pbrt --tone-map aces").exitCode, 2);
-}
-
 TEST_F(LayersTest, HalfIsForColours) {
     Render(std::string("--spp 4 --exr-half -o a.exr ") + kAll);
     OpenExr exr(directory.File("a.exr"));
@@ -337,18 +253,6 @@ TEST_F(LayersTest, HalfIsForColours) {
         "objectID:float spp:float ");
 }
 
-TEST_F(LayersTest, PicturesSayHowTheyAreMade) {
-    Render("--spp 4 --tone-map filmic --exposure 1.5 --png-bits 16 -o a.exr");
-    EXPECT_EQ(OpenExr(directory.File("a.exr")).Text("pngToneMap"), "filmic (Hable 2010)");
-    const std::string png = ReadBytes(directory.File("a.png"));
-    EXPECT_EQ(png[24], 16);  // bit depth in the header
-    EXPECT_TRUE(Contains(png, std::string("ToneMap\0filmic (Hable 2010)", 27)));
-    EXPECT_TRUE(Contains(png, std::string("Exposure\0+1.5 stops", 19)));
-    // The image itself knows of the exposure, but not of the tone map.
-    Render("--spp 4 --exposure 1.5 -o b.exr");
-    EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
-}
-
 TEST_F(LayersTest, RulesSeeThePictureAsItIsShown) {
     const auto stops = [&](const std::string& options) {
         Render("--resolution 64x64 --cap 600 " + options + " -o a.exr");
@@ -357,18 +261,14 @@ TEST_F(LayersTest, RulesSeeThePictureAsItIsShown) {
     const auto sppOf = [](const ExrImage& exr) { return exr.Find("spp")->values[0]; };
     directory.Write("scene.pbrt", SceneText(kLamps));
     // Dark noise, which hardly anybody sees.
-    for (const std::string rule : {"--stop entropy:0.2 ", "--denoise --caution 10 "}) {
-        const std::string dark = rule + "--exposure -6 ";
-        const ExrImage plain = stops(dark), lifted = stops(dark + "--graded-by 4"),
-                       shown = stops(dark + "--view-exposure 4");
-        EXPECT_GT(sppOf(lifted), sppOf(plain)) << rule;
-        EXPECT_EQ(sppOf(lifted), sppOf(shown)) << rule;
-        EXPECT_EQ(plain.attributes.count("judgedGrades"), 0u);
-        EXPECT_EQ(std::get<std::string>(lifted.attributes.at("judgedGrades")), "sRGB; +4 stops");
-        EXPECT_EQ(std::get<std::string>(shown.attributes.at("judgedGrades")), "+4 stops");
-    }
-    EXPECT_EQ(RunLull(directory, "render scene.pbrt --graded-by nan").exitCode, 2);
-    EXPECT_EQ(RunLull(directory, "render scene.pbrt --view-exposure 101").exitCode, 2);
+    const std::string dark = "--stop entropy:0.2 --exposure -6 ";
+    const ExrImage plain = stops(dark), lifted = stops(dark + "--graded-by 4"),
+                   shown = stops(dark + "--view-exposure 4");
+    EXPECT_GT(sppOf(lifted), sppOf(plain));
+    EXPECT_EQ(sppOf(lifted), sppOf(shown));
+    EXPECT_EQ(plain.attributes.count("judgedGrades"), 0u);
+    EXPECT_EQ(std::get<std::string>(lifted.attributes.at("judgedGrades")), "sRGB; +4 stops");
+    EXPECT_EQ(std::get<std::string>(shown.attributes.at("judgedGrades")), "+4 stops");
 }
 
 TEST_F(LayersTest, PicturesAreBrightenedForTheView) {
@@ -410,7 +310,6 @@ colorspaces:
         RunLull(directory, "render scene.pbrt -o c.exr " + ocio + " --view filmic");
     EXPECT_EQ(unknown.exitCode, 1);
     EXPECT_TRUE(Contains(unknown.err, "no view \"filmic\", but: plain, half")) << unknown.err;
-    EXPECT_EQ(RunLull(directory, "render scene.pbrt --ocio a --tone-map filmic").exitCode, 2);
     EXPECT_EQ(RunLull(directory, "render scene.pbrt --ocio no.ocio").exitCode, 1);
 }
 
@@ -425,49 +324,23 @@ TEST_F(LayersTest, MessagesOfOpenColorIoCanBePrinted) {
     }
 }
 
-// What a viewer has put together at the end is what is in the file.
+// What a viewer has put together at the end is what is in the file, for rules that look at blocks
+// of the denoised picture, and for others.
 TEST_F(LayersTest, ViewersSeeTheImage) {
-    ViewerServer server;
-    Render(
-        "--resolution 150x100 --block 40 --stop dammertz:0.02 --cap 300 --threads 2 -o a.exr "
-        "--display " +
-        server.Address());
-    ASSERT_EQ(server.Finish().size(), 1u);
-    const ViewedImage viewed = Reassemble(server.Finish()[0]);
-    EXPECT_EQ(viewed.name, "a.exr");
-    const ExrImage image = ReadExr(directory.File("a.exr"));
-    for (const ExrChannel& c : image.channels) EXPECT_EQ(viewed.channels.at(c.name), c.values);
-    EXPECT_EQ(viewed.channels.at("stop"), std::vector<float>(150 * 100, 1.f));
-}
-
-TEST_F(LayersTest, ViewersSeeTheDenoisedImage) {
-    for (const char* rule : {"--cap 100", "--spp 20"}) {  // looks at blocks, and does not
+    const auto view = [&](const std::string& rule) {
         ViewerServer server;
-        Render(std::string("--resolution 100x80 --block 40 --denoise -o a.exr ") + rule +
-               " --display " + server.Address());
-        ASSERT_EQ(server.Finish().size(), 1u);
-        const ViewedImage viewed = Reassemble(server.Finish()[0]);
+        Render("--resolution 100x80 --block 40 --threads 2 -o a.exr " + rule + " --display " +
+               server.Address());
+        EXPECT_EQ(server.Finish().size(), 1u);
+        const ViewedImage viewed = Reassemble(server.Finish().at(0));
+        EXPECT_EQ(viewed.name, "a.exr");
         const ExrImage image = ReadExr(directory.File("a.exr"));
         for (const char* name : {"R", "G", "B", "spp"})
             EXPECT_EQ(viewed.channels.at(name), image.Find(name)->values) << name;
-        EXPECT_NE(image.Find("G")->values, image.Find("noisy.G")->values);
-    }
-}
-
-TEST_F(LayersTest, RendersWithoutAViewerAllTheSame) {
-    std::string address;
-    {
-        ViewerServer server;
-        address = server.Address();
-    }
-    const Outcome outcome = ExpectSuccess(
-        directory, "render scene.pbrt --quiet --spp 200 -o a.exr --display " + address);
-    const std::string mark = "lull: warning: no viewer at " + address;
-    const size_t found = outcome.err.find(mark);
-    EXPECT_NE(found, std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.err.find(mark, found + 1), std::string::npos) << outcome.err;
-    Render("--spp 200 -o b.exr");
-    EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
+        return viewed.channels.at("stop");
+    };
+    EXPECT_EQ(view("--stop dammertz:0.02 --cap 300"), std::vector<float>(100 * 80, 1.f));
+    view("--denoise --cap 100");
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Results replace neither each other nor what they are made from, and none is lost where one cannot
 // be written.
-#include <thread>
 
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_and_signal.h"
@@ -127,29 +126,14 @@ TEST(Outputs, LongRendersAreToldOfDenoising) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText("Material \"matte\" \"rgb Kd\" [1 1 1] Shape "
                                             "\"sphere\" \"float radius\" [9]"));
-    const std::string render =
-        "timeout -s INT 8 LULL render scene.pbrt --resolution 400x400 --max-depth 1000 --threads 1 "
-        "-o out.exr ";
-    for (const auto& [options, isTold] : {std::pair("", true), {"--denoise", false}}) {
-        const Outcome outcome = RunShell(directory, render + options);
-        EXPECT_EQ(Contains(outcome.err, " left; with --denoise, blocks stop once "), isTold)
-            << outcome.err;
-    }
+    const Outcome outcome =
+        RunShell(directory,
+                 "timeout -s INT 7 LULL render scene.pbrt --resolution 400x400 --max-depth 1000 "
+                 "--threads 1 -o out.exr");
+    EXPECT_TRUE(Contains(outcome.err, " left; with --denoise, blocks stop once ")) << outcome.err;
 }
 
-// A picture is there long before the end, and is whole.
-TEST(Outputs, PreviewsAreWrittenOnTheWay) {
-    const Inputs directory;
-    const Outcome outcome = RunAndSignal(
-        directory, "LULL render scene.pbrt --spp 1000000 --quiet -o out.exr --preview 0.1", SIGKILL,
-        "out.exr out.png");
-    EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
-    const ExrImage image = ReadExr(directory.File("out.exr"));
-    EXPECT_TRUE(Contains(std::get<std::string>(image.attributes.at("note")), "interrupted"));
-    EXPECT_EQ(ReadImage(directory.File("out.png")).width, image.width);
-}
-
-// However early it comes, it shows all of the picture.
+// However early it comes, it is whole, and shows all of the picture.
 TEST(Outputs, PreviewsAreOfTheWholePicture) {
     const Inputs directory;
     for (const std::string denoise : {"", "--denoise "}) {
@@ -160,6 +144,8 @@ TEST(Outputs, PreviewsAreOfTheWholePicture) {
             SIGKILL, "out.exr out.png");
         EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
         const ExrImage image = ReadExr(directory.File("out.exr"));
+        EXPECT_TRUE(Contains(std::get<std::string>(image.attributes.at("note")), "interrupted"));
+        EXPECT_EQ(ReadImage(directory.File("out.png")).width, image.width);
         bool isDenoised = false;
         for (const ExrChannel& channel : image.channels) {
             isDenoised |= channel.name == "noisy.R";
@@ -168,18 +154,6 @@ TEST(Outputs, PreviewsAreOfTheWholePicture) {
         }
         EXPECT_EQ(isDenoised, !denoise.empty());
     }
-}
-
-TEST(Outputs, PreviewsThatCannotBeWrittenAreWarnings) {
-    const Inputs directory;
-    fs::create_directory(directory.File("tmp"));
-    const Outcome outcome =
-        RunShell(directory,
-                 "(while ! test -e c.h5; do sleep 0.05; done; mkdir out.exr) & TMPDIR=tmp timeout "
-                 "-s INT 2 LULL render scene.pbrt --spp 1000000 -o out.exr --checkpoint c.h5 "
-                 "--checkpoint-interval 0.1 --preview 0.3");
-    EXPECT_TRUE(Contains(outcome.err, "warning: no preview: ")) << outcome.err;
-    EXPECT_TRUE(fs::exists(directory.File("out.png")));
 }
 
 // /dev/full is a disk that is always full.
@@ -205,62 +179,38 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
 }
 
 // Neither the results of long renders of the laboratory nor former files are lost.
-TEST(Outputs, PagesThatCannotBeWrittenGoElsewhere) {
-    const Inputs directory;
-    const std::string study =
-        "LULL study scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --quiet -o ";
-    const std::string compare =
-        "LULL compare scene.pbrt --snapshots --curves --cap 20 --quiet -o b --report ";
-    fs::create_symlink("/dev/full", directory.File("full.html"));
-    for (const std::string& command : {study, compare}) {
-        const Outcome outcome = RunShell(directory, "TMPDIR=. " + command + "full.html");
-        EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
-        EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, "cannot write \"full.html\": No space left on device"))
-            << outcome.err;
-        std::string place = outcome.out.substr(0, outcome.out.size() - 1);
-        place = place.substr(place.rfind('\n') + 1);
-        EXPECT_TRUE(place.ends_with("/full.html")) << outcome.out;
-        EXPECT_TRUE(ReadBytes(directory.File(place)).ends_with("</html>\n")) << place;
-
-        directory.Write("page.html", "former");
-        const Outcome small = RunShell(directory, "ulimit -f 4; TMPDIR=. " + command + "page.html");
-        EXPECT_EQ(small.exitCode, 1) << small.err;
-        EXPECT_EQ(CountErrorLines(small.err), 1) << small.err;
-        EXPECT_TRUE(Contains(small.err, "; lost: ")) << small.err;
-        EXPECT_TRUE(small.err.ends_with("\"page.html\"\n")) << small.err;
-        EXPECT_EQ(ReadBytes(directory.File("page.html")), "former");
-    }
-}
-
-TEST(Outputs, DenoisedPicturesThatCannotBeWrittenGoElsewhere) {
+TEST(Outputs, FilesOfAllCommandsGoElsewhere) {
     const Inputs directory;
     ExpectSuccess(directory, fmt::format("render {} --denoise-layers -o in.exr", kOptions));
-    fs::create_symlink("/dev/full", directory.File("out.exr"));
-    const Outcome outcome = RunShell(directory, "TMPDIR=. LULL denoise in.exr -o out.exr");
-    EXPECT_EQ(outcome.exitCode, 1);
-    EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    const std::string place = outcome.out.substr(0, outcome.out.find('\n'));
-    EXPECT_TRUE(place.ends_with("/out.exr")) << place;
-    EXPECT_TRUE(fs::exists(directory.File(place)));
-    EXPECT_TRUE(outcome.out.ends_with("\nout.png\n")) << outcome.out;
-    EXPECT_TRUE(fs::exists(directory.File("out.png")));
-}
+    const std::pair<const char*, const char*> kCases[] = {
+        {"denoise in.exr -o", "full.exr"},
+        {"study scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 --quiet -o", "full.html"},
+        {"compare scene.pbrt --snapshots --curves --cap 20 --quiet -o b --report", "full.html"}};
+    for (const auto& [command, file] : kCases) {
+        fs::remove(directory.File(file));
+        fs::create_symlink("/dev/full", directory.File(file));
+        const Outcome outcome =
+            RunShell(directory, fmt::format("TMPDIR=. LULL {} {}", command, file));
+        EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+        EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+        EXPECT_TRUE(Contains(outcome.err,
+                             fmt::format("cannot write \"{}\": No space left on device", file)))
+            << outcome.err;
+        const size_t end = outcome.out.find(std::string("/") + file + "\n");
+        ASSERT_NE(end, std::string::npos) << outcome.out;
+        const size_t begin = outcome.out.rfind('\n', end) + 1;  // 0 where there is no other line
+        EXPECT_TRUE(fs::exists(directory.File(outcome.out.substr(begin, end - begin)) + "/" + file))
+            << outcome.out;
+    }
 
-// Where no folder takes one, the others are written all the same.
-TEST(Outputs, FilesBeyondALimitDoNotCostTheOthers) {
-    const Inputs directory;
-    const Outcome outcome =
-        RunShell(directory,
-                 "ulimit -f 4; TMPDIR=. LULL render scene.pbrt --resolution 200x150 "
-                 "--block 50 --spp 4 --quiet -o out.exr");
-    EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "cannot write \"out.exr\": File too large")) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "; lost: \"out.exr\"")) << outcome.err;
-    EXPECT_TRUE(fs::exists(directory.File("out.thresholds.csv")));
-    for (const auto& [name, bytes] : FilesIn(directory))
-        EXPECT_FALSE(name.starts_with("lull-")) << name;
-    EXPECT_TRUE(outcome.out.ends_with("out.thresholds.csv\n")) << outcome.out;
+    directory.Write("page.html", "former");
+    const Outcome small = RunShell(
+        directory, fmt::format("ulimit -f 4; TMPDIR=. LULL {} page.html", kCases[1].first));
+    EXPECT_EQ(small.exitCode, 1) << small.err;
+    EXPECT_EQ(CountErrorLines(small.err), 1) << small.err;
+    EXPECT_TRUE(Contains(small.err, "; lost: ")) << small.err;
+    EXPECT_TRUE(small.err.ends_with("\"page.html\"\n")) << small.err;
+    EXPECT_EQ(ReadBytes(directory.File("page.html")), "former");
 }
 
 }  // namespace

@@ -188,8 +188,8 @@ TEST(Laboratory, GoesFromPicturesToATableAndAFigure) {
 TEST(Preset, ListsItsValues) {
     const TemporaryDirectory directory;
     const Outcome paper = ExpectSuccess(directory, "train --preset paper");
-    for (const char* line : {"--k 8\n", "--n 40\n", "--m 100\n", "--features H\n", "--snorm\n",
-                             "--votes 3\n", "--units 512,128,32\n", "--epochs 30\n"})
+    for (const char* line :
+         {"--k 8\n", "--n 40\n", "--features H\n", "--units 512,128,32\n", "--epochs 30\n"})
         EXPECT_TRUE(Contains(paper.out, line)) << line << paper.out;
     EXPECT_TRUE(
         Contains(ExpectSuccess(directory, "train --preset entropy").out, "--ratio 1.4142\n"));

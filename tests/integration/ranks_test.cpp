@@ -12,13 +12,13 @@ namespace {
 
 constexpr const char* kRender =
     "LULL render scene.pbrt --resolution 100x90 --block 40 --threads 1 --quiet ";
-constexpr const char* kLamp = "LightSource \"point\" \"point from\" [2 1 -2]\n";
-constexpr const char* kShort = "--stop lnoise:0.6 --cap 140 ";  // some blocks stop before
 
 struct RanksTest : testing::Test {
     void SetUp() override {
         if (std::string(LULL_MPIRUN).empty()) GTEST_SKIP() << "there is no MPI";
-        directory.Write("scene.pbrt", SceneText(kSphere));
+        directory.Write("scene.pbrt",
+                        SceneText(kSphere + std::string(" LightSource \"point\" \"point from\" "
+                                                        "[2 1 -2]")));
     }
 
     // Open MPI leaves memory behind, and takes no root and no more ranks than cores without asking.
@@ -47,96 +47,49 @@ struct RanksTest : testing::Test {
                 << a << " " << b;
     }
 
-    void ExpectSameChannels(const std::string& a, const std::string& b, const char* one) {
-        ExpectSame(a, b);
-        const ExrImage x = ReadExr(directory.File(a + ".exr")),
-                       y = ReadExr(directory.File(b + ".exr"));
-        ASSERT_TRUE(x.Find(one)) << one;
-        ASSERT_EQ(x.channels.size(), y.channels.size());
-        for (const ExrChannel& channel : x.channels)
-            EXPECT_EQ(y.Find(channel.name)->values, channel.values) << channel.name;
-    }
-
-    // Expect the same files, with this channel and all others, of one process and of each number of
+    // Expects the same files, with light groups and all other channels, of one process and of three
     // ranks; and of three that go on with what two have begun.
-    void ExpectShared(const std::string& options, std::initializer_list<int> counts,
-                      const char* channel = "G") {
-        ExpectSuccess(Run(kRender + options + "-o one.exr"));
-        for (const int ranks : counts) {
-            ExpectSuccess(Run(Ranks(ranks) + kRender + options + "-o some.exr"));
-            ExpectSameChannels("one", "some", channel);
-        }
-    }
-    void ExpectContinued(const std::string& options, const char* channel = "G") {
-        ExpectSuccess(Run(kRender + options + "-o one.exr"));
-        const std::string parts = kRender + options + "-o parts.exr --checkpoint c.h5 --resume ";
+    void ExpectShared(const std::string& options) {
+        const auto expectSameChannels = [&](const std::string& name) {
+            ExpectSame("one", name);
+            const ExrImage x = ReadExr(directory.File("one.exr")),
+                           y = ReadExr(directory.File(name + ".exr"));
+            ASSERT_TRUE(x.Find("light.rest.G"));
+            ASSERT_EQ(x.channels.size(), y.channels.size());
+            for (const ExrChannel& channel : x.channels)
+                EXPECT_EQ(y.Find(channel.name)->values, channel.values) << channel.name;
+        };
+        const std::string render =
+            kRender + options + "--light-groups environment --report r.html ";
+        ExpectSuccess(Run(render + "-o one.exr"));
+        const Outcome some = ExpectSuccess(Run(Ranks(3) + render + "-o some.exr --preview 0.3"));
+        EXPECT_EQ(some.out, "some.exr\nsome.png\nsome.spp.png\nsome.thresholds.csv\nr.html\n");
+        EXPECT_FALSE(Contains(some.err, "workers")) << some.err;
+        EXPECT_FALSE(Contains(ReadBytes(directory.File("some.exr")), "interrupted"));
+        expectSameChannels("some");
+
+        const std::string parts = render + "-o parts.exr --checkpoint c.h5 --resume ";
         const Outcome interrupted = RunAndSignal(
             directory, Ranks(2) + parts + "--checkpoint-interval 0.1", SIGTERM, "c.h5");
         EXPECT_NE(interrupted.exitCode, 0) << interrupted.err;
         ExpectSuccess(Run(Ranks(3) + parts));
-        ExpectSameChannels("one", "parts", channel);
+        expectSameChannels("parts");
     }
 
     TemporaryDirectory directory;
 };
 
-TEST_F(RanksTest, SayNothingOfThreads) {
-    const Outcome outcome = ExpectSuccess(Run(Ranks(2) + kRender + kShort));
-    EXPECT_FALSE(Contains(outcome.err, "workers")) << outcome.err;
-}
-
-TEST_F(RanksTest, RefuseViewers) {
-    const Outcome outcome = Run(Ranks(2) + kRender + kShort + "--display 127.0.0.1:9");
-    EXPECT_NE(outcome.exitCode, 0);
-    EXPECT_TRUE(Contains(outcome.err, "--display")) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "one process")) << outcome.err;
-}
-
-TEST_F(RanksTest, ComeToTheSameBits) {
-    ExpectSuccess(Run(std::string(kRender) + kShort + "-o one.exr"));
-    for (const int ranks : {1, 2, 3, 4}) {
-        const Outcome outcome = ExpectSuccess(Run(Ranks(ranks) + kRender + kShort + "-o some.exr"));
-        EXPECT_EQ(outcome.out, "some.exr\nsome.png\nsome.spp.png\nsome.thresholds.csv\n");
-        ExpectSame("one", "some");
-    }
-}
-
-TEST_F(RanksTest, ShowPreviews) {
-    const std::string render = std::string(kRender) + "--spp 250 ";
-    ExpectSuccess(Run(render + "-o one.exr"));
-    ExpectSuccess(Run(Ranks(2) + render + "-o some.exr --preview 0.3"));
-    ExpectSame("one", "some");
-    EXPECT_FALSE(Contains(ReadBytes(directory.File("some.exr")), "interrupted"));
-}
-
+// Rank 0 denoises blocks from the sums of all.
 TEST_F(RanksTest, ShareLayers) {
-    const std::string layers = "--aov albedo,normal,depth,position,object,material,noise ";
-    ExpectShared(layers + "--spp 32 ", {3}, "noise");
-    EXPECT_EQ(ReadExr(directory.File("some.exr")).channels.size(), 17u);
-    ExpectContinued(layers + "--stop lnoise:0.5 --cap 250 ", "noise");
-}
-
-TEST_F(RanksTest, ShareLightGroups) {
-    directory.Write("scene.pbrt", SceneText(kLamp + std::string(kSphere)));
-    ExpectShared("--light-groups environment --denoise --stop denoised:0.1 --cap 200 ", {3},
-                 "light.rest.G");
+    ExpectShared(
+        "--aov albedo,normal,depth,position,object,material,noise --denoise --stop denoised:0.1 "
+        "--cap 300 ");
 }
 
 // Each rank traces a part of the light paths, learns from the light of all, and continues the work
 // of others.
 TEST_F(RanksTest, ShareLightPaths) {
-    directory.Write("scene.pbrt", SceneText(kSphere + std::string(kLamp)));
-    const std::string options =
-        "--integrator bdpt --aov noise --light-groups environment --stop lnoise:0.5 --cap 100 ";
-    ExpectShared(options, {2, 3}, "light.rest.G");
-    ExpectContinued(options, "light.rest.G");
-}
-
-// Rank 0 denoises blocks from the sums of all.
-TEST_F(RanksTest, DenoiseTheSame) {
-    const std::string options = "--denoise --stop denoised:0.1 --cap 300 ";
-    ExpectShared(options + "--report r.html ", {3});
-    ExpectContinued(options);
+    ExpectShared("--integrator bdpt --aov noise --stop lnoise:0.5 --cap 100 ");
 }
 
 TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
@@ -185,22 +138,9 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
     const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
     EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
     EXPECT_EQ(stopped.out, "parts.exr\nparts.png\nparts.spp.png\nparts.thresholds.csv\n");
-    ExpectSuccess(Run(std::string(kRender) +
-                      "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr"));
-    EXPECT_EQ(Texels("parts"), Texels("again"));
-}
-
-// Nobody waits for it, for longer than the clock allows.
-TEST_F(RanksTest, GoOnWithoutOneThatIsStoppedWhileItLoadsTheScene) {
-    const std::string render = std::string(kRender) + "--stop fixed:100000 --time 9s -o parts.exr ";
-    const Outcome stopped = ExpectSuccess(
-        Run(fmt::format("timeout -s KILL 120 {} sh -c '[ $OMPI_COMM_WORLD_RANK != 2 ] || export "
-                        "LD_PRELOAD={} OPENED_FILE=scene.pbrt OPENED_SIGNAL={}; exec {}'",
-                        Ranks(3), SIGNAL_AT_OPEN, SIGSTOP, render)));
-    const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
-    EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
-    ExpectSuccess(Run(std::string(kRender) +
-                      "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr"));
+    ExpectSuccess(
+        Run("LULL render scene.pbrt --resolution 100x90 --block 40 --quiet "
+            "--stop thresholds:parts.thresholds.csv --cap 100000 -o again.exr"));
     EXPECT_EQ(Texels("parts"), Texels("again"));
 }
 
@@ -238,6 +178,11 @@ TEST_F(RanksTest, SaySharedErrorsOnce) {
     EXPECT_TRUE(Contains(info.err, "several ranks")) << info.err;
 
     EXPECT_EQ(Run(Ranks(2) + "LULL render scene.pbrt --stop").exitCode, 2);
+
+    const Outcome viewed = Run(Ranks(2) + kRender + "--display 127.0.0.1:9");
+    EXPECT_NE(viewed.exitCode, 0);
+    EXPECT_TRUE(Contains(viewed.err, "--display")) << viewed.err;
+    EXPECT_TRUE(Contains(viewed.err, "one process")) << viewed.err;
 }
 
 // Whoever is about to render another scene does not spoil the image of the others.
@@ -251,14 +196,6 @@ TEST_F(RanksTest, RefuseToRenderDifferentScenes) {
     EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
     EXPECT_TRUE(Contains(outcome.err, "rank 1")) << outcome.err;
-}
-
-TEST_F(RanksTest, EndByTheClock) {
-    const Outcome timed =
-        ExpectSuccess(Run(Ranks(3) + kRender + "--stop fixed:100000 -o timed.exr --time 2s"));
-    ExpectSuccess(Run(std::string(kRender) +
-                      "--stop thresholds:timed.thresholds.csv --cap 100000 -o again.exr"));
-    EXPECT_EQ(Texels("timed"), Texels("again"));
 }
 
 }  // namespace

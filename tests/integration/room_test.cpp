@@ -48,21 +48,6 @@ TEST(Room, ScriptMakesTheFilesThatAreThere) {
     EXPECT_GT(count, 5);
 }
 
-// The same triangles, without pbrt's extras.
-TEST(Room, IsGltfToo) {
-    const TemporaryDirectory directory;
-    const Outcome made =
-        RunShell(directory, LULL_PYTHON " -B " + (kRoom / "room.py").string() + " --gltf .");
-    ASSERT_EQ(made.exitCode, 0) << made.err;
-    const Outcome pbrt = RunLull(directory, "info " + (kRoom / "room.pbrt").string());
-    for (const char* name : {"room.glb", "room-night.glb"}) {
-        const Outcome outcome = RunLull(directory, "info " + std::string(name));
-        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-        EXPECT_EQ(NumberOf(outcome.out, "instances"), NumberOf(pbrt.out, "instances"));
-        EXPECT_NEAR(NumberOf(outcome.out, "triangles"), NumberOf(pbrt.out, "triangles"), 10);
-    }
-}
-
 // Returns the means of R, G and B of a small image.
 std::vector<double> MeanOf(const TemporaryDirectory& directory, const std::string& scene) {
     const Outcome outcome =

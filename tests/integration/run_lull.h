@@ -63,9 +63,10 @@ inline int CountErrorLines(const std::string& err) {
     return count;
 }
 
-// Expects the exit code and one line of error that holds `parts`, and no change to any file.
-inline void ExpectFailure(const TemporaryDirectory& directory, const std::string& arguments,
-                          const std::vector<std::string>& parts, int exitCode = 1) {
+// Expects the exit code and one line of error that holds `parts`, and no change to any file;
+// returns the outcome.
+inline Outcome ExpectFailure(const TemporaryDirectory& directory, const std::string& arguments,
+                             const std::vector<std::string>& parts, int exitCode = 1) {
     directory.Write("out.exr", "precious");
     const int filesBefore = directory.CountFiles();
     const Outcome outcome = RunLull(directory, arguments);
@@ -77,6 +78,7 @@ inline void ExpectFailure(const TemporaryDirectory& directory, const std::string
         EXPECT_TRUE(Contains(outcome.err, part)) << "no '" << part << "' in: " << outcome.err;
     EXPECT_EQ(ReadBytes(directory.File("out.exr")), "precious");
     EXPECT_EQ(directory.CountFiles(), filesBefore);
+    return outcome;
 }
 
 }  // namespace lull

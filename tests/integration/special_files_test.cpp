@@ -71,23 +71,6 @@ TEST(Writers, OfOneResultAreOne) {
                            "other.exr --quiet 9>&-"));
 }
 
-TEST(Substitutes, OfManyMaterialsAreToldTenTimes) {
-    const TemporaryDirectory directory;
-    std::string world;
-    for (int i = 0; i < 20000; ++i) world += fmt::format("Material \"m{}\"\n", i);
-    directory.Write("scene.pbrt", SceneText(world + kSphere));
-    const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
-    const Outcome with =
-        ExpectSuccess(directory, "render scene.pbrt --substitute --spp 1 -o a.exr --quiet");
-    EXPECT_EQ(lines(with.err), 11) << with.err;
-    EXPECT_TRUE(Contains(with.err, "and 19990 more: material \"...\" is not supported; "))
-        << with.err;
-    const Outcome without = RunLull(directory, "render scene.pbrt --spp 1 -o a.exr --quiet");
-    EXPECT_EQ(without.exitCode, 1);
-    EXPECT_EQ(CountErrorLines(without.err), 11) << without.err;
-    EXPECT_TRUE(without.err.ends_with("lull: error: and 19990 more\n")) << without.err;
-}
-
 TEST(SpecialFiles, AreNotWaitedFor) {
     const TemporaryDirectory directory;
     directory.Write("scene.pbrt", SceneText(kSphere));
@@ -115,18 +98,6 @@ TEST(HalfExr, IsClampedWithOneWarning) {
     const size_t first = outcome.err.find(warning);
     EXPECT_NE(first, std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find(warning, first + 1), std::string::npos) << outcome.err;
-}
-
-TEST(Transparent, IsNeverNegativeWhereDenoised) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
-    ExpectSuccess(directory,
-                  "render scene.pbrt --resolution 48x48 --spp 20 --denoise --transparent -o a.exr");
-    const ExrImage image = ReadExr(directory.File("a.exr"));
-    const std::vector<float>& alpha = image.Find("A")->values;
-    EXPECT_TRUE(std::ranges::any_of(alpha, [](float a) { return a > 0 && a < 1; }));
-    for (const char* name : {"R", "G", "B"})
-        EXPECT_GE(std::ranges::min(image.Find(name)->values), 0) << name;
 }
 
 TEST(Messages, AreShortAndCommandNoTerminal) {
@@ -167,19 +138,6 @@ TEST(Messages, AreNotThoseOfALibraryForManyThreads) {
     const Outcome outcome =
         ExpectSuccess(directory, "render scene.pbrt --spp 1 --threads 4096 -o a.exr --quiet");
     EXPECT_EQ(outcome.err, "");
-}
-
-TEST(Messages, QuoteBeginningsOfKinds) {
-    const TemporaryDirectory directory;
-    const std::string kind = '"' + std::string(4000, 'k') + '"';
-    for (const std::string& world :
-         {"Material " + kind, "LightSource " + kind, "Shape " + kind, "AreaLightSource " + kind,
-          "MakeNamedMaterial \"m\" \"string type\" " + kind}) {
-        directory.Write("scene.pbrt", SceneText(world + "\n" + kSphere));
-        const Outcome outcome = RunLull(directory, "render scene.pbrt --spp 1 -o a.exr --quiet");
-        EXPECT_EQ(outcome.exitCode, 1) << world;
-        EXPECT_TRUE(Contains(outcome.err, std::string(60, 'k') + "...\"")) << outcome.err;
-    }
 }
 
 TEST(Layers, HoldNoInfinityWhereTheFilmIsScaled) {

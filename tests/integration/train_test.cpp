@@ -21,7 +21,7 @@ struct TrainingDirectory : TemporaryDirectory {
 };
 
 const std::string kSmall =
-    "train data.h5 --human human.csv --preset paper --units 8,4 --m 25 --k 4 --epochs 6 --seed 3 ";
+    "train data.h5 --human human.csv --preset paper --units 8,4 --k 4 --epochs 6 --seed 3 ";
 
 bool SameWeights(const Network& a, const Network& b) {
     return a.lstm[0].kernel == b.lstm[0].kernel && a.lstm[1].recurrent == b.lstm[1].recurrent &&
@@ -54,7 +54,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
     ASSERT_EQ(part.exitCode, 130) << part.err;
     EXPECT_EQ(part.out, "");
     // Another training cannot go on from there.
-    const Outcome other = RunLull(directory, larger + "-o part.h5 --resume --batch 32");
+    const Outcome other = RunLull(directory, larger + "-o part.h5 --resume --dropout 0.3");
     EXPECT_EQ(other.exitCode, 1);
     EXPECT_TRUE(Contains(other.err, "part.h5.checkpoint: the saved training had other"))
         << other.err;
@@ -127,8 +127,7 @@ TEST(Train, SplitsBlocks) {
 
 TEST(Train, SaysWhatIsWrong) {
     const TrainingDirectory directory;
-    ExpectFailure(directory, kSmall + "-o m.h5 --features H1", {"H1 with m = 25"});
-    ExpectFailure(directory, kSmall + "-o m.h5 --n 30", {"multiples", "30"});
+    ExpectFailure(directory, kSmall + "-o m.h5 --n 30", {"multiple", "30"});
     ExpectFailure(directory, kSmall + "-o m.h5 --n 60", {"not recorded at", "n = 60"});
     ExpectFailure(directory, kSmall + "-o m.h5 --leave-out shed", {"no viewpoint 'shed'"});
     ExpectFailure(directory, kSmall + "-o m.h5 --without shed", {"no viewpoint 'shed'"});
@@ -137,7 +136,7 @@ TEST(Train, SaysWhatIsWrong) {
     ExpectFailure(directory, "train human.csv --human human.csv -o m.h5", {"human.csv"});
     for (const char* bad :
          {"", "-o m.h5 --features Q", "-o m.h5 --pool rms", "-o m.h5 --units none",
-          "-o m.h5 --m 16", "-o m.h5 --dropout 1", "-o m.h5 --units 8,,4", "--resume",
+          "-o m.h5 --dropout 1", "-o m.h5 --units 8,0", "--resume",
           "-o m.h5 --cross-validate --leave-out attic-a", "-o m.h5 --split human.csv"})
         EXPECT_EQ(
             RunLull(directory, std::string("train data.h5 --human human.csv ") + bad).exitCode, 2)

@@ -1,9 +1,8 @@
 """Runs the `lull evaluate` and `lull train --cross-validate` commands of the documents on the shipped data sets, and
 compares their output with the text that follows them.
 
-    python3 figures.py LULL [FILE.md ...]            # compares; prints what differs, and fails
-    python3 figures.py LULL [FILE.md ...] --train    # runs the trainings, too
-    python3 figures.py LULL [FILE.md ...] --write    # runs all, and replaces the outputs and figures in the documents
+    python3 figures.py LULL            # compares all but the trainings; prints differences, and fails
+    python3 figures.py LULL --write    # runs all, and replaces the outputs and figures in the documents
 
 Numbers may differ by 0.3 or 2 %: other processors round differently, and a block may stop a check earlier.
 
@@ -68,17 +67,15 @@ def rounded(value, like):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('lull')
-    parser.add_argument('--train', action='store_true')
     parser.add_argument('--write', action='store_true')
-    parser.add_argument('files', nargs='*', default=DOCUMENTS)
     options = parser.parse_args()
     options.lull = str(pathlib.Path(options.lull).resolve())
-    texts = {name: (ROOT / name).read_text() for name in options.files}
+    texts = {name: (ROOT / name).read_text() for name in DOCUMENTS}
     wrong, known, commands = [], {}, 0
     for name, text in texts.items():
         def replace(match):
             nonlocal commands
-            runs = ' lull train ' not in match[1] or options.train or options.write
+            runs = ' lull train ' not in match[1] or options.write
             commands += runs
             output = run(options.lull, match[1]) if runs else match[2]
             labels = re.match(r'(?:<!--.*?-->\n)*', text[match.end():])[0]

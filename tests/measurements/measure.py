@@ -61,10 +61,6 @@ class Renders:
     def file(self, name):
         return self.folder / f'{name}.exr'
 
-    def note(self, name, seconds):
-        self.seconds[name] = seconds
-        self.times.write_text(json.dumps(self.seconds, indent=1))
-
     def make(self, name, render):
         """Calls a function that renders by other processes, unless that has been done."""
         def used():
@@ -73,7 +69,8 @@ class Renders:
         if name not in self.seconds:
             before = used()
             render()
-            self.note(name, used() - before)
+            self.seconds[name] = used() - before
+            self.times.write_text(json.dumps(self.seconds, indent=1))
 
     def render(self, name, **options):
         """Renders by lull, and returns the report."""

@@ -57,9 +57,6 @@ def sensitivity(o):
         print(f'{name}: {len(error)} thresholds of {len(means)} people, measured over predicted: mean {error.mean():.2f} dB, '
               f'RMS {np.sqrt(np.mean(error ** 2)):.2f}, scatter {error.std():.2f} (between people {np.std(means):.2f}, '
               f'within {within:.2f})')
-        for f in sorted(set(patches[:, 0])):
-            print(f'  {f:g} cycles a degree: {error[patches[:, 0] == f].mean():.1f}', end='')
-        print()
 
 
 def noise(difference, random, count=32):
@@ -128,14 +125,8 @@ def stop(values, limit):
 
 
 def critical_error(human, stops):
-    """As `lull evaluate` has it, at 2 %."""
-    half = PASS * int(CAP / PASS * 2 / 200)
-    x = np.arange(PASS, CAP + 1, 40)
-    wrong = []
-    for h, s in zip(human, stops):
-        lo, hi = (CAP, CAP) if h >= CAP else (h - half, h + half)
-        wrong.append(~(((x <= lo) & (x <= s)) | ((x >= hi) & (x >= s)) | ((lo < x) & (x < hi))))
-    return np.mean(wrong)
+    """Returns the mean over blocks, in %."""
+    return np.mean([published.critical_error(h, s, 40) for h, s in zip(human, stops)])
 
 
 def best(human, choices, stops_of):
@@ -165,7 +156,7 @@ def report(o, viewing, blocks):
     curves = {v: [curve(o, viewing, b) for b in blocks if b[0] == v] for v in views}
     limits = np.geomspace(0.2, 300, 150)
     stops_of = lambda v, limit: [stop(c, limit) for c in curves[v]]
-    error_with = lambda limit: 100 * np.mean([critical_error(human[v], stops_of(v, limit)) for v in views])
+    error_with = lambda limit: np.mean([critical_error(human[v], stops_of(v, limit)) for v in views])
     accepted = {v: [np.exp(np.interp(deviation(h), deviation(LADDER)[::-1], c[::-1])) for h, c in zip(human[v], curves[v])
                     if h < CAP] for v in views}
     rows = []
@@ -173,7 +164,7 @@ def report(o, viewing, blocks):
         others = {w: human[w] for w in views if scene(w) != scene(v)}
         limit = best(others, limits, stops_of)
         stops = stops_of(v, limit)
-        rows.append((v, limit, 100 * critical_error(human[v], stops), correlation(human[v], stops), np.mean(human[v]), np.mean(stops),
+        rows.append((v, limit, critical_error(human[v], stops), correlation(human[v], stops), np.mean(human[v]), np.mean(stops),
                      np.median(accepted[v]), stops))
     together = correlation(np.concatenate([human[v] for v in views]), np.concatenate([r[-1] for r in rows]))
     every = np.concatenate([accepted[v] for v in views])
@@ -197,7 +188,7 @@ def judge_blocks(o):
         human[b[0]].append(b[2])
     constants = range(PASS, CAP + 1, PASS)
     print('the best constant of each viewpoint: %.1f %%' % np.mean(
-        [100 * min(critical_error(h, [c] * len(h)) for c in constants) for h in human.values()]))
+        [min(critical_error(h, [c] * len(h)) for c in constants) for h in human.values()]))
     for viewing in o.viewing.split(';'):
         report(o, viewing, blocks)
 

@@ -1,11 +1,11 @@
-// Compares renders of small scenes, which show one plug-in each, with pbrt-v3's own (make.py makes
-// both): energy, tiles and pixels by Z-tests with both variances known.
+// Compares renders of small scenes, which show one plug-in each, with pbrt-v3's own (make.py):
+// energy, tiles and pixels by Z-tests with both variances known.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 
-#include "renderer/image/image_io.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 
@@ -13,29 +13,6 @@ namespace lull {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Reads a positive number from the environment, for longer runs than a test run affords.
-int FromEnvironment(const char* name, int otherwise) {
-    const char* value = std::getenv(name);
-    return value ? std::max(2, std::atoi(value)) : otherwise;
-}
-
-PixelStatistics LoadReference(const std::string& name) {
-    const fs::path file = fs::path(LULL_PLUGINS_DIR) / "references" / (name + ".exr");
-    const ExrImage image = ReadExr(file.string());
-    PixelStatistics reference{image.width, image.height, 0, {}, {}, 0};
-    reference.samples = std::get<int>(image.attributes.at("samplesPerPixel"));
-    const size_t count = size_t(image.width) * image.height;
-    reference.mean.resize(count);
-    reference.variance.resize(count);
-    const char* names[] = {"R", "G", "B"};
-    for (int c = 0; c < 3; ++c)
-        for (size_t i = 0; i < count; ++i) {
-            reference.mean[i][c] = image.Find(names[c])->values[i];
-            reference.variance[i][c] = image.Find(std::string("variance.") + names[c])->values[i];
-        }
-    return reference;
-}
 
 struct Comparison {
     double energyRatio = 0, energySigma = 0;  // ours over pbrt-v3's; distance in standard errors
@@ -86,7 +63,8 @@ class Plugins : public testing::TestWithParam<std::string> {};
 
 TEST_P(Plugins, LookAsInPbrt) {
     const auto scene = Load(GetParam());
-    const PixelStatistics theirs = LoadReference(GetParam());
+    const PixelStatistics theirs =
+        ReadStatistics(fmt::format("{}/references/{}.exr", LULL_PLUGINS_DIR, GetParam()));
     const int samples = FromEnvironment("LULL_PLUGIN_SAMPLES", 256);
     for (const Estimator estimator : {Estimator::PbrtV3, Estimator::Combined}) {
         const PixelStatistics ours =

@@ -8,24 +8,22 @@ pose.glb: a skin and morph targets, to be seen at 1 s; shutter.glb: things that 
 shutter is open for 0.5 s from 0.5 s on.
 """
 
+import json
 import math
 import pathlib
 import struct
 import sys
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / 'scenes'))
-import make  # noqa: E402
-
 MATTE = {'KHR_materials_specular': {'specularFactor': 0}}
 
 
-class Glb(make.Glb):
-    """Collects a scene: a matte floor and wall, a lamp above, a camera, and further objects."""
+class Glb:
+    """Collects a scene, and writes it as one file: a matte floor and wall, a lamp above, a camera, and further objects."""
 
     def __init__(self):
-        super().__init__()
-        self.root['extensionsUsed'] = []
-        del self.root['extensionsRequired']
+        self.data = b''
+        self.root = {'asset': {'version': '2.0', 'generator': 'extensions.py'}, 'scene': 0, 'scenes': [{'nodes': []}],
+                     'extensionsUsed': []}
         grey = self.material('grey', (.6, .6, .6), 0, 1, MATTE)
         self.node(mesh=self.quad(grey), scale=(6, 6, 1), rotation=turn((1, 0, 0), -90))
         self.node(mesh=self.quad(grey), scale=(6, 6, 1), translation=(0, 3, -3))
@@ -34,6 +32,42 @@ class Glb(make.Glb):
         self.node(mesh=self.quad(lamp), scale=(1.5, 1.5, 1), translation=(0, 5, 2), rotation=turn((1, 0, 0), 100))
         camera = self.add('cameras', type='perspective', perspective={'yfov': .5, 'aspectRatio': 1.6, 'znear': .1})
         self.node(camera=camera, translation=(0, 2.2, 7), rotation=turn((1, 0, 0), -12))
+
+    def add(self, kind, **entry):
+        self.root.setdefault(kind, []).append(entry)
+        return len(self.root[kind]) - 1
+
+    def view(self, data, **more):
+        self.data += bytes(-len(self.data) % 4)
+        self.data += data
+        return self.add('bufferViews', buffer=0, byteOffset=len(self.data) - len(data),
+                        byteLength=len(data), **more)
+
+    def material(self, name, color, metallic=0, roughness=.5, extensions=None, **more):
+        for extension in extensions or {}:
+            if extension not in self.root['extensionsUsed']:
+                self.root['extensionsUsed'].append(extension)
+        pbr = {'baseColorFactor': [*color, 1], 'metallicFactor': metallic,
+               'roughnessFactor': roughness}
+        pbr.update(more.pop('pbr', {}))
+        if extensions:
+            more['extensions'] = extensions
+        return self.add('materials', name=name, pbrMetallicRoughness=pbr, **more)
+
+    def node(self, **entry):
+        nodes = self.root['scenes'][0]['nodes']
+        nodes.append(self.add('nodes', **entry))
+        return nodes[-1]
+
+    def write(self, path):
+        self.data += bytes(-len(self.data) % 4)
+        self.root['buffers'] = [{'byteLength': len(self.data)}]
+        text = json.dumps(self.root, separators=(',', ':')).encode()
+        text += b' ' * (-len(text) % 4)
+        with open(path, 'wb') as f:
+            f.write(b'glTF' + struct.pack('<II', 2, 28 + len(text) + len(self.data)) +
+                    struct.pack('<I', len(text)) + b'JSON' + text +
+                    struct.pack('<I', len(self.data)) + b'BIN\0' + self.data)
 
     def accessor(self, values, kind, code='f', **more):
         """Adds numbers, in tuples, of type `kind`: 'f' floats, 'H' and 'B' whole numbers."""

@@ -113,7 +113,8 @@ def brushed(tree, described):
 
 def follow_specification(material, described):
     """Rebuilds differences of Blender 3.4's Principled BSDF from the specification: its base is Disney's
-    diffuse and is not attenuated by the interface above it, and it emits on both sides."""
+    diffuse and is not attenuated by the interface above it, and it emits on both sides. For surfaces
+    without normal maps, coats and alpha, as extensions.py makes them."""
     nodes, links = material.node_tree.nodes, material.node_tree.links
     principled = next((n for n in nodes if n.type == 'BSDF_PRINCIPLED'), None)
     if principled is None:
@@ -139,21 +140,15 @@ def follow_specification(material, described):
     if metallic == 0 and transmission == 0:
         diffuse, below = nodes.new('ShaderNodeBsdfDiffuse'), nodes.new('ShaderNodeMixShader')
         take('Base Color', diffuse.inputs['Color'])
-        for link in principled.inputs['Normal'].links:
-            links.new(link.from_socket, diffuse.inputs['Normal'])
         links.new(diffuse.outputs[0], below.inputs[1])
         below.inputs[0].default_value = 0
         if f0 > 0:
             share = reflected(material.node_tree, roughness, f0, f90)
             links.new(share, below.inputs[0])
             shaders.append(glossy(material.node_tree, roughness, share))
-            for link in diffuse.inputs['Normal'].links:
-                links.new(link.from_socket, shaders[0].node.inputs['Normal'])
         for link in list(principled.inputs['Specular'].links):
             links.remove(link)
         principled.inputs['Specular'].default_value = 0
-        if principled.inputs['Clearcoat'].default_value > 0:
-            shaders.append(principled.outputs[0])
         shaders.append(below.outputs[0])
     else:
         shaders.append(principled.outputs[0])
@@ -175,17 +170,6 @@ def follow_specification(material, described):
         links.new(total, both.inputs[0])
         links.new(shader, both.inputs[1])
         total = both.outputs[0]
-    alpha = principled.inputs['Alpha']
-    if alpha.links or alpha.default_value < 1:
-        mix, through = nodes.new('ShaderNodeMixShader'), nodes.new('ShaderNodeBsdfTransparent')
-        mix.inputs[0].default_value = alpha.default_value
-        for link in list(alpha.links):
-            links.new(link.from_socket, mix.inputs[0])
-            links.remove(link)
-        alpha.default_value = 1
-        links.new(through.outputs[0], mix.inputs[1])
-        links.new(total, mix.inputs[2])
-        total = mix.outputs[0]
     for target in targets:
         links.new(total, target)
 

@@ -1,10 +1,11 @@
-// Gives tests a file name of their own and removes the file afterwards.
+// Gives tests a file name of their own and removes the file afterwards, and catches exceptions.
 #pragma once
 
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 
 namespace lull {
@@ -26,5 +27,16 @@ class ScratchFile {
 
     std::string path;
 };
+
+// Returns the message of a std::runtime_error thrown by `call`; empty where none was thrown.
+template <typename Call>
+std::string WhatOf(const Call& call) {
+    try {
+        call();
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
 
 }  // namespace lull

@@ -11,16 +11,16 @@ bl_info = {
 
 import bpy  # noqa: E402
 
-from . import engine, operators, panels, program, settings  # noqa: E402
+from . import engine, operators, panels, program  # noqa: E402
 
-_CLASSES = (program.LullPreferences, program.LULL_OT_test, settings.LullSettings, engine.LullEngine,
+_CLASSES = (program.LullPreferences, program.LULL_OT_test, panels.LullSettings, engine.LullEngine,
             operators.LULL_OT_check, operators.LULL_OT_export, *panels.CLASSES)
 
 
 def register():
     for each in _CLASSES:
         bpy.utils.register_class(each)
-    bpy.types.Scene.lull = bpy.props.PointerProperty(type=settings.LullSettings)
+    bpy.types.Scene.lull = bpy.props.PointerProperty(type=panels.LullSettings)
     panels.share(True)
     bpy.types.TOPBAR_MT_file_export.append(operators.menu)
 

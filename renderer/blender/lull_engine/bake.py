@@ -24,7 +24,7 @@ class Baker:
         self.scene.render.bake.margin = 8
 
     def plain(self, described, what=None):
-        """Returns the R, G, B of a value that is the same everywhere, or on an object of which `what` tells as for body()."""
+        """Returns the R, G, B of a value that is the same everywhere, or on an object, described as in body()."""
         o = self._square(())
         if what is not None:
             _liken(o, what)
@@ -43,7 +43,7 @@ class Baker:
         return pixels[:, :, :3]
 
     def body(self, arrays, what):
-        """Returns a mesh of its arrays, unwrapped. `what` tells of its object: name, matrix, color, pass_index and properties."""
+        """Returns a mesh of its arrays, unwrapped. `what` has the name, matrix, color, pass_index and properties of its object."""
         return _Body(arrays, what, self)
 
     def _square(self, names):
@@ -184,7 +184,7 @@ def _liken(o, what):
     o.name, o.color, o.pass_index = what["name"], what["color"], what["pass_index"]
     for name, value in what["properties"].items():
         o[name] = value
-    o.matrix_world = matrix = shown.Matrix([what["matrix"][i:i + 4] for i in range(0, 16, 4)])
+    o.matrix_world = matrix = shown.Matrix(what["matrix"])
     if shown.is_sheared(matrix):
         o.parent = bpy.data.objects.get("lull parent") or bpy.data.objects.new("lull parent", None)
         o.matrix_parent_inverse = matrix

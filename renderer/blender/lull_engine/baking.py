@@ -1,4 +1,4 @@
-"""What only Cycles can evaluate: asked of a second Blender, all at once, in which second.py runs.
+"""Values and images that only Cycles can evaluate: asked of a second Blender, all at once, in which second.py runs.
 
 A Baker is asked twice: what it does not know yet is zero, and noted as wanted; run() finds it out.
 """
@@ -38,13 +38,9 @@ class Baker:
             if known is None or (s.matrix.translation - eye).length < (known.translation - eye).length:
                 self._nearest[s.mesh] = s.matrix
 
-    def plain(self, place, output):
-        """Returns the R, G, B of an output that is the same everywhere, of the tree of a data-block."""
-        return self._ask((output, 'all'), place, output, {"over": 'all'}, np.zeros(3))
-
-    def of_object(self, place, output, shown):
-        """Returns the R, G, B of an output that is the same all over an object."""
-        return self._ask((output, shown), place, output, {"over": 'all', "object": _object(shown)}, np.zeros(3))
+    def plain(self, place, output, shown=None):
+        """Returns the R, G, B of an output that is the same everywhere, or all over an object, of the tree of a data-block."""
+        return self._ask((output, shown), place, output, {"over": 'all', "object": shown and _object(shown)}, np.zeros(3))
 
     def over_uvs(self, place, output, names, size):
         """Returns the pixels over a square, whose UV layers have these names."""
@@ -112,7 +108,7 @@ class Baker:
         return bool(self._bakes or self.world or any(moves for _, _, moves in self._bodies.values()))
 
     def run(self, scene, folder, stopped, heard):
-        """Finds out what was asked. Returns false if `stopped` has returned true. Raises: Failure."""
+        """Answers all questions. Returns false if `stopped` has returned true. Raises: Failure."""
         if not self.is_asked:
             return True
         blocks = set(self._blocks.values())
@@ -146,7 +142,7 @@ class Baker:
         return True
 
     def _forecast(self):
-        """Returns what is going to be baked, and about how long that takes."""
+        """Returns the number of bakes and their approximate time, as text."""
         sizes = [b["size"] for b in self._bakes.values() if "size" in b]
         faces = sum(len(body[0].starts) for body in self._bodies.values())
         seconds = _PER_IMAGE * len(self._bakes) + _PER_PIXEL * sum(s * s for s in sizes) + _PER_FACE * faces
@@ -157,7 +153,7 @@ class Baker:
 
     def _written(self, number, mesh, shown, moves, folder):
         arrays = {n: getattr(mesh, n) for n in ("points", "corners", "starts", "slots", "normals", "smooth")}
-        # Without any UVs, nodes would ask for those of the bake.
+        # Without any UVs, nodes would read the UVs of the bake.
         arrays.update({f"uv {n}": v for n, v in (mesh.uvs or {"none": mesh.uv("")}).items() if n != "lull"})
         arrays.update({f"colour {n}": v for n, v in mesh.colours.items()})
         arrays.update({f"{domain} {n}": v for n, (domain, v) in mesh.attributes.items()})
@@ -181,7 +177,7 @@ class Baker:
 
 
 def _changed(folder):
-    """Writes the pixels of images that are in the session alone, and those of files that have changed there. Returns the files by name."""
+    """Writes the pixels of images that are new or changed in the session. Returns the files by name."""
     found = {}
     for image in bpy.data.images:
         if image.is_dirty and image.users and image.source in ('FILE', 'GENERATED') and image.type in ('IMAGE', 'UV_TEST'):
@@ -191,10 +187,10 @@ def _changed(folder):
 
 
 def _object(shown):
-    """Returns what materials may ask of an object."""
+    """Returns the properties of an object that materials may read."""
     o = shown.original
     plain = {n: v for n, v in o.items() if isinstance(v, (int, float, str)) or hasattr(v, "to_list")}
-    return {"name": o.name, "matrix": [v for row in shown.matrix for v in row], "color": list(o.color), "pass_index": o.pass_index,
+    return {"name": o.name, "matrix": [list(row) for row in shown.matrix], "color": list(o.color), "pass_index": o.pass_index,
             "properties": {n: v.to_list() if hasattr(v, "to_list") else v for n, v in plain.items()}}
 
 

@@ -14,6 +14,7 @@ DEFAULTS = {'Base Color': (0.8, 0.8, 0.8), 'Metallic': 0, 'Roughness': 1, 'Specu
             'Alpha': 1, 'Clearcoat': 0, 'Clearcoat Roughness': 0.03, 'Radiance': (0, 0, 0), 'Through': (0, 0, 0),
             'Sheen': (0, 0, 0), 'Sheen Roughness': 0.5, 'Specular Tint': (1, 1, 1),
             'Tint': (1, 1, 1), 'Shine': 0, 'Shine Color': (1, 1, 1)}  # the latter are of a Glossy surface that is added to the base
+BLACK = dict(DEFAULTS, **{'Base Color': (0, 0, 0)})
 _KEPT = np.linspace(0, 1, 11), (1, 0.9996, 0.9944, 0.9777, 0.9428, 0.8853, 0.8074, 0.7129, 0.6091, 0.506, 0.4121)  # after one bounce
 # Plain values of these are left out.
 _UNSAID = ('Subsurface', 'Anisotropic', 'Transmission Roughness', 'Thin Film Thickness', 'Diffuse Roughness')
@@ -29,7 +30,7 @@ def made(node, **parameters):
 
 
 def _note_roughness(surface, node, found):
-    """Marks what keeps all light, and notes what reflects much, and is so rough that single scattering loses light."""
+    """Marks surfaces that keep all light, and notes others so rough that single scattering loses light."""
     kind = getattr(node, "distribution", '')
     rough = next((least for name, least in _ROUGH if is_output(found[name]) or found[name] > 0), None)
     is_rough = rough is not None and (is_output(found['Roughness']) or found['Roughness'] > rough)

@@ -1,4 +1,4 @@
-"""The camera of a render, with what glTF lacks as `extras`."""
+"""The camera of a render; parameters that glTF lacks become `extras`."""
 import math
 
 from mathutils import Matrix
@@ -7,8 +7,14 @@ from .process import Failure
 from .shown import is_sheared
 
 
+def resolution(render):
+    """Returns the width and height of the whole picture, in pixels."""
+    scale = render.resolution_percentage / 100
+    return int(render.resolution_x * scale), int(render.resolution_y * scale)
+
+
 class View:
-    """What the camera of an evaluated scene sees. Raises: Failure."""
+    """The view of an evaluated scene's camera. Raises: Failure."""
 
     def __init__(self, scene, graph, notes):
         camera = self._camera = scene.camera

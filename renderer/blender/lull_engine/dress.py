@@ -3,7 +3,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import displacement, materials, meshes, panes, solids
+from . import displacement, materials, meshes, solids
 from .surfaces import Surface, state_of
 
 
@@ -33,7 +33,7 @@ class Dresser:
         self._surfaces = [self._read(material, of, notes) for material, of in self._users]
 
     def _read(self, material, users, notes):
-        """Returns the surface, two for materials whose sides differ, or a word for what has none."""
+        """Returns the surface, two for materials whose sides differ, or a word for a material without one."""
         if material is None:
             return 'plain'
         state = state_of(material)
@@ -100,7 +100,7 @@ class Dresser:
 
 
 def add_meshes(writer, shown, parts, notes):
-    """Writes meshes and their materials. Returns their numbers, and those that shine."""
+    """Writes meshes and their materials. Returns their numbers, and the set of meshes that shine."""
     known, numbers, shining = {}, {}, set()
 
     def material_of(part):
@@ -161,7 +161,7 @@ def make_sheets(shown, parts, notes):
             continue
         mesh = s.mesh
         if mesh not in sheets:
-            sheets[mesh] = panes.sheet(mesh, np.array(s.matrix), parts[mesh])
+            sheets[mesh] = solids.sheet(mesh, np.array(s.matrix), parts[mesh])
         if sheets[mesh] is not None:
             s.mesh, material = sheets[mesh]
             parts[s.mesh] = [Part(material, 0)]

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from . import exr, passes
+from .camera import resolution
 from .export import export
 from .process import Failure, Render, ended
 from .program import find_lull
@@ -150,8 +151,7 @@ class _Job:
 
     def _measure(self, render):
         """Sets the size of the whole image and the rendered part, in fractions."""
-        scale = render.resolution_percentage / 100
-        self.whole = int(render.resolution_x * scale), int(render.resolution_y * scale)
+        self.whole = resolution(render)
         self.crop, self.size, self.corner = None, self.whole, (0, 0)  # the corner is the lower left one
         if render.use_border:
             # In single precision, as Blender has it: 0.9 of 40 pixels are 36.
@@ -209,7 +209,7 @@ class _Job:
 
     @staticmethod
     def _named(text, exported):
-        """Returns a message with the names of what it finds in the file, such as "object 'lamp'" for /nodes/6."""
+        """Returns a message with names in place of paths in the file, such as "object 'lamp'" for /nodes/6."""
         def name(found):
             names, number = exported.names.get(found[1], ()), int(found[2])
             kind = "object" if found[1] == "nodes" else found[1][:-1]

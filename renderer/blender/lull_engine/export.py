@@ -1,4 +1,4 @@
-"""Writes what a render shows as glTF, with the files beside it that `lull render` takes."""
+"""Writes the scene of a render as glTF, with the files beside it that `lull render` takes."""
 import os
 from dataclasses import dataclass, field
 
@@ -10,8 +10,7 @@ from .baking import Baker
 from .camera import View
 from .glb import Writer
 from .images import Images
-from .limits import limits, note_film
-from .notes import Notes
+from .notes import Notes, limits, note_film
 from .shown import Collector, is_flat, is_sheared
 from .surroundings import Surroundings
 from .versions import not_tested
@@ -25,7 +24,7 @@ _ROUNDS = 3  # of questions to a second Blender, at most
 @dataclass
 class Exported:
     """`groups` are the names of light groups for lull; `shutter` is the time that it is open, in seconds, 0 where nothing moves;
-    `objects` and `materials` are pass indices by their names; `names` are those of what the file has, by kinds such as "nodes"."""
+    `objects` and `materials` are pass indices by their names; `names` are the names in the file, by kinds such as "nodes"."""
     gltf: str
     environment: str = None
     backdrop: str = None
@@ -41,7 +40,7 @@ class Exported:
 def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, heard):
     """Writes the scene of a render's depsgraph as NAME.gltf or NAME.glb into a folder; `scratch` is another. `set_frame(frame, subframe)`
     evaluates it at another time. `is_render`: the file is read once, and the background has a picture of its own. `heard` is called with
-    what a second Blender prints.
+    the output of a second Blender.
 
     Returns: Exported; None if `stopped` has returned true. Raises: Failure.
     """
@@ -90,7 +89,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
 
 
 def _move_flat(shown, parts, notes):
-    """Moves the vertices of what is scaled to no volume, which has no place among others."""
+    """Moves the vertices of objects that are scaled to no volume, whose matrix has no inverse."""
     for s in shown:
         if is_flat(s.matrix) and s.mesh in parts:
             moved = s.mesh.moved(np.array(s.matrix))
@@ -107,7 +106,7 @@ def _indices(blocks):
 
 
 class _Nodes:
-    """The nodes of a file, below one that turns z up. `groups` are the names that `lull render --light-groups` takes for those that
+    """The nodes of a file, below one that turns z up. `groups` are the names that `lull render --light-groups` takes for groups that
     shine."""
 
     def __init__(self, layer, writer, notes):
@@ -171,7 +170,7 @@ class _Nodes:
             node["extras"] = {"lull": own}
         if moves is None:
             node["matrix"] = _columns(matrix)
-        elif is_sheared(matrix):  # what moves cannot be so; a node above it does
+        elif is_sheared(matrix):  # animated nodes cannot be sheared; a node above one can
             node["matrix"] = _columns(matrix)
             node, moves = {"children": [self._writer.add("nodes", node)]}, [place @ matrix.inverted() for place in moves]
         number = self._writer.add("nodes", node)

@@ -5,7 +5,6 @@ import re
 import bpy
 import numpy as np
 
-from . import exr
 from .versions import IS_PROFILE_OPEN
 
 # By which Cycles makes the strength of a lamp of candela: 4 pi over 177.83 lm/W.
@@ -92,8 +91,3 @@ def text_of(node):
             return f.read()
     except OSError as e:
         raise Unreadable from e
-
-
-def write(values, path):
-    """Writes an EXR of grey values, the first row at the top."""
-    exr.write(path, dict.fromkeys("RGB", values))

@@ -12,8 +12,9 @@ def is_known(name, value, pictures):
     if name in _COLOURS:
         if value.node.type == 'VERTEX_COLOR':
             return name == 'Base Color' and value.name == 'Color'
-        if image_of(value) is not value.node:
-            if name == 'Base Color' and max(factor_of(value)) > 1:
+        node, factor = tinted(value)
+        if node is not value.node:
+            if name == 'Base Color' and max(factor) > 1:
                 return False
             value = next(i.source for i in value.node.inputs if i.source is not None)
     is_number = name in ('Metallic', 'Roughness')
@@ -38,24 +39,17 @@ def is_known_normal(value, pictures):
     return source is not None and source.node.type == 'TEX_IMAGE' and is_known('Normal', source, pictures)
 
 
-def image_of(value):
-    """Returns the node of an image that a value is, perhaps times a colour of at most 1; else the node of the value."""
+def tinted(value):
+    """Returns the node of an image that a value is, perhaps times a colour, and that colour; else the node of the value and white."""
     node = value.node
-    if node.type not in ('MIX', 'MIX_RGB') or node.blend_type != 'MULTIPLY' or node.type == 'MIX' and node.data_type != 'RGBA':
-        return node
-    first, *sides = (node.inputs[i] for i in ((0, 6, 7) if node.type == 'MIX' else (0, 1, 2)))
-    linked = [s.source.node for s in sides if s.source is not None]
-    is_product = first.source is None and abs(first.default_value - 1) < 1e-6 and len(linked) == 1 and linked[0].type == 'TEX_IMAGE'
-    return linked[0] if is_product and 0 <= min(factor_of(value)) else node
-
-
-def factor_of(value):
-    """Returns the colour by which image_of() is multiplied."""
-    node = value.node
-    if node.type == 'TEX_IMAGE':
-        return 1, 1, 1
-    sides = (node.inputs[i] for i in ((6, 7) if node.type == 'MIX' else (1, 2)))
-    return next(tuple(s.default_value)[:3] for s in sides if s.source is None)
+    if node.type in ('MIX', 'MIX_RGB') and node.blend_type == 'MULTIPLY' and (node.type == 'MIX_RGB' or node.data_type == 'RGBA'):
+        first, *sides = (node.inputs[i] for i in ((0, 6, 7) if node.type == 'MIX' else (0, 1, 2)))
+        linked = [s.source.node for s in sides if s.source is not None]
+        if first.source is None and abs(first.default_value - 1) < 1e-6 and len(linked) == 1 and linked[0].type == 'TEX_IMAGE':
+            factor = next(tuple(s.default_value)[:3] for s in sides if s.source is None)
+            if min(factor) >= 0:
+                return linked[0], factor
+    return node, (1, 1, 1)
 
 
 def _is_plain(node):

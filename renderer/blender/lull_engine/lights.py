@@ -1,4 +1,4 @@
-"""Converts lights to those of glTF and lull."""
+"""Converts lights to lights of glTF and lull."""
 import math
 import os
 from types import SimpleNamespace
@@ -7,8 +7,8 @@ import numpy as np
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Matrix, Vector
 
-from . import ies, materials, meshes, shown, values
-from .nodes import Made, Tree, grey, is_output, upstream, value_of
+from . import exr, ies, materials, meshes, shown, values
+from .nodes import Tree, computed, grey, is_output, upstream, value_of
 from .versions import HAS_COLOURED_LAMPS, HAS_DIM_LAMPS
 
 _LUMENS = 683  # per watt, by which glTF's units are divided
@@ -24,7 +24,8 @@ class Lights:
         self._trees = {}  # kept, as the baker knows values by their outputs
 
     def read(self, notes):
-        """Returns the lights that shine, of what _COPIED names, and their lamps. To be called again while the baker lacks something."""
+        """Returns the lights that shine, with the properties in _COPIED, and their lamps. To be called again while the baker lacks
+        something."""
         folded, found = {}, []
         for lamp in self._lamps:
             with notes.of(lamp.original.name, "lights"):
@@ -44,19 +45,16 @@ class Lights:
         if light.energy < 0:
             notes.add("left out, taking light away", o.name, "lights")
             return
-        if light.type == 'SUN' and not o.visible_camera and any(
-                _is_in_view(self._scene, p) for p in _points(self._scene, light, lamp.matrix)):
-            notes.add("seen by the camera", o.name, "lights")
-        if not all(getattr(o, "visible_" + ray) for ray in ("diffuse", "glossy", "transmission")):
-            notes.add("lighting all surfaces, whatever its visibility", o.name, "lights")
-        if data.cycles.max_bounces < 12:
-            notes.add("lighting after any number of bounces", o.name, "lights")
-        if not data.use_shadow or not getattr(data.cycles, "cast_shadow", True):
-            notes.add("casting shadows all the same", o.name, "lights")
-        if light.type == 'SPOT' and max(lamp.matrix.to_scale()) > 1.01 * min(lamp.matrix.to_scale()):
-            notes.add("shining in a round cone of its angle, whatever its scale", o.name, "lights")
-        if light.type == 'AREA' and shown.is_sheared(lamp.matrix):
-            notes.add("shining in another direction, being sheared", o.name, "lights")
+        scale = lamp.matrix.to_scale()
+        notes.add_true({
+            "seen by the camera": light.type == 'SUN' and not o.visible_camera and any(
+                _is_in_view(self._scene, p) for p in _points(self._scene, light, lamp.matrix)),
+            "lighting all surfaces, whatever its visibility": not all(shown.is_seen(o, (ray,)) for ray in shown.BOUNCES),
+            "lighting after any number of bounces": data.cycles.max_bounces < 12,
+            "casting shadows all the same": not data.use_shadow or not getattr(data.cycles, "cast_shadow", True),
+            "shining in a round cone of its angle, whatever its scale": light.type == 'SPOT' and max(scale) > 1.01 * min(scale),
+            "shining in another direction, being sheared": light.type == 'AREA' and shown.is_sheared(lamp.matrix),
+        }, o.name, "lights")
         shown.note_linking(o, notes)
         found.append((light, lamp))
 
@@ -133,7 +131,7 @@ class Lights:
             def replaced(node, output, value=value):
                 if node.type == 'TEX_IES':
                     strength = node.inputs['Strength']
-                    return Made('Math', 'MATH', strength.source or strength.default_value, value, operation='MULTIPLY').output()
+                    return computed('MULTIPLY', strength.source or strength.default_value, value)
                 return _passing(node, output, None, None)
 
             key = path, value
@@ -143,7 +141,7 @@ class Lights:
             return (1,)
         if None in found or abs(found[0][0]) > 1e-4 * abs(found[1][0]) or abs(found[2][0] - 2 * found[1][0]) > 1e-3 * abs(found[1][0]):
             return None
-        ies.write(profile, path)
+        exr.write(path, dict.fromkeys("RGB", profile))
         light.own = {"profile": os.path.basename(path)}
         return found[1]
 
@@ -155,7 +153,7 @@ def _passing(node, output, name, notes):
     smooth, strength = node.inputs['Smooth'], node.inputs['Strength']
     if notes is not None and (output != 'Quadratic' or smooth.source is not None or smooth.default_value > 0):
         notes.add("dimming with the square of the distance, whatever its falloff", name, "lights")
-    return strength.source or Made('Math', 'MATH', strength.default_value, 0., operation='ADD').output()
+    return strength.source or computed('ADD', strength.default_value, 0.)
 
 
 def _blend_of(light):
@@ -178,10 +176,6 @@ def _points(scene, sun, matrix):
     yield from (eye.translation + 1e4 * (axes @ Vector((wide * x, wide * y, 1))) for x, y in steps if x * x + y * y <= 1)
 
 
-def _size(light):
-    return light.size, light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else light.size
-
-
 def _is_in_view(scene, point):
     x, y, depth = world_to_camera_view(scene, scene.camera, point)
     return depth > 0 and 0 < x < 1 and 0 < y < 1
@@ -200,14 +194,14 @@ def punctual(light):
 
 
 def sun(said):
-    """Returns a sun of the world, and where it is; `said` is sun.take()'s."""
+    """Returns a sun of the world, and its matrix; `said` is a result of world.write()."""
     light = SimpleNamespace(name="environment", type='SUN', energy=said["energy"], color=said["color"], own={"angle": said["angle"]})
-    return light, Matrix([said["matrix"][i:i + 4] for i in range(0, 16, 4)])
+    return light, Matrix(said["matrix"])
 
 
 def area(light, matrix):
     """Returns a mesh that emits downwards, like an area light, and its material; None for one of no size."""
-    width, height = _size(light)
+    width, height = light.size, light.size_y if light.shape in ('RECTANGLE', 'ELLIPSE') else light.size
     if light.shape in ('SQUARE', 'RECTANGLE'):
         corners, shrunk = [(-1, -1), (-1, 1), (1, 1), (1, -1)], 1
     else:

@@ -193,19 +193,17 @@ class _Writing:
 
     def _write_base(self):
         colour, alpha = self.p['Base Color'], self.p['Alpha']
-        are_apart = is_output(alpha) and not (is_output(colour) and known.image_of(colour) is alpha.node)
+        are_apart = is_output(alpha) and not (is_output(colour) and known.tinted(colour)[0] is alpha.node)
         if all(known.is_known(n, v, self.pictures) if is_output(v) else not isinstance(v, np.ndarray)
                for n, v in (('Base Color', colour), ('Alpha', alpha))) and not are_apart:
-            factor, node = (1, 1, 1), None
+            factor = (1, 1, 1)
             if not is_output(colour):
                 factor = values.triple(colour)
             elif colour.node.type == 'VERTEX_COLOR':
                 self.made["colours"] = colour.node.layer_name
             else:
-                node = known.image_of(colour)
-                factor = known.factor_of(colour)
-                asks = node.origin.outputs['Alpha'].is_linked
-                self.pbr["baseColorTexture"] = self._texture(node, self.pictures.colour(node, asks, self.surface.name))
+                node, factor = known.tinted(colour)
+                self.pbr["baseColorTexture"] = self._colours(node)
             self._set_base(factor, 1 if is_output(alpha) else alpha, is_output(alpha))
             return
         pixels, alphas = self._pixels('Base Color'), self._pixels('Alpha')
@@ -224,9 +222,8 @@ class _Writing:
     def _write_radiance(self):
         value = self.p['Radiance']
         if is_output(value) and known.is_known('Radiance', value, self.pictures):
-            node = known.image_of(value)
-            _emit(self.made, known.factor_of(value), self._texture(node, self.pictures.colour(
-                node, node.origin.outputs['Alpha'].is_linked, self.surface.name)))
+            node, factor = known.tinted(value)
+            _emit(self.made, factor, self._colours(node))
             return
         pixels = self._pixels('Radiance')
         most = float(pixels.max())
@@ -297,10 +294,8 @@ class _Writing:
         if values.is_by_view(value):
             self.note("the same from all sides and for all rays")
         place = values.place_of(value)
-        if place == 'all':
-            return self.baker.plain(self.surface.material, value)
-        if place == 'object':
-            return self.baker.of_object(self.surface.material, value, self.over[1])
+        if place in ('all', 'object'):
+            return self.baker.plain(self.surface.material, value, self.over[1] if place == 'object' else None)
         if self.over is None:
             sizes = [max(n.image.size) for n in upstream(value) if n.type == 'TEX_IMAGE' and n.image]
             names = [n for n in self.surface.layers if n]
@@ -327,6 +322,10 @@ class _Writing:
         name = "lull" if self.over is not None else next(iter(self.surface.layers), "")
         # Filtered, a root would have the colour of tips.
         return Texture(self.pictures.of_pixels(f"{self.surface.name} {what}", pixels), name, _CLAMP if name == STRANDS else _REPEAT)
+
+    def _colours(self, node):
+        """Returns the texture of an image of colours."""
+        return self._texture(node, self.pictures.colour(node, node.origin.outputs['Alpha'].is_linked, self.surface.name))
 
     def _texture(self, node, picture, scale=1):
         source, moves = node.inputs['Vector'].source, None

@@ -22,7 +22,7 @@ class Mesh:
         self.smooth = np.ones(len(starts), bool)
         self.uvs, self.colours, self.attributes, self.materials = {}, {}, {}, [None]
         self.uv_of_render = self.colour_of_render = ""
-        self.box = self.generated = None  # the place and size of generated coordinates; those of vertices, from 0 to 1
+        self.box = self.generated = None  # the place and size of generated coordinates; the coordinates of vertices, from 0 to 1
 
     @property
     def totals(self):

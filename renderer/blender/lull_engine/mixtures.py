@@ -1,6 +1,6 @@
 """Mixed and added surfaces as parameters, which are mixed with the same factor."""
 from . import values
-from .bsdfs import DEFAULTS, bounced
+from .bsdfs import BLACK, DEFAULTS, bounced
 from .nodes import is_output, upstream, value_of
 from .values import times
 
@@ -10,11 +10,10 @@ _REFLECTING = 'Metallic', 'Specular', 'Transmission', 'Shine', 'Clearcoat'
 
 
 def mixed(surface, node):
-    a, b = surface.closure(node.inputs[1]), surface.closure(node.inputs[2])
-    factor = values.clamped(value_of(node.inputs[0]))
-    if a is None and b is None:
+    halves = _halves(surface, node.inputs[1:3])
+    if halves is None:
         return None
-    a, b = _half(surface, a, node.inputs[1]), _half(surface, b, node.inputs[2])
+    (a, b), factor = halves, values.clamped(value_of(node.inputs[0]))
     if is_output(factor) and values.is_by_view(factor):
         if node is surface.root and _hides_from_rays(surface, b, factor):
             return a
@@ -41,10 +40,10 @@ def mixed(surface, node):
 
 
 def added(surface, node):
-    a, b = surface.closure(node.inputs[0]), surface.closure(node.inputs[1])
-    if a is None and b is None:
+    halves = _halves(surface, node.inputs[:2])
+    if halves is None:
         return None
-    a, b = _half(surface, a, node.inputs[0]), _half(surface, b, node.inputs[1])
+    a, b = halves
     shines = a['Base Color'] == (0, 0, 0) and a['Radiance'] != (0, 0, 0)
     first, other = (b, a) if shines else (a, b)
     if _is_metal(first) and not _reflects(other):
@@ -59,18 +58,22 @@ def added(surface, node):
     return dict(first, Radiance=radiance)
 
 
-def _half(surface, found, socket):
-    """Returns the parameters of a half of a mixture: black where nothing is linked, as in Cycles."""
-    if found is not None:
-        return found
-    if socket.source is None:
-        return dict(DEFAULTS, **{'Base Color': (0, 0, 0)})
-    surface.note("in part in the viewport colour, as one of its surfaces is unknown")
-    return dict(DEFAULTS, **{'Base Color': tuple(surface.material.diffuse_color)[:3]})
+def _halves(surface, sockets):
+    """Returns the parameters of both halves of a mixture, black where nothing is linked, as in Cycles; None if both are unknown."""
+    found = [surface.closure(socket) for socket in sockets]
+    if found == [None, None]:
+        return None
+    for i, socket in enumerate(sockets):
+        if found[i] is None and socket.source is None:
+            found[i] = dict(BLACK)
+        elif found[i] is None:
+            surface.note("in part in the viewport colour, as one of its surfaces is unknown")
+            found[i] = dict(DEFAULTS, **{'Base Color': tuple(surface.material.diffuse_color)[:3]})
+    return found
 
 
 def _keep_highlights(surface, both, a, b, factor):
-    """Gives a mixture the roughness and the colour of what reflects, and its own base to what scatters."""
+    """Gives a mixture the roughness and the colour of its reflecting half, and the base of the other."""
     shares = ((a, values.minus(factor)), (b, factor))
     reflecting = [(p, share) for p, share in shares if _reflects(p)]
     if len(reflecting) == 2 and not any(is_output(p['Roughness']) for p in (a, b)) and abs(a['Roughness'] - b['Roughness']) > 0.1:
@@ -103,8 +106,8 @@ def _hides_from_rays(surface, other, factor):
 
 
 def _mixed_by_view(surface, a, b, factor):
-    """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; of tricks with kinds of rays, what lights
-    the scene holds, else what the camera sees."""
+    """A coat that a Fresnel factor adds is glTF's own, and so is a sheet of glass; by kinds of rays, the surface that lights
+    the scene is taken, else that for the camera."""
     kinds = {n.type for n in upstream(factor)}
     is_ray, is_by_angle = 'LIGHT_PATH' in kinds, not kinds.isdisjoint({'FRESNEL', 'LAYER_WEIGHT'})
     if is_by_angle and not is_ray and a['Metallic'] == 0 and a['Alpha'] == 1 and b['Metallic'] == 1:

@@ -11,7 +11,7 @@ _BENT = 0.2  # of the way, that the middle may be off a straight one
 
 
 class Motion:
-    """What moves while the shutter is open; nothing without motion blur. `set_frame(frame, subframe)` evaluates the graph at another."""
+    """The movements while the shutter is open; none without motion blur. `set_frame(frame, subframe)` evaluates the graph at another."""
 
     def __init__(self, scene, graph, set_frame, notes):
         self._moves, self.shutter = {}, 0
@@ -55,7 +55,7 @@ class Motion:
         return (o.original.name_full, "", ()) in self._moves
 
     def of(self, instance, matrix):
-        """Returns the places of what stands at `matrix`, and moves with an instance or an object; None where nothing moves."""
+        """Returns the places of a thing at `matrix` that moves with an instance or an object; None where nothing moves."""
         start, end = self._moves.get(_key(instance), (None, None))
         if start is None or not instance.matrix_world.determinant():
             return None
@@ -76,7 +76,7 @@ class _Moment:
 
 
 def _key(instance):
-    """Returns what tells instances apart, also of a camera, which is none."""
+    """Returns the identity of an instance, or of a camera."""
     if not getattr(instance, "is_instance", False):
         return getattr(instance, "object", instance).original.name_full, "", ()
     return instance.object.original.name_full, instance.parent.original.name_full, tuple(instance.persistent_id)

@@ -6,7 +6,7 @@ import bpy
 
 
 class Output:
-    """An output of a node. Those of one tree are the same object."""
+    """An output of a node. A tree has one object for each."""
 
     def __init__(self, node, index, name, type_):
         self.node, self.index, self.name, self.type = node, index, name, type_
@@ -79,6 +79,11 @@ class Made:
         return object.__getattribute__(self, "properties")[name]
 
 
+def computed(operation, a, b):
+    """Returns the output of a Math node of our own."""
+    return Made('Math', 'MATH', a, b, operation=operation).output()
+
+
 class Constant(Made):
     """A node of a plain value: a number, or a colour as three."""
 
@@ -139,6 +144,14 @@ class Tree:
                 break
         value = getattr(socket if socket is not None else wanted, "default_value", None) if found is None else None
         return Input(wanted.name, wanted.identifier, wanted.type, found, converted(value, wanted.type))
+
+
+def all_nodes(tree):
+    """Yields the nodes of a tree of Blender, and of its groups."""
+    for node in tree.nodes:
+        yield node
+        if node.type == 'GROUP' and node.node_tree:
+            yield from all_nodes(node.node_tree)
 
 
 def _index(sockets, socket):
@@ -221,7 +234,7 @@ def _plain(value):
 def _place(origin):
     """Returns where the object is whose coordinates a node has, as JSON; None without one."""
     o = origin.object if origin.type == 'TEX_COORD' else None
-    return o and [v for row in o.matrix_world for v in row]
+    return o and [list(row) for row in o.matrix_world]
 
 
 def _properties(origin):

@@ -1,7 +1,7 @@
 """Normals: maps, whose strength is as Cycles has it, and how far normals lean."""
 import numpy as np
 
-# Of the light of a white sky, what Cycles takes from diffuse surfaces whose normals lean by so many degrees, and lull does not.
+# The fraction of a white sky's light that Cycles, unlike lull, takes from diffuse surfaces whose normals lean by these degrees.
 _LEANS, _DIMMED = (0, 5, 10, 15, 20, 27, 35, 45, 60), (0, 0.013, 0.035, 0.057, 0.077, 0.101, 0.121, 0.133, 0.125)
 MOST = 0.02
 _FAR, _SHARE, _MOST_FACES = 40, 0.05, 100_000  # degrees; of the area; of meshes that are looked at

@@ -1,4 +1,4 @@
-"""What will look different, collected by its consequence."""
+"""Differences from the picture of Cycles, collected by their consequences, and those of the whole scene."""
 import contextlib
 import traceback
 
@@ -6,7 +6,7 @@ from .process import Failure
 
 
 class Notes:
-    """Lists names by what happens to them, and sentences."""
+    """Lists names by consequences, and sentences."""
 
     def __init__(self):
         self._names, self._sentences = {}, []
@@ -15,13 +15,19 @@ class Notes:
         """Notes that `name`, of a kind in the plural, will be so."""
         self._names.setdefault((kind, consequence), []).append(name)
 
+    def add_true(self, consequences, name, kind="objects"):
+        """Notes the consequences whose values are true."""
+        for consequence, is_so in consequences.items():
+            if is_so:
+                self.add(consequence, name, kind)
+
     def say(self, sentence):
         if sentence not in self._sentences:
             self._sentences.append(sentence)
 
     @contextlib.contextmanager
     def of(self, name, kind="objects"):
-        """Lets an exception end nothing but what concerns one thing."""
+        """Limits the effect of an exception to one thing."""
         try:
             yield
         except Failure:
@@ -41,8 +47,57 @@ class Notes:
         return lines
 
     def take(self, other):
-        """Adds what other notes have."""
+        """Adds other notes."""
         for sentence in other._sentences:
             self.say(sentence)
         for key, names in other._names.items():
             self._names.setdefault(key, []).extend(names)
+
+
+def note_film(scene, layer, notes):
+    if scene.render.use_multiview:
+        notes.say("all views have the same picture")
+    if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
+        notes.say("pixels are square, whatever their aspect")
+    if scene.render.film_transparent and scene.cycles.film_transparent_glass:
+        notes.say("glass is opaque before a transparent background")
+    if scene.render.use_simplify and (scene.cycles.use_camera_cull or scene.cycles.use_distance_cull):
+        for o in scene.objects:
+            if o.cycles.use_camera_cull or o.cycles.use_distance_cull:
+                notes.add("shown although Cycles culls by the camera or the distance", o.name)
+    if any(c.holdout for c in _collections(layer.layer_collection)):
+        notes.say("collections that are holdouts are shown as any others")
+
+
+def limits(scene, depth):
+    """Returns sentences about features of Cycles that lull lacks, one of them about all settings that change the picture."""
+    c, r, found = scene.cycles, scene.render, []
+    if c.max_bounces < depth:
+        found.append(f"{c.max_bounces} bounces")
+    for name in "diffuse", "glossy", "transmission":
+        if getattr(c, name + "_bounces") < min(depth, c.max_bounces):
+            found.append(f"{getattr(c, name + '_bounces')} {name} bounces")
+    if c.sample_clamp_indirect > 0 or c.sample_clamp_direct > 0:
+        found.append("clamping")
+    if not (c.caustics_reflective and c.caustics_refractive):
+        found.append("no caustics")
+    for name, is_set in (("Fast GI Approximation", c.use_fast_gi), ("Filter Glossy", c.blur_glossy > 0),
+                         (f"{c.transparent_max_bounces} transparent bounces", c.transparent_max_bounces < 8),
+                         ("the limit of textures", r.use_simplify and c.texture_limit_render != 'OFF'),
+                         ("the pixel filter", c.pixel_filter_type != 'BOX' or c.filter_width != 1)):
+        if is_set:
+            found.append(name)
+    return ["settings of Cycles without effect: " + ", ".join(found)] * bool(found) + _unjudged(scene)
+
+
+def _unjudged(scene):
+    """Returns a sentence about changes of colour that are unknown to lull, which judges noise without them."""
+    view = scene.view_settings
+    found = [f"the look '{view.look}'"] * (view.look != 'None') + ["gamma"] * (view.gamma != 1) + \
+        ["curves"] * view.use_curve_mapping + [f"a display of {scene.display_settings.display_device}"] * \
+        (scene.display_settings.display_device != 'sRGB')
+    return ["noise is judged without " + ", ".join(found)] if found else []
+
+
+def _collections(collection):
+    return [collection] + [c for child in collection.children for c in _collections(child)]

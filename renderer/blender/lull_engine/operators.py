@@ -1,4 +1,4 @@
-"""Shows what will look different, and exports the scene for the command line."""
+"""Lists differences from Cycles, and exports the scene for the command line."""
 import os
 import shlex
 import tempfile
@@ -6,10 +6,20 @@ import tempfile
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
+from .camera import resolution
 from .engine import arguments, export_scene
 from .process import Failure
 
 _REPORT = "lull: differences"
+
+
+def _exported(operator, context, *where):
+    """Returns Exported; None after an error, which the operator reports."""
+    try:
+        return export_scene(context.scene, context.view_layer.name, *where)
+    except (Failure, OSError) as e:
+        operator.report({'ERROR'}, str(e))
+        return None
 
 
 class LULL_OT_check(bpy.types.Operator):
@@ -17,13 +27,11 @@ class LULL_OT_check(bpy.types.Operator):
     bl_idname, bl_label = "lull.check", "Check Scene"
 
     def execute(self, context):
-        try:
-            with tempfile.TemporaryDirectory(prefix="lull-") as folder:
-                done = export_scene(context.scene, context.view_layer.name, folder)
-                lines = done.warnings + done.remarks
-        except (Failure, OSError) as e:
-            self.report({'ERROR'}, str(e))
+        with tempfile.TemporaryDirectory(prefix="lull-") as folder:
+            done = _exported(self, context, folder)
+        if done is None:
             return {'CANCELLED'}
+        lines = done.warnings + done.remarks
         text = bpy.data.texts.get(_REPORT) or bpy.data.texts.new(_REPORT)
         text.clear()
         text.write("\n".join(lines or ["Nothing will look different."]) + "\n")
@@ -46,19 +54,14 @@ class LULL_OT_export(bpy.types.Operator, ExportHelper):
         name, suffix = os.path.splitext(file)
         if suffix not in (".glb", ".gltf"):
             name, suffix = file, ".glb"
-        try:
-            done = export_scene(scene, context.view_layer.name, folder, name, suffix)
-        except (Failure, OSError) as e:
-            self.report({'ERROR'}, str(e))
+        done = _exported(self, context, folder, name, suffix)
+        if done is None:
             return {'CANCELLED'}
         for line in done.warnings:
             self.report({'WARNING'}, line)
         if done.backdrop:
-            self.report({'WARNING'}, f"the world is left out behind the scene: put {done['backdrop']} there")
-        scale = scene.render.resolution_percentage / 100
-        size = int(scene.render.resolution_x * scale), int(scene.render.resolution_y * scale)
-        command = ["lull", "render", *arguments(scene, done, size)]
-        self.report({'INFO'}, shlex.join(command))
+            self.report({'WARNING'}, f"the world is left out behind the scene: put {done.backdrop} there")
+        self.report({'INFO'}, shlex.join(["lull", "render", *arguments(scene, done, resolution(scene.render))]))
         return {'FINISHED'}
 
 

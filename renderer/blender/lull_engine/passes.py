@@ -1,4 +1,4 @@
-"""The passes of a render: those that lull always has, and those that the view layer asks for."""
+"""The passes of a render: passes that lull always has, and passes that the view layer asks for."""
 import json
 from dataclasses import dataclass
 from typing import Callable
@@ -14,7 +14,7 @@ _LACKED = ("vector", "uv", "shadow", "ambient_occlusion", "emit", "environment",
 
 @dataclass
 class Picture:
-    """What passes are made of: channels and attributes of an EXR, and the result of the export."""
+    """The source of passes: channels and attributes of an EXR, and the result of the export."""
     channels: dict
     attributes: dict
     exported: dict
@@ -34,20 +34,20 @@ class Pass:
         return 'VALUE' if len(self.channels) == 1 else 'VECTOR' if self.channels == "XYZ" else 'COLOR'
 
 
-def _channels(*names):
-    return lambda picture: np.stack([picture.channels[n] for n in names], -1)
+def _channels(names, prefix=""):
+    return lambda picture: np.stack([picture.channels[prefix + n] for n in names], -1)
 
 
-def _turned(*names):
+def _turned(prefix):
     """Of glTF's world, whose y is up."""
     def fill(picture):
-        x, y, z = (picture.channels[n] for n in names)
+        x, y, z = (picture.channels[prefix + c] for c in "XYZ")
         return np.stack([x, -z, y], -1)
     return fill
 
 
 def _index(which):
-    """Returns what reads the numbers of objects or materials as Blender's pass indices."""
+    """Returns a function that reads the numbers of objects or materials as Blender's pass indices."""
     def fill(picture):
         names = json.loads(picture.attributes[which + "Names"].decode())
         numbers, indices = picture.channels[which + "ID"], getattr(picture.exported, which + "s")
@@ -61,8 +61,7 @@ def _index(which):
 
 def _mist(picture):
     settings = picture.scene.world.mist_settings
-    x, y, z = (picture.channels["P." + c] for c in "XYZ")
-    away = np.stack([x, -z, y], -1) - np.array(picture.eye)
+    away = _turned("P.")(picture) - np.array(picture.eye)
     is_flat = picture.scene.camera.data.type == 'ORTHO'
     distance = picture.channels["Z"] if is_flat else np.linalg.norm(away, axis=-1)
     share = np.clip((distance - settings.start) / max(settings.depth, 1e-9), 0, 1)
@@ -82,51 +81,34 @@ def _of_group(name):
         layer = picture.exported.groups.get(name)
         if layer is None:  # nothing shines
             return np.zeros((*picture.channels["R"].shape, 3), np.float32)
-        return _channels(*(f"light.{layer}.{c}" for c in "RGB"))(picture)
+        return _channels("RGB", f"light.{layer}.")(picture)
     return fill
 
 
-_ALWAYS = (
-    Pass("Depth", "Z", "depth", _channels("Z")),
-    Pass("Normal", "XYZ", "normal", _turned("N.X", "N.Y", "N.Z")),
-    Pass("Albedo", "RGB", "albedo", _channels("albedo.R", "albedo.G", "albedo.B")),
-    Pass("Samples", "X", "", _channels("spp")),
-    Pass("Noise", "X", "noise", _channels("noise")),
-)
-
-
-_FOR_DENOISERS = [
-    Pass("Denoising Normal", "XYZ", "normal", _turned("N.X", "N.Y", "N.Z")),
-    Pass("Denoising Albedo", "RGB", "albedo", _channels("albedo.R", "albedo.G", "albedo.B")),
-    Pass("Denoising Depth", "Z", "depth", _channels("Z")),
-]
+_FIRST_HITS = (("Depth", "Z", "depth", _channels("Z")), ("Normal", "XYZ", "normal", _turned("N.")),
+               ("Albedo", "RGB", "albedo", _channels("RGB", "albedo.")))
 
 
 def wanted(scene, layer):
-    """Returns the passes of a view layer, besides Combined."""
-    found = list(_ALWAYS)
-    if scene.lull.denoise:
-        found.append(Pass("Noisy", "RGB", "", _channels("noisy.R", "noisy.G", "noisy.B")))
-    # By Cycles' names, which composites link.
-    if layer.cycles.denoising_store_passes:
-        found += _FOR_DENOISERS
-    if layer.cycles.denoising_store_passes or scene.cycles.use_denoising and layer.cycles.use_denoising:
-        found.append(Pass("Noisy Image", "RGBA", "", _noisy))
-    if layer.cycles.pass_debug_sample_count:
-        found.append(Pass("Debug Sample Count", "X", "", _channels("spp")))
-    if layer.use_pass_position:
-        found.append(Pass("Position", "XYZ", "position", _turned("P.X", "P.Y", "P.Z")))
-    if layer.use_pass_mist and scene.world:
-        found.append(Pass("Mist", "Z", "position,alpha", _mist))
-    if layer.use_pass_object_index:
-        found.append(Pass("IndexOB", "X", "object", _index("object")))
-    if layer.use_pass_material_index:
-        found.append(Pass("IndexMA", "X", "material", _index("material")))
+    """Returns the passes of a view layer, besides Combined. Denoising ..., Noisy Image and Debug Sample Count are
+    names of Cycles, which composites link."""
+    of_cycles, stores = layer.cycles, layer.cycles.denoising_store_passes
+    found = [Pass(*hit) for hit in _FIRST_HITS]
+    found += [Pass("Samples", "X", "", _channels(["spp"])), Pass("Noise", "X", "noise", _channels(["noise"]))]
+    found += [Pass("Denoising " + name, *rest) for name, *rest in _FIRST_HITS if stores]
+    found += [Pass(*rest) for is_wanted, *rest in (
+        (scene.lull.denoise, "Noisy", "RGB", "", _channels("RGB", "noisy.")),
+        (stores or scene.cycles.use_denoising and of_cycles.use_denoising, "Noisy Image", "RGBA", "", _noisy),
+        (of_cycles.pass_debug_sample_count, "Debug Sample Count", "X", "", _channels(["spp"])),
+        (layer.use_pass_position, "Position", "XYZ", "position", _turned("P.")),
+        (layer.use_pass_mist and scene.world, "Mist", "Z", "position,alpha", _mist),
+        (layer.use_pass_object_index, "IndexOB", "X", "object", _index("object")),
+        (layer.use_pass_material_index, "IndexMA", "X", "material", _index("material"))) if is_wanted]
     layers = min(_LAYERS, -(-layer.pass_cryptomatte_depth // 2))
     for kind in "Object", "Material":
         if getattr(layer, "use_pass_cryptomatte_" + kind.lower()):
             names = [f"Crypto{kind}{i:02}" for i in range(layers)]
-            found += [Pass(n, "rgba", "cryptomatte", _channels(*(f"{n}.{c}" for c in "RGBA"))) for n in names]
+            found += [Pass(n, "rgba", "cryptomatte", _channels("RGBA", n + ".")) for n in names]
     return found + [Pass("Combined_" + g.name, "RGB", "", _of_group(g.name)) for g in layer.lightgroups]
 
 

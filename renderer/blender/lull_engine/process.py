@@ -1,20 +1,22 @@
-"""Runs lull as a process, with its messages and images as events."""
+"""Runs lull as a process, with its messages and images as events. Images come in the protocol of tev (`--display`)."""
 import ctypes
 import json
 import os
 import selectors
 import signal
 import socket
+import struct
 import subprocess
 import sys
 
-from .display import Stream
+import numpy as np
 
 
 class Failure(Exception):
     """An error to show to the user."""
 
 
+_UPDATE = 6  # of the kinds of messages; the others change no pixels
 _LIBC = ctypes.CDLL(None) if sys.platform == "linux" else None
 
 
@@ -31,7 +33,7 @@ def ended(code):
 
 
 def run(command, stopped, heard):
-    """Runs a command, and calls `heard` with what it prints. Returns its exit code, its output, and whether `stopped` returned true."""
+    """Runs a command, and calls `heard` with its output. Returns its exit code, its output, and whether `stopped` returned true."""
     with _start(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as process:
         with selectors.DefaultSelector() as selector:
             selector.register(process.stdout, selectors.EVENT_READ)
@@ -119,3 +121,45 @@ def _receive(connection):
         return connection.recv(1 << 20)
     except ConnectionError:
         return b""
+
+
+def _text(message, at):
+    end = message.index(b"\0", at)
+    return message[at:end].decode(), end + 1
+
+
+def _decode(message):
+    """Returns x, y (from the upper left) and the channels by name of an update; None for other messages."""
+    if message[4] != _UPDATE:
+        return None
+    _, at = _text(message, 6)
+    count, = struct.unpack_from("<i", message, at)
+    at += 4
+    names = []
+    for _ in range(count):
+        name, at = _text(message, at)
+        names.append(name)
+    x, y, width, height = struct.unpack_from("<4i", message, at)
+    # The skipped bytes are the positions of channels; lull's pixels have adjacent channels.
+    values = np.frombuffer(message, "<f4", width * height * count, at + 16 + 16 * count)
+    values = values.reshape(height, width, count)
+    return x, y, {name: values[:, :, i] for i, name in enumerate(names)}
+
+
+class Stream:
+    """Reassembles the messages of a connection."""
+
+    def __init__(self):
+        self.bytes = bytearray()
+
+    def feed(self, data):
+        """Appends bytes, and yields completed updates."""
+        self.bytes += data
+        while len(self.bytes) >= 5:
+            size, = struct.unpack_from("<I", self.bytes)
+            if len(self.bytes) < size:
+                return
+            message = bytes(self.bytes[:size])
+            del self.bytes[:size]
+            if update := _decode(message):
+                yield update

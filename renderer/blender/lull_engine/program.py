@@ -1,4 +1,5 @@
 """The program lull: which one runs, and the add-on's preferences."""
+import functools
 import os
 import shutil
 import subprocess
@@ -10,7 +11,6 @@ from .process import Failure
 
 _OWN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "program", "bin", "lull")
 _VERSION = "0.1.0"  # of the add-on, and so of the program
-_known = {}  # versions, or Failures, by path and time of change
 
 
 def _found():
@@ -26,15 +26,14 @@ def _found():
 
 def _version_of(path):
     """Returns the version of a program, which is asked once. Raises: Failure."""
-    key = path, os.path.getmtime(path)
-    if key not in _known:
-        _known[key] = _asked(path)
-    if isinstance(_known[key], Failure):
-        raise _known[key]
-    return _known[key]
+    found = _asked(path, os.path.getmtime(path))
+    if isinstance(found, Failure):
+        raise found
+    return found
 
 
-def _asked(path):
+@functools.lru_cache
+def _asked(path, _time_of_change):
     """Returns the version of a program, or a Failure."""
     try:
         ran = subprocess.run([path, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
@@ -72,7 +71,7 @@ class LULL_OT_test(bpy.types.Operator):
     bl_idname, bl_label = "lull.test", "Test"
 
     def execute(self, _context):
-        _known.clear()
+        _asked.cache_clear()
         line, is_right = _told()
         self.report({'INFO'} if is_right else {'ERROR'}, line)
         return {'FINISHED'} if is_right else {'CANCELLED'}

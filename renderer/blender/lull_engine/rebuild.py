@@ -1,4 +1,4 @@
-"""Makes nodes in another Blender of what nodes.described() returned."""
+"""Makes nodes in another Blender from the result of nodes.described()."""
 import bpy
 from mathutils import Matrix
 
@@ -17,9 +17,9 @@ def built(tree, described):
             node = _copy(_found(item["copy"]), tree)
         for name, value in item["set"].items():
             setattr(node, name, value)
-        if rows := item.get("object"):  # which may be moved by what is in the session alone
+        if rows := item.get("object"):  # which the session may have moved
             node.object = bpy.data.objects.new("lull place", None)
-            node.object.matrix_world = Matrix([rows[i:i + 4] for i in range(0, 16, 4)])
+            node.object.matrix_world = Matrix(rows)
         for socket, value in zip(node.inputs, item["inputs"]):
             if "from" in value:
                 tree.links.new(_output(made, *value["from"]), socket)

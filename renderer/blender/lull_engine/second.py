@@ -41,7 +41,7 @@ def change(name, pixels):
 
 def baked(baker, bodies, each):
     if each["over"] == 'all':
-        return baker.plain(each["nodes"], each.get("object"))
+        return baker.plain(each["nodes"], each["object"])
     if each["over"] == 'uv':
         return baker.over_uvs(each["nodes"], each["names"], each["size"])
     return baker.over_mesh(each["nodes"], bodies[str(each["body"])], each["size"], each["slots"], each["kind"])
@@ -63,8 +63,7 @@ def main():
         np.save(os.path.join(folder, f"uv{number}.npy"), made.uvs())
         if body["moves"]:
             vectors = {slot: made.displace(baker, described, body["size"], [slot]) for slot, described in body["moves"]}
-            points = displacement.moved(*(arrays[n] for n in ("points", "corners", "starts", "slots")),
-                                        np.array(body["matrix"]).reshape(4, 4), vectors)
+            points = displacement.moved(*(arrays[n] for n in ("points", "corners", "starts", "slots")), np.array(body["matrix"]), vectors)
             np.save(os.path.join(folder, f"normals{number}.npy"), made.move(points))
             np.save(os.path.join(folder, f"points{number}.npy"), points.astype(np.float32))
     failed = []

@@ -1,17 +1,18 @@
-"""What a render shows, however it came about: objects, instances, particles, metaballs and text, as places of meshes. Copies share
+"""All that a render shows: objects, instances, particles, metaballs and text, as places of meshes. Copies share
 their mesh."""
 from dataclasses import dataclass
 
 from mathutils import Matrix
 
 from . import meshes, normals, strands
+from .nodes import all_nodes
 
 _MESHES = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT'}
 _CURVES = {'CURVE', 'SURFACE', 'FONT'}
 _UNSEEN = {'CAMERA', 'LIGHT', 'EMPTY', 'ARMATURE', 'LATTICE', 'SPEAKER', 'LIGHT_PROBE',
            'GPENCIL', 'GREASEPENCIL'}  # which Blender draws over pictures of all engines
-_BOUNCES = "diffuse", "glossy", "transmission"
-SEEING_RAYS = "camera", "volume_scatter", *_BOUNCES
+BOUNCES = "diffuse", "glossy", "transmission"
+SEEING_RAYS = "camera", "volume_scatter", *BOUNCES
 _TEXTURES = {'TEX_NOISE', 'TEX_MUSGRAVE', 'TEX_VORONOI', 'TEX_WAVE', 'TEX_MAGIC', 'TEX_CHECKER', 'TEX_BRICK', 'TEX_GRADIENT'}
 
 
@@ -105,7 +106,7 @@ class Collector:
             self._place(instance, mesh, away)
 
     def _key(self, o):
-        """Returns what copies of a mesh share: data and materials, and the object if they ask who they are on."""
+        """Returns the key that copies of a mesh share: data and materials, and the object if they ask for it."""
         data, original = o.data, o.original
         known = data.as_pointer() if data else 0, original
         if known not in self._keys:
@@ -121,7 +122,8 @@ class Collector:
             is_mesh = o.type == 'MESH' and not o.data.is_editmode
             data = o.data if is_mesh else o.to_mesh()
             materials = [slot.material for slot in o.material_slots]
-            asks = any(m and m.use_nodes and _asks_generated(m.node_tree) for m in [*materials, self._override])
+            asks = any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n)
+                       for m in [*materials, self._override] if m and m.use_nodes for n in all_nodes(m.node_tree))
             mesh = meshes.of_blender(data, original.name, asks) if data else None
             if mesh is not None:
                 mesh.materials = materials or [None]
@@ -148,7 +150,7 @@ class Collector:
         return self._asked[key]
 
     def _note_copies(self):
-        """Notes those of the materials of copies that ask which copy they are on."""
+        """Notes materials of copies that depend on the copy."""
         copied = {m.name_full: m for key, n in self._copied.items() if n > 1 for m in self._meshes[key].materials if m}
         for material in copied.values():
             if self._asks(material, True):
@@ -186,7 +188,7 @@ def is_flat(matrix):
 
 def _asks(tree, is_copy):
     """Returns whether nodes tell objects apart, or copies of one."""
-    for node in tree.nodes:
+    for node in all_nodes(tree):
         used = {o.name for o in node.outputs if o.is_linked}
         is_placed = node.type == 'NEW_GEOMETRY' and 'Position' in used or \
             node.type == 'TEX_COORD' and (node.object and 'Object' in used or used & {'Camera', 'Window'}) or node.type == 'CAMERA'
@@ -195,7 +197,7 @@ def _asks(tree, is_copy):
         is_copied = is_copy and (node.type == 'PARTICLE_INFO' and used or
                                  node.type == 'ATTRIBUTE' and node.attribute_type == 'INSTANCER' or
                                  getattr(node, "from_instancer", False) and used)
-        if is_placed or is_named or is_copied or node.type == 'GROUP' and node.node_tree and _asks(node.node_tree, is_copy):
+        if is_placed or is_named or is_copied:
             return True
     return False
 
@@ -205,25 +207,18 @@ def reads_generated(node):
     return node.type in _TEXTURES and not node.inputs['Vector'].is_linked
 
 
-def _asks_generated(tree):
-    return any(n.type == 'TEX_COORD' and n.outputs['Generated'].is_linked or reads_generated(n) or
-               n.type == 'GROUP' and n.node_tree and _asks_generated(n.node_tree) for n in tree.nodes)
-
-
 def _note_of(original, notes):
-    for system in original.particle_systems:
-        settings = system.settings
-        if settings.render_type in ('LINE', 'HALO') or settings.type != 'HAIR' and settings.render_type == 'PATH':
-            notes.add("without particles that are lines or points", original.name)
-    if getattr(original.cycles, "use_adaptive_subdivision", False):
-        notes.add("subdivided as its modifier says, not adaptively", original.name)
-    if original.is_shadow_catcher or original.is_holdout:
-        notes.add("shown as surfaces, not as shadow catchers or holdouts", original.name)
-    if not all(is_seen(original, (ray,)) for ray in _BOUNCES):
-        notes.add("seen by light that other surfaces reflect, whatever its visibility", original.name)
     offset = getattr(original, "shadow_terminator_shading_offset", 0) or getattr(original.cycles, "shadow_terminator_offset", 0)
-    if offset > 0 and any(p.use_smooth for p in getattr(original.data, "polygons", ())):
-        notes.add("brighter near the edge of its own shadow, without its Shading Offset", original.name)
+    notes.add_true({
+        "without particles that are lines or points": any(
+            s.render_type in ('LINE', 'HALO') or s.type != 'HAIR' and s.render_type == 'PATH'
+            for s in (system.settings for system in original.particle_systems)),
+        "subdivided as its modifier says, not adaptively": getattr(original.cycles, "use_adaptive_subdivision", False),
+        "shown as surfaces, not as shadow catchers or holdouts": original.is_shadow_catcher or original.is_holdout,
+        "seen by light that other surfaces reflect, whatever its visibility": not all(is_seen(original, (ray,)) for ray in BOUNCES),
+        "brighter near the edge of its own shadow, without its Shading Offset":
+            offset > 0 and any(p.use_smooth for p in getattr(original.data, "polygons", ())),
+    }, original.name)
     note_linking(original, notes)
 
 

@@ -2,6 +2,7 @@
 import numpy as np
 
 from . import meshes
+from .nodes import all_nodes
 
 STRANDS = "lull strand"  # UVs: a random number, and the way along a strand; 0, 0 on other surfaces
 _SIDES, _MOST = (3, 8), 1_000_000  # of tubes, at least and at most; vertices, beyond which tubes have fewer sides
@@ -119,7 +120,7 @@ def _tubes(name, points, radii, material, uvs):
     mesh.uv_of_render = "UVMap"
     if uvs is not None:
         mesh.uvs["UVMap"] = np.repeat(uvs, (steps - 1) * sides * 4, 0).astype(np.float32)
-    if material is None or not material.use_nodes or not _asks(material.node_tree):
+    if material is None or not material.use_nodes or all(n.type != 'HAIR_INFO' for n in all_nodes(material.node_tree)):
         return mesh
     way = np.arange(steps) / (steps - 1)
     told = np.empty((count, steps - 1, sides, 4, 2), np.float32)
@@ -127,8 +128,3 @@ def _tubes(name, points, radii, material, uvs):
     told[..., 1] = np.stack([way[:-1], way[:-1], way[1:], way[1:]], -1)[:, None]  # of the corners
     mesh.uvs[STRANDS] = told.reshape(-1, 2)
     return mesh
-
-
-def _asks(tree):
-    """Returns whether nodes ask for the strand."""
-    return any(n.type == 'HAIR_INFO' or n.type == 'GROUP' and n.node_tree and _asks(n.node_tree) for n in tree.nodes)

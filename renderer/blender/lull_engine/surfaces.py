@@ -1,6 +1,6 @@
 """Materials as parameters of a surface: plain values, or outputs of nodes."""
-from . import displacement, images, seen, values
-from .bsdfs import DEFAULTS, READERS, bounced
+from . import displacement, images, values
+from .bsdfs import BLACK, DEFAULTS, READERS, bounced
 from .mixtures import added, mixed
 from .nodes import Constant, Tree, is_output, upstream, value_of
 from .versions import HAS_ADDED_INTERFACE, displacement_method
@@ -10,7 +10,7 @@ _READERS = {**READERS, 'MIX_SHADER': mixed, 'ADD_SHADER': added}
 
 
 class Surface:
-    """`parameters` are those of bsdfs.DEFAULTS, and perhaps Normal; None where nothing is known of the surface. `own` are lull's own
+    """`parameters` are those of bsdfs.DEFAULTS, and perhaps Normal; None for an unknown surface. `own` are lull's own
     properties of the material."""
 
     def __init__(self, material, view, solid, notes, side=None):
@@ -27,9 +27,9 @@ class Surface:
             return
         if side:
             surface = self.root.inputs[side]
-        self.parameters = dict(DEFAULTS, **{'Base Color': (0, 0, 0)}) if surface.source is None else self.closure(surface)
+        self.parameters = dict(BLACK) if surface.source is None else self.closure(surface)
         self.absorbs = self._absorption(tree.output.inputs['Volume'].source)
-        self.kind = 'NORMAL'  # what is baked for the parameter Normal
+        self.kind = 'NORMAL'  # the kind of bake for the parameter Normal
         if self.parameters is None:
             self.note("in the viewport colour, as nothing is known of the surface")
             return
@@ -40,10 +40,10 @@ class Surface:
         self._note_what_holds_of_the_whole(moves)
 
     def _replaced(self, node, name):
-        """Lets nodes have what is known of strands, of the camera, and of images without a file; see nodes.Tree."""
+        """Replaces outputs that depend on strands, on the camera or on images without a file; see nodes.Tree."""
         path = images.missing(node.image) if node.type == 'TEX_IMAGE' else None
         if path is None:
-            return values.strand(node, name) or seen.replaced(node, name, self._view)
+            return values.strand(node, name) or values.of_camera(node, name, self._view)
         if path:
             self._notes.add("magenta, as in Cycles, as there is no such file", f"{node.image.name} ({path})", "images")
         return Constant((1., 0., 1.)).output(0, 'RGBA') if name == 'Color' else Constant(1.).output()
@@ -52,7 +52,7 @@ class Surface:
         self._notes.add(consequence, self.name, "materials")
 
     def number_of(self, name, value):
-        """Returns what a parameter of one number has of an output of a colour or vector: always the same."""
+        """Returns the number that a parameter makes of an output of a colour or vector: always the same object."""
         if isinstance(DEFAULTS.get(name), tuple) or value.type in ('VALUE', 'INT', 'BOOLEAN'):
             return value
         return self._numbers.setdefault(name, values.number(value))
@@ -63,7 +63,7 @@ class Surface:
             return None
         node = socket.source.node
         if socket.source.type != 'SHADER':  # Cycles lets colours shine
-            return dict(DEFAULTS, **{'Base Color': (0, 0, 0), 'Radiance': value_of(socket)})
+            return dict(BLACK, Radiance=value_of(socket))
         read = _READERS.get(node.type)
         return read(self, node) if read else None
 
@@ -82,21 +82,18 @@ class Surface:
 
     def _note_what_holds_of_the_whole(self, moves):
         p = self.parameters
-        if moves is not None and displacement_method(self.material) == 'BOTH':
-            self.note("displaced as finely as meshes are, without bump")
         shades = getattr(self.material, "use_transparent_shadow", None)  # Cycles' own until 4.1
-        if not (getattr(self.material.cycles, "use_transparent_shadow", True) if shades is None else shades) and \
-                (p['Alpha'] != 1 or self.is_thin):
-            self.note("letting light through where transparent")
+        if shades is None:
+            shades = getattr(self.material.cycles, "use_transparent_shadow", True)
         nodes = {n for v in p.values() if is_output(v) for n in upstream(v)}
-        if any(n.type == 'HAIR_INFO' for n in nodes):
-            self.note("without the length, width and direction of hair")
-        if any(n.type == 'TEX_POINTDENSITY' for n in nodes):
-            self.note("without the points of Point Density")
-        if any(n.type == 'ATTRIBUTE' and n.attribute_type == 'VIEW_LAYER' for n in nodes):
-            self.note("without properties of the view layer")
-        if any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for n in nodes):
-            self.note("occluded by the same object alone")
+        self._notes.add_true({
+            "displaced as finely as meshes are, without bump": moves is not None and displacement_method(self.material) == 'BOTH',
+            "letting light through where transparent": not shades and (p['Alpha'] != 1 or self.is_thin),
+            "without the length, width and direction of hair": any(n.type == 'HAIR_INFO' for n in nodes),
+            "without the points of Point Density": any(n.type == 'TEX_POINTDENSITY' for n in nodes),
+            "without properties of the view layer": any(n.type == 'ATTRIBUTE' and n.attribute_type == 'VIEW_LAYER' for n in nodes),
+            "occluded by the same object alone": any(n.type == 'AMBIENT_OCCLUSION' and not n.only_local for n in nodes),
+        }, self.name, "materials")
 
     def _absorption(self, source):
         """Returns the absorption coefficient of a homogeneous volume, per metre; None without one."""

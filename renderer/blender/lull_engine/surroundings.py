@@ -2,7 +2,8 @@
 import numpy as np
 
 from . import exr
-from .nodes import Made, Tree, described, is_output, upstream, value_of
+from .camera import resolution
+from .nodes import Made, Tree, computed, described, is_output, upstream, value_of
 
 _RAYS = "diffuse", "glossy", "transmission"
 _SMALLEST, _LARGEST = 16, 4096  # pixels across: of a plain colour, and of any world
@@ -32,10 +33,9 @@ class Surroundings:
         lit = Tree(world, self._answered) if tree else None
         surface = _pruned(lit.output.inputs['Surface'].source) if tree else None
         if tree:
-            upstream(surface)  # reads all, and finds who asks for rays
+            upstream(surface)  # reads all nodes, and finds questions for kinds of rays
         r, is_seen = scene.render, getattr(visible, "camera", True)
-        scale = r.resolution_percentage / 100
-        size = [int(r.resolution_x * scale), int(r.resolution_y * scale)]
+        size = resolution(r)
         if not r.film_transparent and (self._is_asked or not lights or not is_seen or is_sharp and plain is None):
             self.backdrop = base + ".backdrop.exr"
             if not is_seen:
@@ -58,11 +58,12 @@ class Surroundings:
             return {"name": world.name, "file": path,
                     "nodes": [output and described(output, ["worlds", world.original.name_full]) for output in outputs]}
 
-        behind = [_background(world)] if tree is None else [tree.output.inputs[name].source for name in ('Surface', 'Volume')]
+        behind = [tree.output.inputs[name].source for name in ('Surface', 'Volume')] if tree else [
+            Made('Background', 'BACKGROUND', (*world.color, 1.), 1.).output(0, 'SHADER')]
         baker.ask_world({
             "light": part(self.light, surface) if asks_light else None, "backdrop": part(self.backdrop, *behind) if asks_behind else None,
             "width": _width(surface) if asks_light else 0, "camera": view.data.original.name_full, "focus": view.focus(),
-            "matrix": [v for row in view.matrix for v in row], "resolution": size,
+            "matrix": [list(row) for row in view.matrix], "resolution": size,
             "aspect": [r.pixel_aspect_x, r.pixel_aspect_y]}, world, view.data)
 
     def black(self):
@@ -89,11 +90,7 @@ class Surroundings:
         self._is_asked = True
         if name not in ('Is Camera Ray', 'Is Diffuse Ray'):
             self._notes.say(f"the world '{self._world.name}' lights mirrors and glass as it lights diffuse surfaces")
-        return Made('Math', 'MATH', float(name in _OF_DIFFUSE_LIGHT), 0., operation='ADD').output()
-
-
-def _background(world):
-    return Made('Background', 'BACKGROUND', (*world.color, 1.), 1.).output(0, 'SHADER')
+        return computed('ADD', float(name in _OF_DIFFUSE_LIGHT), 0.)
 
 
 def _plain(world, tree):
@@ -110,7 +107,7 @@ def _plain(world, tree):
 
 
 def _pruned(output):
-    """Leaves out what other rays see, which is no part of the light."""
+    """Leaves out surfaces for other rays, which are no part of the light."""
     while output.node.type == 'MIX_SHADER' and (factor := output.node.inputs[0].source) is not None and isinstance(factor.node, Made):
         seen = output.node.inputs[1 + int(factor.node.inputs[0].default_value)].source
         if seen is None:

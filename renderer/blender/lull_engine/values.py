@@ -1,8 +1,8 @@
-"""Values of surfaces' parameters: numbers, colours as three numbers, and outputs of nodes. What is made of outputs are nodes of our own."""
-from .nodes import Made, is_output, upstream
+"""Values of surfaces' parameters: numbers, colours as three numbers, and outputs of nodes. Operations on outputs make nodes of our own."""
+from .nodes import Made, computed, is_output, upstream
 from .strands import STRANDS
 
-# What depends on the direction from which a surface is seen, or on who asks.
+# Nodes that depend on the direction from which a surface is seen, or on the kind of ray.
 _BY_VIEW = {'FRESNEL', 'LAYER_WEIGHT', 'LIGHT_PATH', 'CAMERA', 'LIGHT_FALLOFF', 'TEX_IES'}
 _OUTPUTS_BY_VIEW = {'NEW_GEOMETRY': {'Backfacing', 'Incoming'}, 'TEX_COORD': {'Camera', 'Window', 'Reflection'}}
 _BY_OBJECT = {'OBJECT_INFO', 'ATTRIBUTE'}  # the latter of objects alone
@@ -72,17 +72,62 @@ def clamped(factor):
 
 def number(value):
     """Returns the number that nodes make of an output of a colour or vector."""
-    return Made('Math', 'MATH', value, 0.0, operation='ADD').output()
+    return computed('ADD', value, 0.0)
 
 
 def strand(node, name):
-    """Replaces what the nodes of a material ask of the strand by what UV maps know; see nodes.Tree."""
+    """Replaces an output that depends on the strand by its UV map; see nodes.Tree."""
     if node.type != 'HAIR_INFO' or name not in ('Is Strand', 'Intercept', 'Random'):
         return None
     parts = Made('SeparateXYZ', 'SEPXYZ', Made('UVMap', 'UVMAP', uv_map=STRANDS).output(0, 'VECTOR'))
     if name == 'Is Strand':
-        return Made('Math', 'MATH', parts.output(0), 0.0, operation='GREATER_THAN').output()
+        return computed('GREATER_THAN', parts.output(0), 0.0)
     return parts.output(1 if name == 'Intercept' else 0)
+
+
+def of_camera(node, name, view):
+    """Replaces an output that depends on the camera (camera.View) by nodes of the place; see nodes.Tree. In Cycles, too, it is the same for
+    all rays."""
+    if node.type == 'TEX_COORD' and name in ('Camera', 'Window') or node.type == 'CAMERA':
+        at = _turned(Made('NewGeometry', 'NEW_GEOMETRY').output(0, 'VECTOR', "Position"), view, 1)
+        if name == 'Window':
+            return _in_frame(at, view)
+        if name == 'View Z Depth':
+            return at[2]
+        made = _vector(*at)
+        if node.type == 'TEX_COORD':
+            return made
+        return _vectors('NORMALIZE' if name == 'View Vector' else 'LENGTH', made)
+    if node.type == 'VECT_TRANSFORM' and node.convert_to == 'CAMERA' != node.convert_from:
+        source = node.inputs[0].source or node.inputs[0].default_value
+        in_world = Made('VectorTransform', 'VECT_TRANSFORM', source, vector_type=node.vector_type, convert_from=node.convert_from,
+                        convert_to='WORLD').output(0, 'VECTOR')
+        made = _vector(*_turned(in_world, view, node.vector_type == 'POINT'))
+        return _vectors('NORMALIZE', made) if node.vector_type == 'NORMAL' else made
+    return None
+
+
+def _vector(*parts):
+    return Made('CombineXYZ', 'COMBXYZ', *parts).output(0, 'VECTOR')
+
+
+def _vectors(operation, *values):
+    is_number = operation in ('LENGTH', 'DOT_PRODUCT')
+    return Made('VectorMath', 'VECT_MATH', *values, operation=operation).output(int(is_number), 'VALUE' if is_number else 'VECTOR')
+
+
+def _turned(vector, view, is_point):
+    """Returns the three coordinates along the axes of the camera, the last one forwards."""
+    rows = view.matrix.normalized().inverted()
+    return [computed('ADD', _vectors('DOT_PRODUCT', vector, tuple(sign * v for v in row[:3])), sign * row[3] * is_point)
+            for sign, row in zip((1, 1, -1), rows)]
+
+
+def _in_frame(at, view):
+    """Returns where in the picture, from its lower left corner to its upper right one."""
+    apart = [a if view.data.type == 'ORTHO' else computed('DIVIDE', a, at[2]) for a in at[:2]]
+    return _vector(*(computed('ADD', computed('DIVIDE', a, size), 0.5 - shift)
+                     for a, size, shift in zip(apart, view.extent(), view.shift())), 0.)
 
 
 def is_even(output):
@@ -91,7 +136,7 @@ def is_even(output):
 
 
 def is_by_view(output):
-    """Returns whether an output depends on the direction from which a surface is seen, or on who asks."""
+    """Returns whether an output depends on the direction from which a surface is seen, or on the kind of ray."""
     return any(n.type in _BY_VIEW or used & _OUTPUTS_BY_VIEW.get(n.type, set()) or
                n.type == 'VECT_TRANSFORM' and 'CAMERA' in (n.convert_from, n.convert_to) for n, used in upstream(output).items())
 
@@ -127,7 +172,7 @@ def _moves(node):
 
 
 def _above_images(output):
-    """Yields the nodes on which a value depends, but those that place images."""
+    """Yields the nodes on which a value depends, without the nodes that place images."""
     seen, todo = set(), [output.node]
     while todo:
         node = todo.pop()

@@ -3,7 +3,7 @@ import bpy
 
 TESTED = (3, 4), (4, 3)
 
-# Inputs of the Principled BSDF, by our names: those until and from Blender 4.
+# Inputs of the Principled BSDF, by our names: until and from Blender 4.
 _PRINCIPLED = {
     'Specular': ('Specular', 'Specular IOR Level'),
     'Transmission': ('Transmission', 'Transmission Weight'),

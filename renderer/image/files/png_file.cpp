@@ -336,18 +336,10 @@ std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int h
     return Encode([&](PngWriter* writer) { WriteRows(writer, srgb, width, height, true); });
 }
 
-void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height) {
-    WritePng(path, pixels, width, height, PngFormat());
-}
-
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
               const PngFormat& format) {
     CheckFits(path, pixels.size() * 3, width, height);
     WritePng(path, RowsOf(pixels, width), width, height, format);
-}
-
-void WritePng(const std::string& path, const RowSource& rows, int width, int height) {
-    WritePng(path, rows, width, height, PngFormat());
 }
 
 void WritePng(const std::string& path, const RowSource& rows, int width, int height,

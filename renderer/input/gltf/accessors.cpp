@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "renderer/base/memory.h"
 
@@ -50,23 +51,19 @@ T Load(const unsigned char* bytes) {
 
 // Returns one component; normalised ones as the specification says (3.11).
 float Component(const unsigned char* bytes, int type, bool normalized) {
+    const auto scaled = [normalized](auto v) {
+        constexpr auto kMost = float(std::numeric_limits<decltype(v)>::max());
+        return normalized ? std::max(float(v) / kMost, -1.f) : float(v);
+    };
     switch (type) {
-        case kByte: {
-            const auto v = float(Load<int8_t>(bytes));
-            return normalized ? std::max(v / 127, -1.f) : v;
-        }
-        case kUnsignedByte: {
-            const auto v = float(Load<uint8_t>(bytes));
-            return normalized ? v / 255 : v;
-        }
-        case kShort: {
-            const auto v = float(Load<int16_t>(bytes));
-            return normalized ? std::max(v / 32767, -1.f) : v;
-        }
-        case kUnsignedShort: {
-            const auto v = float(Load<uint16_t>(bytes));
-            return normalized ? v / 65535 : v;
-        }
+        case kByte:
+            return scaled(Load<int8_t>(bytes));
+        case kUnsignedByte:
+            return scaled(Load<uint8_t>(bytes));
+        case kShort:
+            return scaled(Load<int16_t>(bytes));
+        case kUnsignedShort:
+            return scaled(Load<uint16_t>(bytes));
         case kUnsignedInt:
             return float(Load<uint32_t>(bytes));
         default:

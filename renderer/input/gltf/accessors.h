@@ -31,4 +31,12 @@ GltfArray ReadFloats(const GltfDocument&, int accessor, int least, int most,
 // Reads an accessor of indices. Throws Error unless they are unsigned integers below `bound`.
 std::vector<uint32_t> ReadIndices(const GltfDocument&, int accessor, size_t bound);
 
+// Undoes the compression of meshes.
+
+// Decodes views compressed by EXT_meshopt_compression and primitives compressed by
+// KHR_draco_mesh_compression into buffers of their own, so that nothing else needs to know about
+// them. Throw Error.
+void DecodeMeshopt(GltfDocument*);
+void DecodeDraco(GltfDocument*);
+
 }  // namespace lull

@@ -1,5 +1,4 @@
-#include "renderer/input/gltf/animations.h"
-
+// Poses nodes by animations, and meshes by skins.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +10,8 @@
 #include "renderer/base/math.h"
 #include "renderer/files/file_io.h"
 #include "renderer/input/gltf/accessors.h"
-#include "renderer/input/gltf/json_at.h"
+#include "renderer/input/gltf/nodes.h"
+#include "renderer/input/gltf/primitives.h"
 
 namespace lull {
 namespace {
@@ -118,8 +118,11 @@ void PoseChannel(double seconds, const tinygltf::Animation& animation,
     target->assign(value.begin(), value.end());
 }
 
-}  // namespace
-
+// Gives all nodes that an animation moves the transforms and weights that it has at a time in
+// seconds, as if the file held these; before its first key and after its last one it stands still.
+// `wanted` is the name or the number, from 0, of an animation; empty: all together, with a warning
+// if some move the same, of which the first counts. Throws Error if there is none of that name, or
+// for keys that are wrong.
 void PoseAt(double seconds, const std::string& wanted, GltfDocument* document, Warnings& warnings) {
     std::map<std::pair<int, std::string>, size_t> posed;  // by which animation
     std::set<size_t> contradicting;
@@ -144,6 +147,8 @@ void PoseAt(double seconds, const std::string& wanted, GltfDocument* document, W
                         "same; --animation NAME|N chooses one",
                         contradicting.size(), document->model.animations.size()));
 }
+
+}  // namespace
 
 std::vector<GltfNode> PoseNodes(const GltfOptions& options, GltfDocument* document,
                                 Warnings& warnings) {

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "renderer/base/math.h"
-#include "renderer/input/gltf/json_at.h"
 #include "renderer/input/gltf/materials.h"
 
 namespace lull {
@@ -49,12 +48,6 @@ const View& Choose(const GltfDocument& document, const std::vector<View>& views,
     return views[ChooseByName(document, "camera", names, wanted)];
 }
 
-void SetFilm(double aspect, const FileLoc& loc, Description* description) {
-    const ParameterWriter film(&description->film.parameters, loc);
-    film.Int("xresolution", int(std::clamp(std::round(kHeight * aspect), 1.0, 16.0 * kHeight)));
-    film.Int("yresolution", kHeight);
-}
-
 // Sets a camera that shows the plane at distance 1 from -x to x and -y to y, whatever aspect the
 // image gets. The usual one is x / y; where the file has none, `x` is 0, and only y is fixed.
 void SetCamera(const char* projection, double x, double y, const FileLoc& loc,
@@ -62,7 +55,10 @@ void SetCamera(const char* projection, double x, double y, const FileLoc& loc,
     description->camera = {projection, {}, loc};
     ParameterWriter(&description->camera.parameters, loc)
         .Floats(ParameterType::Float, "screenfit", {float(x), float(y)});
-    SetFilm(x > 0 ? x / y : kDefaultAspect, loc, description);
+    const double aspect = x > 0 ? x / y : kDefaultAspect;
+    const ParameterWriter film(&description->film.parameters, loc);
+    film.Int("xresolution", int(std::clamp(std::round(kHeight * aspect), 1.0, 16.0 * kHeight)));
+    film.Int("yresolution", kHeight);
 }
 
 // Takes the vertical field of view in radians, and the aspect or 0.

@@ -9,7 +9,6 @@
 #include "renderer/input/description.h"
 #include "renderer/input/gltf/document.h"
 #include "renderer/input/gltf/nodes.h"
-#include "renderer/input/gltf_loader.h"
 
 namespace lull {
 

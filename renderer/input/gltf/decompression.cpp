@@ -1,9 +1,7 @@
-#include "renderer/input/gltf/decompression.h"
-
+// Undoes the compression of meshes.
 #include <draco/compression/decode.h>
 #include <fmt/format.h>
 #include <meshoptimizer.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +9,6 @@
 
 #include "renderer/base/memory.h"
 #include "renderer/input/gltf/accessors.h"
-#include "renderer/input/gltf/uri.h"
 
 namespace lull {
 namespace {
@@ -210,39 +207,6 @@ void DecodeMeshopt(GltfDocument* document) {
         view.byteStride = stride;
         model.buffers.push_back(std::move(decoded));
     }
-}
-
-bool HideCompressed(nlohmann::json* root) {
-    bool hasChanged = false;
-    const auto has = [](const nlohmann::json& o, const char* extension) {
-        return o.contains("extensions") && o.at("extensions").contains(extension);
-    };
-    const auto each = [](nlohmann::json* owner, const char* name, const auto& f) {
-        if (owner->contains(name))
-            for (nlohmann::json& one : owner->at(name)) f(one);
-    };
-    // The stand-in of compressed data is not read, unless a view without them lies in it.
-    const auto isRead = [&](const nlohmann::json* buffer) {
-        bool is = false;
-        each(root, "bufferViews", [&](const nlohmann::json& view) {
-            is |= &root->at("buffers").at(view.at("buffer").get<size_t>()) == buffer &&
-                  !has(view, kMeshoptExtension);
-        });
-        return is;
-    };
-    each(root, "buffers", [&](nlohmann::json& buffer) {
-        if (!has(buffer, kMeshoptExtension) || (buffer.contains("uri") && isRead(&buffer))) return;
-        buffer["uri"] = kOneByteUri;
-        buffer["byteLength"] = 1;
-        hasChanged = true;
-    });
-    each(root, "meshes", [&](nlohmann::json& mesh) {
-        each(&mesh, "primitives", [&](nlohmann::json& primitive) {
-            if (has(primitive, "KHR_draco_mesh_compression"))
-                hasChanged |= primitive.erase("indices") > 0;
-        });
-    });
-    return hasChanged;
 }
 
 }  // namespace lull

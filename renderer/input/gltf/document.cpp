@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -10,34 +12,33 @@
 #include <nlohmann/json.hpp>
 
 #include "renderer/files/file_io.h"
-#include "renderer/input/gltf/decompression.h"
+#include "renderer/input/gltf/accessors.h"
 #include "renderer/input/gltf/json_at.h"
-#include "renderer/input/gltf/repair.h"
-#include "renderer/input/gltf/uri.h"
 #include "renderer/input/gltf/validation.h"
 
 namespace lull {
 namespace {
 
-constexpr const char* kModelled[] = {"EXT_mesh_gpu_instancing",
-                                     "EXT_meshopt_compression",
-                                     "EXT_texture_webp",
-                                     "KHR_draco_mesh_compression",
-                                     "KHR_lights_punctual",
-                                     "KHR_materials_anisotropy",
-                                     "KHR_materials_clearcoat",
-                                     "KHR_materials_diffuse_transmission",
-                                     "KHR_materials_emissive_strength",
-                                     "KHR_materials_ior",
-                                     "KHR_materials_sheen",
-                                     "KHR_materials_specular",
-                                     "KHR_materials_transmission",
-                                     "KHR_materials_unlit",
-                                     "KHR_materials_variants",
-                                     "KHR_materials_volume",
-                                     "KHR_mesh_quantization",
-                                     "KHR_node_visibility",
-                                     "KHR_texture_transform"};
+constexpr std::string_view kScheme = "data:", kEncoding = "base64";
+const std::string kData = "data:application/octet-stream;base64,";
+
+bool EqualsInLowerCase(std::string_view text, std::string_view lower) {
+    return std::ranges::equal(text, lower, {},
+                              [](char c) { return std::tolower(static_cast<unsigned char>(c)); });
+}
+
+bool IsHexDigit(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
+
+// clang-format off
+constexpr const char* kModelled[] = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",
+    "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat", "KHR_materials_diffuse_transmission",
+    "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_sheen",
+    "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_variants", "KHR_materials_volume", "KHR_mesh_quantization",
+    "KHR_node_visibility", "KHR_texture_transform"};
+// clang-format on
 
 bool IsModelled(const std::string& extension) {
     return std::any_of(std::begin(kModelled), std::end(kModelled),
@@ -75,38 +76,15 @@ std::string_view JsonOf(const std::string& file, std::string_view bytes) {
     return bytes.substr(kGlbHeader + kChunkHeader, length);
 }
 
-// Returns whether the second chunk of a .glb, the first of its `rest`, is empty, or not padded to
-// the alignment of 4 bytes.
-bool HasOddChunk(std::string_view rest) {
-    if (rest.size() < kChunkHeader) return false;
-    const uint32_t length = LittleEndian(rest.data());
-    return length == 0 || (length % 4 != 0 && length <= rest.size() - kChunkHeader);
-}
-
-// Returns the file with other JSON in it. That of a .glb is padded with spaces to its alignment, as
-// is its second chunk by NULs, which is left out where it is empty.
-std::string WithJson(std::string_view bytes, std::string json) {
-    if (!IsBinary(bytes)) return json;
-    const auto number = [](size_t n) {
-        std::string b;
-        for (int i = 0; i < 4; ++i) b += char(n >> (8 * i) & 255);
-        return b;
-    };
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    const size_t start = kGlbHeader + kChunkHeader;
-    std::string rest(bytes.substr(start + LittleEndian(bytes.data() + 12)));
-    if (HasOddChunk(rest)) {
-        const size_t length = LittleEndian(rest.data()), padded = (length + 3) / 4 * 4;
-        if (length == 0) {
-            rest.erase(0, kChunkHeader);
-        } else {
-            rest.resize(kChunkHeader + length);
-            rest.resize(kChunkHeader + padded, '\0');
-            rest.replace(0, 4, number(padded));
-        }
-    }
-    return "glTF" + number(2) + number(start + json.size() + rest.size()) + number(json.size()) +
-           "JSON" + json + rest;
+// Returns the data of a .glb behind its JSON of `jsonBytes`; empty: there are none.
+std::string_view DataOf(const std::string& file, std::string_view bytes, size_t jsonBytes) {
+    if (!IsBinary(bytes)) return {};
+    const std::string_view rest = bytes.substr(kGlbHeader + kChunkHeader + jsonBytes);
+    if (rest.size() < kChunkHeader || rest.substr(4, 4) != std::string_view("BIN\0", 4)) return {};
+    const size_t length = LittleEndian(rest.data());
+    if (length > rest.size() - kChunkHeader)
+        throw Error(fmt::format("{}: its data of {} bytes go beyond its end", file, length));
+    return rest.substr(kChunkHeader, length);
 }
 
 std::string ProblemOf(const std::string& extension) {
@@ -149,57 +127,64 @@ void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnin
     CheckUnlisted(file, "", root, used, warnings);
 }
 
-// Gives buffers the length of their data where that is greater, as it may be (3.6.1.1): the library
-// refuses it. Returns whether any has changed.
-bool LengthenBuffers(const std::string& folder, nlohmann::json* root) {
-    if (!root->contains("buffers")) return false;
-    bool hasChanged = false;
+using Bytes = std::vector<unsigned char>;
+
+// Reads the buffers, of which one without a URI is `data`, and tells the library their numbers in
+// place of names of files. They may be longer than they say (3.6.1.1).
+std::vector<Bytes> TakeBuffers(const std::filesystem::path& folder, std::string_view data,
+                               nlohmann::json* root, GltfDocument* document) {
+    std::vector<Bytes> buffers;
+    if (!root->contains("buffers")) return buffers;
     for (nlohmann::json& buffer : root->at("buffers")) {
-        if (!buffer.contains("uri")) continue;
-        const auto& uri = buffer.at("uri").get_ref<const std::string&>();
-        uintmax_t size = 0;
-        if (const auto data = IsDataUri(uri) ? Base64Of(uri) : std::nullopt) {
-            size = data->find_last_not_of('=') + 1;
-            size = size * 3 / 4;
+        const FileLoc loc = document->At(fmt::format("/buffers/{}", buffers.size()));
+        Bytes& bytes = buffers.emplace_back();
+        const std::string uri = buffer.value("uri", "");
+        if (!buffer.contains("uri")) {
+            bytes.assign(data.begin(), data.end());
+        } else if (IsDataUri(uri)) {
+            std::string type;
+            tinygltf::DecodeDataURI(&bytes, type, kData + Base64Of(uri).value_or(""), 0, false);
         } else {
-            std::error_code error;
-            size =
-                std::filesystem::file_size(std::filesystem::path(folder) / DecodeUri(uri), error);
-            if (error) continue;
+            document->bufferFiles.push_back((folder / DecodeUri(uri)).string());
+            const FileContents contents = ReadFile(document->bufferFiles.back(), loc);
+            bytes.assign(contents.View().begin(), contents.View().end());
         }
-        if (size <= buffer.at("byteLength").get<uintmax_t>()) continue;
-        buffer.at("byteLength") = size;
-        hasChanged = true;
+        const auto length = buffer.at("byteLength").get<size_t>();
+        if (bytes.size() < length)
+            throw Error(loc, fmt::format("has {} of its {} bytes", bytes.size(), length));
+        buffer["uri"] = std::to_string(buffers.size() - 1);
+        buffer["byteLength"] = bytes.size();
     }
-    return hasChanged;
+    return buffers;
 }
 
-// Reads the files that buffers lie in.
-bool FileExists(const std::string& path, void*) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(path, error);
+// Gives the data URIs of images a media type that the library knows: it takes others for names of
+// files, or loses their data.
+void UnifyImages(nlohmann::json* root) {
+    if (!root->contains("images")) return;
+    for (nlohmann::json& image : root->at("images")) {
+        const std::string uri = image.value("uri", ""), jpeg = "data:image/jpeg;base64,";
+        if (IsDataUri(uri))
+            image["uri"] = (uri.starts_with(jpeg) ? jpeg : kData) + Base64Of(uri).value_or("");
+    }
 }
 
-bool ReadWhole(std::vector<unsigned char>* out, std::string* error, const std::string& path,
-               void*) try {
-    const FileContents contents = ReadFile(path);
-    out->assign(contents.bytes.get(), contents.bytes.get() + contents.size);
+bool TakeBuffer(Bytes* out, std::string*, const std::string& number, void* buffers) {
+    *out = std::move(static_cast<std::vector<Bytes>*>(buffers)->at(std::stoul(number)));
     return true;
-} catch (const Error& e) {
-    *error += e.what();
-    return false;
 }
 
-// Returns the functions above as the library takes them: from 2.9 on it refuses fewer than all.
+// Returns the functions by which the library reads files: from 2.9 on it refuses fewer than all.
 template <typename Callbacks = tinygltf::FsCallbacks>
-Callbacks FileCallbacks() {
+Callbacks FileCallbacks(std::vector<Bytes>* buffers) {
     Callbacks callbacks{};
-    callbacks.FileExists = FileExists;
+    callbacks.user_data = buffers;
+    callbacks.FileExists = [](const std::string&, void*) { return true; };
     callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
-    callbacks.ReadWholeFile = ReadWhole;
+    callbacks.ReadWholeFile = TakeBuffer;
     callbacks.WriteWholeFile = [](std::string*, const std::string&,
                                   const std::vector<unsigned char>&, void*) { return false; };
-    // The library compares the size with a limit of its own; ReadWhole has none.
+    // The library compares the size with a limit of its own.
     if constexpr (requires { callbacks.GetFileSizeInBytes; })
         callbacks.GetFileSizeInBytes = [](size_t* size, std::string*, const std::string&, void*) {
             *size = 0;
@@ -216,7 +201,47 @@ bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int
     return true;
 }
 
+// Writes names with their numbers: 0 "red", 1 "blue"; "none" where there are none.
+std::string NumberedNames(const std::vector<std::string>& names) {
+    std::string list;
+    for (size_t i = 0; i < names.size(); ++i)
+        list += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, Printable(names[i]));
+    return list.empty() ? "none" : list;
+}
+
 }  // namespace
+
+std::string DecodeUri(std::string_view uri) {
+    const auto digit = [](char c) {
+        return c >= '0' && c <= '9' ? c - '0'
+                                    : std::tolower(static_cast<unsigned char>(c)) - 'a' + 10;
+    };
+    std::string decoded;
+    for (size_t i = 0; i < uri.size(); ++i) {
+        const bool isCode =
+            uri[i] == '%' && i + 2 < uri.size() && IsHexDigit(uri[i + 1]) && IsHexDigit(uri[i + 2]);
+        decoded += isCode ? char(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
+        if (isCode) i += 2;
+    }
+    return decoded;
+}
+
+bool IsDataUri(std::string_view uri) {
+    return EqualsInLowerCase(uri.substr(0, kScheme.size()), kScheme);
+}
+
+std::optional<std::string> Base64Of(std::string_view dataUri) {
+    const size_t comma = dataUri.find(',');
+    if (comma == dataUri.npos || comma < kScheme.size()) return {};
+    // Some leave out the semicolon along with the type.
+    std::string_view type = dataUri.substr(kScheme.size(), comma - kScheme.size());
+    if (const size_t start = type.rfind(';'); start != type.npos) type = type.substr(start + 1);
+    if (!EqualsInLowerCase(type, kEncoding)) return {};
+    std::string data(dataUri.substr(comma + 1));
+    if (data.find('%') != data.npos) data = DecodeUri(data);
+    std::erase_if(data, [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); });
+    return data;
+}
 
 const tinygltf::Value* OwnValue(const tinygltf::Value& extras, const std::string& name) {
     if (!extras.Has("lull") || !extras.Get("lull").Has(name)) return nullptr;
@@ -234,48 +259,44 @@ bool OwnFlag(const GltfDocument& document, const tinygltf::Value& extras, const 
 
 FileLoc GltfDocument::At(const std::string& path) const { return PlaceIn(file, path); }
 
+size_t ChooseByName(const GltfDocument& document, const std::string& what,
+                    const std::vector<std::string>& names, const std::string& wanted) {
+    const auto named = std::find(names.begin(), names.end(), wanted);
+    if (named != names.end()) return size_t(named - names.begin());
+    size_t number = 0;
+    const char* end = wanted.data() + wanted.size();
+    const auto [at, error] = std::from_chars(wanted.data(), end, number);
+    if (error == std::errc() && at == end && number < names.size()) return number;
+    throw Error(fmt::format("{}: has no {} \"{}\"; it has {}", document.file, what, wanted,
+                            NumberedNames(names)));
+}
+
 GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {
     const FileContents contents = ReadFile(file);
-    std::string_view bytes = contents.View();
-    std::string rewritten;
-    const std::string folder = std::filesystem::path(file).parent_path().string();
+    const std::string_view bytes = contents.View();
     if (bytes.size() > std::numeric_limits<uint32_t>::max())
         throw Error(file + ": is larger than 4 GB, which glTF files cannot be");
-    {
-        // Padding by NULs instead of spaces is usual, but none to the library.
-        const std::string_view raw = JsonOf(file, bytes);
-        const std::string_view text =
-            CleanText(raw, {std::make_shared<const std::string>(file), 0});
-        nlohmann::json root = ParseGltfJson(file, text);
-        bool hasChanged = RepairGltfJson(file, &root, warnings);
-        hasChanged |=
-            IsBinary(bytes) && HasOddChunk(bytes.substr(kGlbHeader + kChunkHeader + raw.size()));
-        hasChanged |= CheckGltfJson(file, &root, warnings);
-        CheckExtensions(file, root, warnings);
-        hasChanged |= UnifyDataUris(&root);
-        hasChanged |= LengthenBuffers(folder, &root);
-        hasChanged |= HideCompressed(&root);
-        if (hasChanged)
-            rewritten = WithJson(bytes, root.dump());
-        else if (text.size() != raw.size())
-            rewritten = WithJson(bytes, std::string(text));
-        if (!rewritten.empty()) bytes = rewritten;
-    }
+    // Padding by NULs instead of spaces is usual.
+    const std::string_view text = JsonOf(file, bytes);
+    nlohmann::json root =
+        ParseGltfJson(file, CleanText(text, {std::make_shared<const std::string>(file), 0}));
+    RepairGltfJson(file, &root, warnings);
+    CheckGltfJson(file, &root, warnings);
+    CheckExtensions(file, root, warnings);
+    UnifyImages(&root);
+    GltfDocument document{file, {}, {}};
+    std::vector<Bytes> buffers = TakeBuffers(std::filesystem::path(file).parent_path(),
+                                             DataOf(file, bytes, text.size()), &root, &document);
 
-    GltfDocument document{file, {}};
     tinygltf::TinyGLTF reader;
-    reader.SetFsCallbacks(FileCallbacks());
+    reader.SetFsCallbacks(FileCallbacks(&buffers));
     reader.SetImageLoader(KeepImage, nullptr);
     std::string error, warning;
     bool isRead = false;
     try {
-        const auto size = unsigned(bytes.size());
-        isRead = IsBinary(bytes)
-                     ? reader.LoadBinaryFromMemory(
-                           &document.model, &error, &warning,
-                           reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-                     : reader.LoadASCIIFromString(&document.model, &error, &warning, bytes.data(),
-                                                  size, folder);
+        const std::string checked = root.dump();
+        isRead = reader.LoadASCIIFromString(&document.model, &error, &warning, checked.data(),
+                                            unsigned(checked.size()), "");
     } catch (const std::exception& e) {
         error = e.what();
     }

@@ -31,7 +31,6 @@ struct JsonChecked {
     nlohmann::json& root;
     const std::string& file;
     Warnings& warnings;
-    bool hasChanged = false;
 };
 
 // A value and where it stands.
@@ -66,7 +65,6 @@ struct JsonAt {
             const auto n = value.get<double>();
             if (!(n >= 0 && n <= kExact && n == std::floor(n))) return {};
             value = uint64_t(n);
-            json.hasChanged = true;
         }
         if (!value.is_number_unsigned()) return {};
         return value.get<uint64_t>();
@@ -217,15 +215,5 @@ struct JsonAt {
         for (const nlohmann::json& n : member.value) check(n);
     }
 };
-
-// Selects entries of a glTF file by name or number.
-
-// Writes names with their numbers: 0 "red", 1 "blue"; "none" where there are none.
-std::string NumberedNames(const std::vector<std::string>& names);
-
-// Returns the index of the first of `names` equal to `wanted`, or the index that `wanted` is, from
-// 0. Throws Error with a list of them where there is none; `what` is their noun: "camera".
-size_t ChooseByName(const GltfDocument&, const std::string& what,
-                    const std::vector<std::string>& names, const std::string& wanted);
 
 }  // namespace lull

@@ -1,55 +1,61 @@
-// Converts glTF's materials to materials of a Description.
+// Converts glTF's materials and textures to those of a Description.
 #pragma once
 
 #include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "renderer/input/description.h"
-#include "renderer/input/gltf/textures.h"
+#include "renderer/input/gltf/document.h"
 
 namespace lull {
 
-// Makes parameters of a Description.
+// Names a texture as a material uses it.
+struct GltfTextureUse {
+    int index = -1;  // into the file's textures; -1: none
+    int uvSet = 0;
+    // KHR_texture_transform, in texture coordinates whose v grows upwards: two rows of three.
+    std::optional<std::array<float, 6>> transform;
+    std::string path;  // the JSON pointer of the use
+};
 
-// Adds parameters to an entity, all of which have the same place in a file.
-class ParameterWriter {
+// Read a use, from the core specification's texture slots or from an extension's: `owner` is the
+// object that may have a member `name`.
+GltfTextureUse ReadTextureUse(const tinygltf::TextureInfo&, const std::string& path);
+GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo&, const std::string& path);
+GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
+                              const std::string& path);
+
+// The part of an image that a texture reads: its colours, sRGB-encoded or not, or one channel as it
+// is.
+enum class GltfTexels { EncodedColor, LinearColor, Red, Green, Alpha };
+
+// Adds textures and embedded images to a description, each once.
+class GltfTextures {
   public:
-    ParameterWriter(Parameters* parameters, FileLoc loc)
-        : parameters(parameters), loc(std::move(loc)) {}
+    GltfTextures(const GltfDocument& document, Description* description)
+        : document(document), description(description) {}
 
-    void Floats(ParameterType type, const std::string& name, std::vector<float> values) const {
-        parameters->Add({type, name, loc, std::move(values)});
-    }
-    void Ints(const std::string& name, std::vector<int> values) const {
-        parameters->Add({ParameterType::Integer, name, loc, std::move(values)});
-    }
-    void Float(const std::string& name, double value) const {
-        Floats(ParameterType::Float, name, {float(value)});
-    }
-    void Spectrum(const std::string& name, const Rgb& c) const {
-        Floats(ParameterType::Spectrum, name, {c.x(), c.y(), c.z()});
-    }
-    void Point(const std::string& name, const Vec3f& p) const {
-        Floats(ParameterType::Point3, name, {p.x(), p.y(), p.z()});
-    }
-    void Int(const std::string& name, int value) const { Ints(name, {value}); }
-    void Bool(const std::string& name, bool value) const {
-        parameters->Add({ParameterType::Bool, name, loc, std::vector<int>{value}});
-    }
-    void String(const std::string& name, const std::string& value) const {
-        parameters->Add({ParameterType::String, name, loc, std::vector<std::string>{value}});
-    }
-    void Texture(const std::string& name, const TextureRef& texture) const {
-        parameters->Add({ParameterType::Texture, name, loc, std::vector<TextureRef>{texture}});
-    }
+    // Returns the texture; nothing if the use names none, or, with a counted warning, one without
+    // an image.
+    std::optional<TextureRef> Add(const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
+    // Returns which of TEXCOORD_0 and 1 the textures use that were added since the last call.
+    std::array<bool, 2> TakeUvSets() { return std::exchange(uvSets, {}); }
 
   private:
-    Parameters* parameters;
-    FileLoc loc;
+    int Embed(int image, const FileLoc& loc);
+    TextureEntity MakeEntity(const GltfTextureUse& use, GltfTexels texels, const FileLoc& loc,
+                             Warnings& warnings);
+
+    const GltfDocument& document;
+    Description* description;
+    std::array<bool, 2> uvSets = {};
+    std::map<int, int> embedded;  // image of the file to Description::images
+    std::map<std::tuple<int, GltfTexels, std::optional<std::array<float, 6>>>, TextureRef> made;
 };
 
 // Properties of a shape that its material defines.

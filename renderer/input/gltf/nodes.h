@@ -1,4 +1,4 @@
-// Walks the node hierarchy of a glTF file.
+// Walks the node hierarchy of a glTF file, and converts what stands there.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,7 @@
 #include "renderer/base/math.h"
 #include "renderer/input/description.h"
 #include "renderer/input/gltf/document.h"
+#include "renderer/input/gltf_loader.h"
 
 namespace lull {
 
@@ -22,6 +23,12 @@ struct GltfNode {
 // none), parents before their children. Throws Error if a node has two parents, as in a cycle, or
 // its transform is not finite.
 std::vector<GltfNode> ListNodes(const GltfDocument&);
+
+// Lists the nodes as the options pose them: by an animation while the shutter is open, or as in the
+// file, with a warning if there are animations. Joints and weights have their values at the opening
+// of the shutter, with a warning. Throws Error for animations that are not
+// there or whose keys are wrong, and as ListNodes() does.
+std::vector<GltfNode> PoseNodes(const GltfOptions&, GltfDocument*, Warnings&);
 
 // Returns the transforms of the copies of a node's mesh that EXT_mesh_gpu_instancing asks for, in
 // the space of the node; a single identity without it. Throws Error.
@@ -56,5 +63,14 @@ GltfVisibility VisibilityOf(const GltfDocument&, int node);
 
 // Adds parameters of a shape.
 void Hide(const GltfVisibility&, Parameters*);
+
+// Converts punctual lights of glTF (KHR_lights_punctual) to lights of a Description.
+
+// Lumens per watt at 555 nm (CIE), which convert photometric units to radiometric ones.
+inline constexpr double kLumensPerWatt = 683;
+
+// Adds the light of a node, if it has one. The specification's lux and candela are divided by
+// kLumensPerWatt, as exporters multiply by it. Throws Error.
+void AddLight(const GltfDocument&, const GltfNode&, Description*, Warnings&);
 
 }  // namespace lull

@@ -1,8 +1,11 @@
-// Makes triangle meshes of glTF's primitives.
+// Makes triangle meshes of glTF's primitives, and poses them.
 #pragma once
+
+#include <vector>
 
 #include "renderer/input/description.h"
 #include "renderer/input/gltf/document.h"
+#include "renderer/input/gltf/nodes.h"
 
 namespace lull {
 
@@ -31,5 +34,17 @@ void MakeTangents(int uvSet, GltfTriangles* triangles);
 
 // Makes a shape of it, without material.
 ShapeEntity MakeShapeEntity(GltfTriangles triangles, const FileLoc& loc);
+
+// Poses meshes by the joints of their skins (3.7.3 of glTF's specification).
+
+// Returns for each joint of a skin the transform of vertices from the bind pose to the world.
+// Throws Error for a joint that is not in the scene, or too few inverse bind matrices.
+std::vector<Mat4d> JointMatrices(const GltfDocument&, const std::vector<GltfNode>&, int skin);
+
+// Moves the vertices of a primitive, their normals and tangents by their joints into the world.
+// Weights are normalised by their sum; vertices without any are moved by the first joint. Throws
+// Error for a primitive without joints, and for joints that the skin does not have.
+void Skin(const GltfDocument&, int mesh, int primitive, const std::vector<Mat4d>& joints,
+          GltfTriangles* triangles);
 
 }  // namespace lull

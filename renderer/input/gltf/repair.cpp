@@ -1,11 +1,10 @@
-#include "renderer/input/gltf/repair.h"
-
+// Lets files be read that break the specification where that does no harm.
 #include <optional>
 #include <set>
 #include <string>
 
 #include "renderer/input/gltf/json_at.h"
-#include "renderer/input/gltf/uri.h"
+#include "renderer/input/gltf/validation.h"
 
 namespace lull {
 namespace {
@@ -19,6 +18,11 @@ json* Member(json* value, const char* name) {
     return found == value->end() ? nullptr : &*found;
 }
 
+json* Extension(json* owner, const char* name) {
+    json* extensions = Member(owner, "extensions");
+    return extensions ? Member(extensions, name) : nullptr;
+}
+
 // Calls f(element, index) for the objects in an array that is a member.
 template <typename F>
 void ForEachObject(json* owner, const char* name, const F& f) {
@@ -30,24 +34,21 @@ void ForEachObject(json* owner, const char* name, const F& f) {
 
 bool IsZero(const json* value) { return value && value->is_number() && value->get<double>() == 0; }
 
-bool EraseNulls(const std::string& file, const std::string& path, json* value, Warnings& warnings) {
-    bool hasChanged = false;
+void EraseNulls(const std::string& file, const std::string& path, json* value, Warnings& warnings) {
     if (value->is_array())
         for (size_t i = 0; i < value->size(); ++i)
-            hasChanged |= EraseNulls(file, path + "/" + std::to_string(i), &value->at(i), warnings);
-    if (!value->is_object()) return hasChanged;
+            EraseNulls(file, path + "/" + std::to_string(i), &value->at(i), warnings);
+    if (!value->is_object()) return;
     for (auto it = value->begin(); it != value->end();) {
         if (it->is_null()) {
             warnings.Add(PlaceIn(file, path), "null counts as absent", Printable(it.key()));
             it = value->erase(it);
-            hasChanged = true;
             continue;
         }
         if (it->is_structured() && it.key() != "extras")
-            hasChanged |= EraseNulls(file, path + "/" + Printable(it.key()), &*it, warnings);
+            EraseNulls(file, path + "/" + Printable(it.key()), &*it, warnings);
         ++it;
     }
-    return hasChanged;
 }
 
 // Returns an index, which may be written as 4.0.
@@ -73,26 +74,23 @@ class Repair {
     Repair(const std::string& file, json* root, Warnings& warnings)
         : file(file), root(root), warnings(warnings) {}
 
-    bool Run() {
-        hasChanged |= EraseNulls(file, "", root, warnings);
+    void Run() {
+        EraseNulls(file, "", root, warnings);
         LeaveOutDistances();
         LeaveOutPrimitives();
         FillAccessors();
         FillViews();
-        return hasChanged;
     }
 
   private:
     // three.js wrote infinity as 0 before r145.
     void LeaveOutDistances() {
         ForEachObject(root, "materials", [&](json& material, size_t i) {
-            json* extensions = Member(&material, "extensions");
-            json* volume = extensions ? Member(extensions, "KHR_materials_volume") : nullptr;
+            json* volume = Extension(&material, "KHR_materials_volume");
             if (!volume || !IsZero(Member(volume, "attenuationDistance"))) return;
             volume->erase("attenuationDistance");
             warnings.Add(PlaceIn(file, "/materials/" + std::to_string(i)),
                          "an attenuationDistance of 0 counts as absent");
-            hasChanged = true;
         });
     }
 
@@ -123,16 +121,16 @@ class Repair {
             if (!primitives) {
                 mesh["primitives"] = json::array();
                 warnings.Add(loc, "mesh without primitives is left out");
-                hasChanged = true;
             } else if (primitives->is_array()) {
                 for (auto p = primitives->begin(); p != primitives->end();) {
+                    // Their accessor has no data.
+                    if (Extension(&*p, "KHR_draco_mesh_compression")) p->erase("indices");
                     if (!IsEmptyPrimitive(&*p)) {
                         ++p;
                         continue;
                     }
                     p = primitives->erase(p);
                     warnings.Add(loc, "primitive without vertices or indices is left out");
-                    hasChanged = true;
                 }
             }
         });
@@ -150,22 +148,23 @@ class Repair {
             accessor.erase("bufferView");
             accessor.erase("sparse");
             accessor["count"] = 1u;
-            hasChanged = true;
         });
     }
     void FillViews() {
+        constexpr const char* kMeshopt = "EXT_meshopt_compression";
         std::set<size_t> views, buffers;
         Collect(*root, "bufferView", &views);
         ForEachObject(root, "bufferViews", [&](json& view, size_t i) {
-            if (views.contains(i)) Collect(view, "buffer", &buffers);
+            const json* compressed = Extension(&view, kMeshopt);
+            if (views.contains(i)) Collect(compressed ? *compressed : view, "buffer", &buffers);
         });
         std::set<size_t> filled;
         ForEachObject(root, "buffers", [&](json& buffer, size_t i) {
-            const bool isUnread = Member(&buffer, "uri") && !buffers.contains(i);
+            const bool isUnread =
+                !buffers.contains(i) && (Member(&buffer, "uri") || Extension(&buffer, kMeshopt));
             if (!isUnread && !IsZero(Member(&buffer, "byteLength"))) return;
             buffer = {{"uri", kOneByteUri}, {"byteLength", 1u}};
             filled.insert(i);
-            hasChanged = true;
         });
         ForEachObject(root, "bufferViews", [&](json& view, size_t i) {
             const json* buffer = Member(&view, "buffer");
@@ -173,20 +172,18 @@ class Repair {
             const bool isOfFilled = of && filled.contains(*of) && !views.contains(i);
             if (!buffer || (!isOfFilled && !IsZero(Member(&view, "byteLength")))) return;
             view = {{"buffer", *buffer}, {"byteLength", 1u}};
-            hasChanged = true;
         });
     }
 
     const std::string& file;
     json* root;
     Warnings& warnings;
-    bool hasChanged = false;
 };
 
 }  // namespace
 
-bool RepairGltfJson(const std::string& file, json* root, Warnings& warnings) {
-    return Repair(file, root, warnings).Run();
+void RepairGltfJson(const std::string& file, json* root, Warnings& warnings) {
+    Repair(file, root, warnings).Run();
 }
 
 }  // namespace lull

@@ -1,12 +1,10 @@
-#include "renderer/input/gltf/textures.h"
-
+// Converts glTF's textures to textures of a Description.
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "renderer/files/file_io.h"
 #include "renderer/input/gltf/materials.h"
-#include "renderer/input/gltf/uri.h"
 
 namespace lull {
 namespace {

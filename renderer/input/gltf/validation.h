@@ -13,10 +13,20 @@ namespace lull {
 // deeply that reading it could exhaust the stack.
 nlohmann::json ParseGltfJson(const std::string& file, std::string_view text);
 
+// Lets files be read that break the specification where that does no harm, as exporters do.
+// Changes JSON of which nothing has been checked but its depth. With a warning of each kind:
+//   - members that are null, outside of extras, are absent, as is an attenuationDistance of 0;
+//   - meshes without primitives have none, and primitives without vertices, or without indices
+//     where they have an accessor of them, are left out.
+// Silently: accessors, views and buffers without a byte, and buffers that nothing reads, whose
+// files may be missing, or that only stand for data compressed by meshopt, stand for a byte of 0;
+// primitives compressed by Draco have no indices.
+void RepairGltfJson(const std::string& file, nlohmann::json* root, Warnings& warnings);
+
 // Throws Error with `file` and the JSON pointer of the first violation of the specification: types,
 // indices between the top-level arrays, enumerations, numbers that fit no float, data URIs that are
 // not base64. Warns of factors beyond their range. Writes whole numbers such as 4.0 as 4 where the
-// specification has integers, and returns whether any has changed.
-bool CheckGltfJson(const std::string& file, nlohmann::json* root, Warnings& warnings);
+// specification has integers.
+void CheckGltfJson(const std::string& file, nlohmann::json* root, Warnings& warnings);
 
 }  // namespace lull

@@ -79,7 +79,6 @@ void PbrtBuilder::CloseImports() {
         if (scopes.size() != imports.back().scopes)
             throw Error(loc, "the imported file ends within another scope than it begins in");
         state = std::move(imports.back().saved);
-        context.rgbFromColorSpace = state.rgbFromColorSpace;
     }
 }
 
@@ -113,14 +112,13 @@ void PbrtBuilder::End(ScopeKind kind) {
     if (kind == ScopeKind::Transform && !IsV4()) {
         state.ctm = scope.saved.ctm;
         state.active = scope.saved.active;
-    } else if (IsV4()) {
-        state = std::move(scope.saved);
-        context.rgbFromColorSpace = state.rgbFromColorSpace;
     } else {
         state = std::move(scope.saved);
-        context.floatTextures.Restore(state.floatTextureMark);
-        context.spectrumTextures.Restore(state.spectrumTextureMark);
-        materials.Restore(state.materialMark);
+        if (!IsV4()) {
+            context.floatTextures.Restore(state.floatTextureMark);
+            context.spectrumTextures.Restore(state.spectrumTextureMark);
+            materials.Restore(state.materialMark);
+        }
     }
     scopes.pop_back();
 }
@@ -326,8 +324,7 @@ void PbrtBuilder::Texture() {
     texture.isSpectrum = kind == "spectrum" || (kind == "color" && !IsV4());
     if (!texture.isSpectrum && kind != "float")
         throw Error(loc, "texture kind \"" + Printable(kind) +
-                             "\" is unknown; write \"float\" or "
-                             "\"spectrum\"");
+                             "\" is unknown; write \"float\" or \"spectrum\"");
     static_cast<Entity&>(texture) = Translated(
         texture.isSpectrum ? EntityKind::SpectrumTexture : EntityKind::FloatTexture, texture);
     texture.worldFromTexture = StaticTransform("Texture");
@@ -448,10 +445,8 @@ bool PbrtBuilder::SeesMedium(const std::string& directive) {
     const std::string& integrator = description.integrator.name;
     if (IntegratorSeesMedia(integrator)) return true;
     warnings.Add(loc, "participating medium ignored",
-                 directive +
-                     " has no effect with "
-                     "Integrator \"" +
-                     Printable(integrator) + "\", in pbrt as well");
+                 directive + " has no effect with Integrator \"" + Printable(integrator) +
+                     "\", in pbrt as well");
     return false;
 }
 

@@ -13,7 +13,6 @@
 #include "renderer/base/error.h"
 #include "renderer/input/description.h"
 #include "renderer/input/pbrt/pbrt_lexer.h"
-#include "renderer/input/pbrt/pbrt_parameters.h"
 #include "renderer/input/pbrt/pbrt_state.h"
 
 namespace lull {

@@ -47,7 +47,8 @@ Mat4d PbrtBuilder::ReadMatrix() {
 
 Entity PbrtBuilder::ReadEntity() {
     std::string name = ReadString("a name");
-    return {std::move(name), ReadParameters(lexer, context, warnings), loc};
+    return {std::move(name), ReadParameters(lexer, context, state.rgbFromColorSpace, warnings),
+            loc};
 }
 
 Entity PbrtBuilder::Translated(EntityKind kind, Entity entity) {
@@ -84,7 +85,7 @@ void PbrtBuilder::Attribute() {
         {"shape", EntityKind::Shape},
         {"texture", EntityKind::FloatTexture}};
     const std::string target = ReadString("\"shape\", \"light\" or the like");
-    const Parameters given = ReadParameters(lexer, context, warnings);
+    const Parameters given = ReadParameters(lexer, context, state.rgbFromColorSpace, warnings);
     const auto* known = std::ranges::find(kTargets, target, [](const auto& t) { return t.first; });
     if (known == std::end(kTargets))
         throw Error(loc, "Attribute \"" + Printable(target) +
@@ -99,7 +100,6 @@ void PbrtBuilder::Attribute() {
 
 void PbrtBuilder::ColorSpace() {
     state.rgbFromColorSpace = RgbFromColorSpace(ReadString("the name of a colour space"), loc);
-    context.rgbFromColorSpace = state.rgbFromColorSpace;
 }
 
 void PbrtBuilder::Option() {

@@ -1,4 +1,4 @@
-#include "renderer/input/pbrt/pbrt_parameters.h"
+// Reads the parameter lists of directives.
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "renderer/input/pbrt/pbrt_state.h"
 #include "renderer/input/spectrum.h"
 #include "stopping/base/input_file.h"
 
@@ -248,7 +249,7 @@ std::vector<float> ReadFloatsOf(const TypeName& type, PbrtLexer& lexer, const To
 
 // Reads a spectrum as it stands, and rgb as linear sRGB.
 void ReadSpectrumV4(const TypeName& type, PbrtLexer& lexer, const Token& owner,
-                    const ParameterContext& context, Parameter* parameter) {
+                    const Mat3f& rgbFromColorSpace, Parameter* parameter) {
     switch (type.encoding) {
         case Encoding::Sampled:
             parameter->type =
@@ -264,13 +265,14 @@ void ReadSpectrumV4(const TypeName& type, PbrtLexer& lexer, const Token& owner,
             break;
         default:
             parameter->values =
-                ConvertRgb(ReadFloatsOf(type, lexer, owner), context.rgbFromColorSpace, owner);
+                ConvertRgb(ReadFloatsOf(type, lexer, owner), rgbFromColorSpace, owner);
     }
 }
 
 }  // namespace
 
-Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings& warnings) {
+Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context,
+                          const Mat3f& rgbFromColorSpace, Warnings& warnings) {
     Parameters parameters;
     while (lexer.Peek().kind == TokenKind::String) {
         const Token owner = lexer.Take();
@@ -293,7 +295,7 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context, Warnings&
                 break;
             case ParameterType::Spectrum:
                 if (context.version == PbrtVersion::V4)
-                    ReadSpectrumV4(type, lexer, owner, context, &parameter);
+                    ReadSpectrumV4(type, lexer, owner, rgbFromColorSpace, &parameter);
                 else if (type.encoding == Encoding::Sampled && lexer.NextIsText())
                     parameter.values = ReadSpectrumFiles(lexer, owner, context, warnings);
                 else

@@ -80,44 +80,14 @@ void CheckInvertible(const Mat4d& m, const FileLoc& loc) {
 namespace {
 
 // Those of pbrt-v3's materials; no shape has one of these names.
-constexpr std::string_view kParameters[] = {"Kd",
-                                            "Ks",
-                                            "Kr",
-                                            "Kt",
-                                            "amount",
-                                            "anisotropic",
-                                            "beta_m",
-                                            "beta_n",
-                                            "bsdffile",
-                                            "bumpmap",
-                                            "clearcoat",
-                                            "clearcoatgloss",
-                                            "color",
-                                            "difftrans",
-                                            "eta",
-                                            "eumelanin",
-                                            "flatness",
-                                            "index",
-                                            "k",
-                                            "metallic",
-                                            "mfp",
-                                            "opacity",
-                                            "pheomelanin",
-                                            "reflect",
-                                            "remaproughness",
-                                            "roughness",
-                                            "scatterdistance",
-                                            "sheen",
-                                            "sheentint",
-                                            "sigma",
-                                            "sigma_a",
-                                            "sigma_s",
-                                            "spectrans",
-                                            "speculartint",
-                                            "thin",
-                                            "transmit",
-                                            "uroughness",
-                                            "vroughness"};
+// clang-format off
+constexpr std::string_view kParameters[] = {
+    "Kd", "Ks", "Kr", "Kt", "amount", "anisotropic", "beta_m", "beta_n", "bsdffile", "bumpmap",
+    "clearcoat", "clearcoatgloss", "color", "difftrans", "eta", "eumelanin", "flatness", "index",
+    "k", "metallic", "mfp", "opacity", "pheomelanin", "reflect", "remaproughness", "roughness",
+    "scatterdistance", "sheen", "sheentint", "sigma", "sigma_a", "sigma_s", "spectrans",
+    "speculartint", "thin", "transmit", "uroughness", "vroughness"};
+// clang-format on
 
 bool IsOfMaterial(const Parameter& parameter) {
     return std::ranges::find(kParameters, parameter.name) != std::end(kParameters);

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "renderer/input/description.h"
+#include "renderer/input/pbrt/pbrt_lexer.h"
+#include "renderer/input/pbrt_parser.h"
 
 namespace lull {
 
@@ -42,7 +44,6 @@ enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
 // The kinds of entity of a scene.
 enum class EntityKind {
-    Accelerator,
     Camera,
     Film,
     Filter,
@@ -69,6 +70,22 @@ struct GraphicsState {
     Mat3f rgbFromColorSpace = Mat3f::Identity();  // of pbrt-v4's ColorSpace
     size_t floatTextureMark = 0, spectrumTextureMark = 0, materialMark = 0;
 };
+
+// Reads the parameter lists of directives.
+
+// Context of a parameter: the textures named so far, spectrum files.
+struct ParameterContext {
+    PbrtVersion version = PbrtVersion::V3;
+    ScopedNames floatTextures, spectrumTextures;
+    std::string directory;               // where the names of spectrum files start
+    std::map<std::string, Rgb> spectra;  // already read, by path
+};
+
+// Reads `"type name" value` and `"type name" [values]` until something else comes. Throws Error at
+// the place of whatever is wrong; warns about integers with a fraction, which pbrt-v3 drops and
+// pbrt-v4 refuses. `rgbFromColorSpace` is pbrt-v4's.
+Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context,
+                          const Mat3f& rgbFromColorSpace, Warnings& warnings);
 
 // Make the matrices of the directives, in pbrt-v3's conventions; angles in degrees. LookAt maps
 // world to camera space (left-handed, looking along +z). Throw Error at `loc` if there is no such

@@ -2,7 +2,10 @@
 // Their parameters are all known, so that a misspelled one is an error.
 #pragma once
 
+#include <initializer_list>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "renderer/input/description.h"
 #include "renderer/input/pbrt/pbrt_state.h"
@@ -21,6 +24,10 @@ struct V4Context {
 // and parameters, with what pbrt-v4 has for those of pbrt-v3, and for what is not supported.
 Entity TranslateV4(const V4Context& context, const Entity& entity);
 
+// Throws Error for a kind of film, camera, sampler or material that pbrt-v3 alone has, with that of
+// pbrt-v4.
+void RefuseKindOfV3(std::string_view directive, std::string_view kind, const FileLoc& loc);
+
 // Sets what pbrt-v4 renders where a directive is absent.
 void SetV4Defaults(Description* description);
 
@@ -30,5 +37,84 @@ void SetExposureOfV4(Description* description);
 // Adds those parameters of Attribute whose names an entity does not have itself; it need not use
 // them.
 void AddPresets(const Parameters& presets, Parameters* parameters);
+
+// Reads the parameters of a pbrt-v4 entity, and writes those of another.
+class V4Reader {
+  public:
+    V4Reader(const V4Context& context, const Entity& from)
+        : write(&written, from.loc), context(context), from(from) {}
+    V4Reader(const V4Reader&) = delete;
+    V4Reader& operator=(const V4Reader&) = delete;
+
+    // Read a parameter; it then counts as known.
+    float Float(const char* name, float otherwise) const {
+        return from.parameters.GetFloat(name, otherwise);
+    }
+    int Int(const char* name, int otherwise) const {
+        return from.parameters.GetInt(name, otherwise);
+    }
+    bool Bool(const char* name, bool otherwise) const {
+        return from.parameters.GetBool(name, otherwise);
+    }
+    std::string String(const char* name, const std::string& otherwise = "") const {
+        return from.parameters.GetString(name, otherwise);
+    }
+    const TextureRef* Texture(const char* name) const { return from.parameters.GetTexture(name); }
+    bool Has(ParameterType type, const char* name) const {
+        return from.parameters.Find(type, name) != nullptr;
+    }
+    // Returns a spectrum parameter that is no texture, nothing where there is none.
+    std::optional<V4Spectrum> Spectrum(const char* name) const;
+    // Return it, or the given value, as a colour. Reflectances given as RGB above 1 are an error.
+    Rgb Light(const char* name, const Rgb& otherwise) const;
+    Rgb Surface(const char* name, const Rgb& otherwise) const;
+    Rgb Reflectance(const char* name, const Rgb& otherwise) const;
+
+    // Mark parameters as known that have no effect on the image.
+    void Ignore(std::initializer_list<const char*> names) const;
+    // Warns of a flag that is set and has no effect.
+    void Warn(const std::string& what) const { context.warnings.Add(from.loc, what); }
+    [[noreturn]] void Fail(const std::string& why) const { throw Error(from.loc, why); }
+    // Copy a parameter of the type, or a texture, if there is one, under another name if one is
+    // given.
+    void Copy(ParameterType type, const char* name, const char* to);
+    void Copy(ParameterType type, std::initializer_list<const char*> names);
+    void CopyFloat(const char* name, const char* to = nullptr);
+    // Copies a texture, or writes the reflectance or, with `otherwise`, that.
+    void CopyReflectance(const char* name, const char* to, float otherwise);
+    // Copies a texture, or writes the spectrum of a surface, if there is one.
+    void CopySurface(const char* name, const char* to);
+
+    // Adds a spectrum texture of an image to the description.
+    TextureRef AddImage(const std::string& file, bool isData) const;
+
+    const FileLoc& Loc() const { return from.loc; }
+    const std::string& Name() const { return from.name; }
+    const Parameters& All() const { return from.parameters; }
+    const V4Context& Context() const { return context; }
+
+    // Returns the entity written. Throws Error if a parameter of the other is unknown.
+    Entity Finish(const std::string& name, const std::string& owner) const;
+
+    const ParameterWriter write;  // of the other entity
+
+  private:
+    const V4Context& context;
+    const Entity& from;
+    Parameters written;
+};
+
+// The functions of each kind of directive, in v4_*.cpp.
+Entity TranslateAreaLight(V4Reader& in);
+Entity TranslateCamera(V4Reader& in);
+Entity TranslateFilm(V4Reader& in);
+Entity TranslateFilter(V4Reader& in);
+Entity TranslateIntegrator(V4Reader& in);
+Entity TranslateLight(V4Reader& in);
+Entity TranslateMaterial(V4Reader& in);
+Entity TranslateMedium(V4Reader& in);
+Entity TranslateSampler(V4Reader& in);
+Entity TranslateShape(V4Reader& in);
+Entity TranslateTexture(V4Reader& in);
 
 }  // namespace lull

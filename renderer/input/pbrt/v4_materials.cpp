@@ -1,34 +1,15 @@
-// Materials of pbrt-v4.
-
+// Materials and lights of pbrt-v4.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
-#include "renderer/input/pbrt/v4_reader.h"
+#include "renderer/input/pbrt/v4.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
-
-// What pbrt-v4 has for materials of pbrt-v3.
-struct Gone {
-    std::string_view old;
-    const char* instead;
-};
-constexpr Gone kGone[] = {
-    {"matte", "\"diffuse\" with \"reflectance\""},
-    {"plastic", "\"coateddiffuse\""},
-    {"substrate", "\"coateddiffuse\""},
-    {"uber", "\"coateddiffuse\" or \"mix\""},
-    {"disney", "\"coateddiffuse\" or \"mix\""},
-    {"translucent", "\"diffusetransmission\""},
-    {"metal", "\"conductor\""},
-    {"mirror", "\"conductor\" with \"reflectance\""},
-    {"glass", "\"dielectric\""},
-    {"fourier", "\"measured\""},
-    {"kdsubsurface", "\"subsurface\" with \"reflectance\" and \"mfp\""},
-};
 
 // Reads roughness; of names that begin with `prefix` where that is given.
 void CopyRoughness(V4Reader* in, const std::string& prefix = "") {
@@ -40,13 +21,13 @@ void CopyRoughness(V4Reader* in, const std::string& prefix = "") {
         else if (in->Has(ParameterType::Float, both.c_str()) || in->Texture(both.c_str()))
             in->CopyFloat(both.c_str(), to.c_str());
         else
-            in->Set(to.c_str(), 0.f);
+            in->write.Float(to.c_str(), 0.f);
     }
 }
 
 void CopyAllRoughness(V4Reader* in) {
     CopyRoughness(in);
-    in->SetString("remapping", in->Bool("remaproughness", true) ? "sqrt" : "none");
+    in->write.String("remapping", in->Bool("remaproughness", true) ? "sqrt" : "none");
 }
 
 void CopyIndex(V4Reader* in, const char* name, float otherwise) {
@@ -58,34 +39,34 @@ void CopyIndex(V4Reader* in, const char* name, float otherwise) {
             in->Context().warnings.Add(in->Loc(), "dispersion is not rendered",
                                        "an index of refraction is that of yellow light");
     }
-    in->Set(name, index);
+    in->write.Float(name, index);
 }
 
 // Reads eta and k of a conductor, or its reflectance, of names that begin with `prefix`.
 void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflectance) {
     if (const TextureRef* texture = in->Texture(reflectance)) {
-        in->SetTexture("reflectance", *texture);
+        in->write.Texture("reflectance", *texture);
     } else if (in->Spectrum(reflectance)) {
-        in->Set("reflectance", in->Reflectance(reflectance, Rgb::Zero()));
+        in->write.Spectrum("reflectance", in->Reflectance(reflectance, Rgb::Zero()));
     } else {
         const std::string eta = prefix + "eta", k = prefix + "k";
         const auto [n, absorption] = RgbOfConductor(
             in->Spectrum(eta.c_str()).value_or(NamedSpectrum{"metal-Cu-eta"}),
             in->Spectrum(k.c_str()).value_or(NamedSpectrum{"metal-Cu-k"}), in->Loc());
         if (const TextureRef* texture = in->Texture(eta.c_str()))
-            in->SetTexture("eta", *texture);
+            in->write.Texture("eta", *texture);
         else
-            in->Set("eta", n);
+            in->write.Spectrum("eta", n);
         if (const TextureRef* texture = in->Texture(k.c_str()))
-            in->SetTexture("k", *texture);
+            in->write.Texture("k", *texture);
         else
-            in->Set("k", absorption);
+            in->write.Spectrum("k", absorption);
     }
 }
 
 // Reads the layer between a coat and its base.
 void CopyLayer(V4Reader* in) {
-    in->Set("thickness", in->Float("thickness", 0.01f));
+    in->write.Float("thickness", in->Float("thickness", 0.01f));
     in->Ignore({"g", "maxdepth", "nsamples"});
     if (in->Texture("albedo") || (in->Surface("albedo", Rgb::Zero()) > 0).any())
         in->Fail("a coat whose layer scatters (\"albedo\" above 0) is not supported");
@@ -96,34 +77,27 @@ void CopyMix(V4Reader* in) {
     const auto* two = names ? std::get_if<std::vector<std::string>>(&names->values) : nullptr;
     if (!two || two->size() != 2) in->Fail("Material \"mix\" needs two names as \"materials\"");
     // The amount is the share of the second.
-    in->SetString("namedmaterial1", (*two)[1]);
-    in->SetString("namedmaterial2", (*two)[0]);
+    in->write.String("namedmaterial1", (*two)[1]);
+    in->write.String("namedmaterial2", (*two)[0]);
     if (in->Has(ParameterType::Float, "amount") || in->Texture("amount"))
         in->CopyFloat("amount", "share");
     else
-        in->Set("share", 0.5f);
+        in->write.Float("share", 0.5f);
 }
 
 void CopySubsurface(V4Reader* in, std::string* name) {
     CopyAllRoughness(in);
     CopyIndex(in, "eta", 1.33f);
-    in->Copy(ParameterType::Float, "g");
-    in->Copy(ParameterType::Float, "scale");
-    const auto coefficient = [&](const char* parameter, const char* to) {
-        if (const TextureRef* texture = in->Texture(parameter))
-            in->SetTexture(to, *texture);
-        else if (in->Spectrum(parameter))
-            in->Set(to, in->Surface(parameter, Rgb::Ones()));
-    };
+    in->Copy(ParameterType::Float, {"g", "scale"});
     if (in->Spectrum("reflectance") || in->Texture("reflectance")) {
         *name = "kdsubsurface";
         in->CopyReflectance("reflectance", "Kd", 0.5f);
-        coefficient("mfp", "mfp");
+        in->CopySurface("mfp", "mfp");
         return;
     }
-    in->Copy(ParameterType::String, "name");
-    coefficient("sigma_a", "sigma_a");
-    coefficient("sigma_s", "sigma_s");
+    in->Copy(ParameterType::String, {"name"});
+    in->CopySurface("sigma_a", "sigma_a");
+    in->CopySurface("sigma_s", "sigma_s");
 }
 
 void CopyHair(V4Reader* in) {
@@ -131,10 +105,7 @@ void CopyHair(V4Reader* in) {
         in->CopyFloat(name);
     const char* color = in->Texture("color") || in->Spectrum("color") ? "color" : "reflectance";
     if (in->Texture(color) || in->Spectrum(color)) in->CopyReflectance(color, "color", 0);
-    if (const TextureRef* texture = in->Texture("sigma_a"))
-        in->SetTexture("sigma_a", *texture);
-    else if (in->Spectrum("sigma_a"))
-        in->Set("sigma_a", in->Surface("sigma_a", Rgb::Zero()));
+    in->CopySurface("sigma_a", "sigma_a");
 }
 
 // Reads the maps of the shading normal, which all but mixtures and interfaces have.
@@ -142,7 +113,7 @@ void CopyTilt(V4Reader* in) {
     const std::string map = in->String("normalmap");
     // Where both are given the normal map counts.
     if (!map.empty())
-        in->SetTexture("normals", in->AddImage(map, true));
+        in->write.Texture("normals", in->AddImage(map, true));
     else
         in->Copy(ParameterType::Texture, "displacement", "bumpmap");
     in->Ignore({"displacement"});
@@ -167,7 +138,7 @@ std::string CopyKind(V4Reader* in) {
     if (kind == "conductor") {
         CopyConductor(in, "", "reflectance");
         CopyAllRoughness(in);
-        in->SetBool("mirrors", true);
+        in->write.Bool("mirrors", true);
         return "metal";
     }
     if (kind == "coateddiffuse") {
@@ -182,13 +153,13 @@ std::string CopyKind(V4Reader* in) {
         CopyIndex(in, "interface.eta", 1.5f);
         CopyRoughness(in, "interface.");
         CopyRoughness(in, "conductor.");
-        in->SetString("remapping", in->Bool("remaproughness", true) ? "sqrt" : "none");
+        in->write.String("remapping", in->Bool("remaproughness", true) ? "sqrt" : "none");
         CopyLayer(in);
         return kind;
     }
     if (kind == "diffusetransmission") {
-        in->Set("Kd", Rgb::Constant(in->Float("scale", 1)).eval());
-        in->Set("Ks", Rgb(Rgb::Zero()));
+        in->write.Spectrum("Kd", Rgb::Constant(in->Float("scale", 1)));
+        in->write.Spectrum("Ks", Rgb::Zero());
         in->CopyReflectance("reflectance", "reflect", 0.25f);
         in->CopyReflectance("transmittance", "transmit", 0.25f);
         return "translucent";
@@ -204,14 +175,11 @@ std::string CopyKind(V4Reader* in) {
 
 }  // namespace
 
-Entity TranslateMaterial(V4Reader in) {
+Entity TranslateMaterial(V4Reader& in) {
     const std::string& kind = in.Name();
     const std::string owner = "material \"" + Printable(kind) + "\"";
     in.String("type");
-    if (const Gone* gone = std::ranges::find(kGone, std::string_view(kind), &Gone::old);
-        gone != std::end(kGone))
-        in.Fail(
-            fmt::format("{} is pbrt-v3's, in a scene for pbrt-v4; write {}", owner, gone->instead));
+    RefuseKindOfV3("Material", kind, in.Loc());
     if (kind.empty() || kind == "none" || kind == "interface") {
         in.Ignore({"displacement", "normalmap"});
         return in.Finish("none", owner);
@@ -229,6 +197,111 @@ Entity TranslateMaterial(V4Reader in) {
     const std::string name = CopyKind(&in);
     CopyTilt(&in);
     return in.Finish(name, owner);
+}
+
+// Lights. Spectra give their colour alone; "scale" and powers give the brightness.
+
+namespace {
+
+constexpr float kDegree = kPi / 180;
+
+// Returns the light's colour times its "scale".
+Rgb Color(const V4Reader& in, const char* name) {
+    return in.Light(name, Rgb::Ones()) * in.Float("scale", 1);
+}
+
+void CopySpot(V4Reader* in) {
+    const float cone = in->Float("coneangle", 30), delta = in->Float("conedeltaangle", 5);
+    Rgb I = Color(*in, "I");
+    if (const float power = in->Float("power", -1); power > 0) {
+        const float whole = std::cos((cone - delta) * kDegree), end = std::cos(cone * kDegree);
+        I *= power / (2 * kPi * ((1 - whole) + (whole - end) / 2));
+    }
+    in->write.Spectrum("I", I);
+    in->write.Float("coneangle", cone);
+    in->write.Float("conedeltaangle", delta);
+    in->Copy(ParameterType::Point3, {"from", "to"});
+}
+
+// Reads a light whose beam an image shapes; the image is named in the file's terms.
+void CopyImageLight(V4Reader* in) {
+    const std::string file = in->String("filename");
+    if (file.empty()) in->Fail(fmt::format("LightSource \"{}\" needs a \"filename\"", in->Name()));
+    in->write.String("mapname", file);
+    in->write.Bool("decode", true);
+    in->write.Spectrum("I", in->Name() == "goniometric"
+                                ? Color(*in, "I")
+                                : Rgb::Constant(in->Float("scale", 1)).eval());
+    in->Copy(ParameterType::Float, {"power"});
+    if (in->Name() == "projection") in->write.Float("fov", in->Float("fov", 90));
+    if (in->Name() == "goniometric") in->write.Bool("equalarea", true);
+}
+
+void CopyInfinite(V4Reader* in) {
+    Rgb L = Color(*in, "L");
+    const std::string file = in->String("filename");
+    if (file.empty()) {
+        if (const float e = in->Float("illuminance", -1); e > 0) L *= e * kInvPi;
+    } else {
+        if (in->Spectrum("L")) in->Fail("an infinite light has \"L\" or \"filename\", not both");
+        in->write.String("mapname", file);
+        in->write.Bool("equalarea", true);
+        in->write.Bool("decode", true);
+        in->Copy(ParameterType::Float, {"illuminance"});
+    }
+    in->write.Spectrum("L", L);
+    in->Copy(ParameterType::Point3, {"portal"});
+    in->write.Bool("cutsout", true);
+}
+
+}  // namespace
+
+Entity TranslateLight(V4Reader& in) {
+    const std::string& kind = in.Name();
+    in.Copy(ParameterType::String, {"lightgroup"});
+    if (kind == "point") {
+        const float power = in.Float("power", -1);
+        in.write.Spectrum("I", Color(in, "I") * (power > 0 ? power / (4 * kPi) : 1));
+        in.Copy(ParameterType::Point3, {"from"});
+    } else if (kind == "distant") {
+        const float illuminance = in.Float("illuminance", -1);
+        in.write.Spectrum("L", Color(in, "L") * (illuminance > 0 ? illuminance : 1));
+        in.Copy(ParameterType::Point3, {"from", "to"});
+    } else if (kind == "spot") {
+        CopySpot(&in);
+        return in.Finish("spot-smooth", "LightSource \"spot\"");
+    } else if (kind == "goniometric" || kind == "projection") {
+        CopyImageLight(&in);
+    } else if (kind == "infinite") {
+        CopyInfinite(&in);
+    } else {
+        in.Fail(
+            fmt::format("LightSource \"{}\" is not supported; point, distant, spot, "
+                        "goniometric, projection and infinite are",
+                        Printable(kind)));
+    }
+    return in.Finish(kind, "LightSource \"" + kind + "\"");
+}
+
+Entity TranslateAreaLight(V4Reader& in) {
+    if (in.Name() != "diffuse")
+        in.Fail(fmt::format("AreaLightSource \"{}\" is not supported; only \"diffuse\" is",
+                            Printable(in.Name())));
+    in.Copy(ParameterType::String, {"lightgroup"});
+    in.write.Bool("twosided", in.Bool("twosided", false));
+    if (const std::string file = in.String("filename"); !file.empty()) {
+        if (in.Spectrum("L")) in.Fail("an area light has \"L\" or \"filename\", not both");
+        in.write.Texture("emission", in.AddImage(file, false));
+    }
+    in.write.Spectrum("L", Color(in, "L"));
+    in.Copy(ParameterType::Float, {"power"});
+    if (in.Has(ParameterType::Float, "spread")) {
+        in.Warn(
+            "\"spread\" is no parameter of pbrt-v4; it is taken as the angle of the cone, in "
+            "degrees, that each point shines into");
+        in.Copy(ParameterType::Float, {"spread"});
+    }
+    return in.Finish("diffuse", "AreaLightSource \"diffuse\"");
 }
 
 }  // namespace lull

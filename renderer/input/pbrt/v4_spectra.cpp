@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "renderer/base/color.h"
-#include "renderer/input/cie_table.h"
 #include "renderer/input/spectrum.h"
 #include "stopping/base/input_file.h"
 
@@ -115,8 +114,8 @@ Eigen::Vector3d Xyz(const Spectrum& spectrum, const Light& light) {
     for (int i = 0; i < kCieRows; ++i) {
         const double power = light(kCieFirst + i);
         const double value = power * spectrum(double(kCieFirst + i));
-        sum += value * Eigen::Vector3d(kCieTable[i].x, kCieTable[i].y, kCieTable[i].z);
-        white += power * double(kCieTable[i].y);
+        sum += value * Eigen::Vector3d(kCieX[i], kCieY[i], kCieZ[i]);
+        white += power * double(kCieY[i]);
     }
     return sum / white;
 }
@@ -245,15 +244,15 @@ Mat3f RgbFromColorSpace(const std::string& name, const FileLoc& loc) {
 }
 
 Mat3f WhiteBalance(float kelvin) {
+    Eigen::Matrix3d rgbFromXyz;
+    for (int i = 0; i < 3; ++i)
+        rgbFromXyz.col(i) = RgbFromXyz(i == 0, i == 1, i == 2).matrix().cast<double>();
+    const Eigen::Matrix3d xyzFromRgb = rgbFromXyz.inverse();
     // The second radiation constant was 1.4380 when the daylight's formula was made.
     const double t = double(kelvin) * 1.4388 / 1.4380;
     Eigen::Vector3d white;
     if (t < 4000) {
-        // Undo RgbFromXyz(), which has an inverse.
-        Eigen::Matrix3d m;
-        for (int i = 0; i < 3; ++i)
-            m.col(i) = RgbFromXyz(i == 0, i == 1, i == 2).matrix().cast<double>();
-        white = m.inverse() * RgbFromBlackbody(t).matrix().cast<double>();
+        white = xyzFromRgb * RgbFromBlackbody(t).matrix().cast<double>();
         white /= white.y();
     } else {
         // Chromaticity of daylight (CIE 15).
@@ -262,11 +261,8 @@ Mat3f WhiteBalance(float kelvin) {
         const double y = (-3 * x + 2.87) * x - .275;
         white = Eigen::Vector3d(x / y, 1, (1 - x - y) / y);
     }
-    Eigen::Matrix3d bradford, rgbFromXyz;
+    Eigen::Matrix3d bradford;
     bradford << .8951, .2664, -.1614, -.7502, 1.7135, .0367, .0389, -.0685, 1.0296;
-    for (int i = 0; i < 3; ++i)
-        rgbFromXyz.col(i) = RgbFromXyz(i == 0, i == 1, i == 2).matrix().cast<double>();
-    const Eigen::Matrix3d xyzFromRgb = rgbFromXyz.inverse();
     const Eigen::Vector3d from = bradford * white;
     const Eigen::Vector3d to = bradford * xyzFromRgb * Eigen::Vector3d::Ones();
     const Eigen::Matrix3d adapt =

@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <string_view>
 
-#include "renderer/input/pbrt/v4_reader.h"
+#include "renderer/input/pbrt/v4.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
 namespace {
 
 void CopyMapping(V4Reader* in) {
-    in->Copy(ParameterType::String, "mapping");
-    for (const char* name : {"uscale", "vscale", "udelta", "vdelta"})
-        in->Copy(ParameterType::Float, name);
-    for (const char* name : {"v1", "v2"}) in->Copy(ParameterType::Vector3, name);
+    in->Copy(ParameterType::String, {"mapping"});
+    in->Copy(ParameterType::Float, {"uscale", "vscale", "udelta", "vdelta"});
+    in->Copy(ParameterType::Vector3, {"v1", "v2"});
 }
 
 // Copies a texture parameter of the texture's own type.
@@ -23,32 +22,32 @@ void CopyOperand(V4Reader* in, const char* name, bool isSpectrum, float otherwis
                  const char* to = nullptr) {
     if (!to) to = name;
     if (const TextureRef* texture = in->Texture(name))
-        in->SetTexture(to, *texture);
+        in->write.Texture(to, *texture);
     else if (isSpectrum)
-        in->Set(to, in->Surface(name, Rgb::Constant(otherwise)));
+        in->write.Spectrum(to, in->Surface(name, Rgb::Constant(otherwise)));
     else
-        in->Set(to, in->Float(name, otherwise));
+        in->write.Float(to, in->Float(name, otherwise));
 }
 
 void CopyImage(V4Reader* in, bool isSpectrum) {
     CopyMapping(in);
-    in->Copy(ParameterType::String, "filename");
-    in->Copy(ParameterType::Float, "scale");
-    in->Copy(ParameterType::Bool, "invert");
+    in->Copy(ParameterType::String, {"filename"});
+    in->Copy(ParameterType::Float, {"scale"});
+    in->Copy(ParameterType::Bool, {"invert"});
     in->Ignore({"filter", "maxanisotropy"});
     std::string wrap = in->String("wrap", "repeat");
     if (wrap == "octahedralsphere") {
         in->Warn("wrap \"octahedralsphere\" is replaced by \"repeat\"");
         wrap = "repeat";
     }
-    in->SetString("wrap", wrap);
-    in->SetString("encoding", in->String("encoding", "sRGB"));
-    if (!isSpectrum) in->SetString("channel", "mean or alpha");
+    in->write.String("wrap", wrap);
+    in->write.String("encoding", in->String("encoding", "sRGB"));
+    if (!isSpectrum) in->write.String("channel", "mean or alpha");
 }
 
 // Multiplies a texture by another. The factor of an image is multiplied with its texels, before
 // they are inverted.
-Entity TranslateScale(V4Reader in, bool isSpectrum, const std::string& owner) {
+Entity TranslateScale(V4Reader& in, bool isSpectrum, const std::string& owner) {
     const TextureRef* texture = in.Texture("tex");
     const int index = !texture ? -1 : isSpectrum ? texture->spectrumIndex : texture->floatIndex;
     const float factor = in.Float("scale", 1);
@@ -59,16 +58,15 @@ Entity TranslateScale(V4Reader in, bool isSpectrum, const std::string& owner) {
             in.Finish("", owner);
             const float scale = factor * image.parameters.GetFloat("scale", 1);
             copy.loc = in.Loc();
-            copy.parameters.Add(
-                {ParameterType::Float, "scale", in.Loc(), std::vector<float>{scale}});
+            ParameterWriter(&copy.parameters, in.Loc()).Float("scale", scale);
             return copy;
         }
     }
     // (1 - s) 0 + s tex.
     if (isSpectrum)
-        in.Set("tex1", Rgb(Rgb::Zero()));
+        in.write.Spectrum("tex1", Rgb::Zero());
     else
-        in.Set("tex1", 0.f);
+        in.write.Float("tex1", 0.f);
     CopyOperand(&in, "tex", isSpectrum, 1, "tex2");
     CopyOperand(&in, "scale", false, 1, "amount");
     return in.Finish("mix", owner);
@@ -76,7 +74,8 @@ Entity TranslateScale(V4Reader in, bool isSpectrum, const std::string& owner) {
 
 }  // namespace
 
-Entity TranslateTexture(V4Reader in, bool isSpectrum) {
+Entity TranslateTexture(V4Reader& in) {
+    const bool isSpectrum = in.Context().kind == EntityKind::SpectrumTexture;
     const std::string kind = in.Name(), owner = "texture \"" + Printable(kind) + "\"";
     const auto operands = [&](std::initializer_list<const char*> names, float first) {
         for (const char* name : names) {
@@ -93,7 +92,7 @@ Entity TranslateTexture(V4Reader in, bool isSpectrum) {
     } else if (kind == "directionmix") {
         operands({"tex1", "tex2"}, 0);
         const Vec3f dir = in.All().GetVector3("dir", Vec3f::UnitY());
-        in.Add(ParameterType::Vector3, "dir", std::vector<float>{dir.x(), dir.y(), dir.z()});
+        in.write.Floats(ParameterType::Vector3, "dir", {dir.x(), dir.y(), dir.z()});
     } else if (kind == "imagemap") {
         CopyImage(&in, isSpectrum);
     } else if (kind == "bilerp") {
@@ -101,15 +100,14 @@ Entity TranslateTexture(V4Reader in, bool isSpectrum) {
         operands({"v00", "v01", "v10", "v11"}, 0);
     } else if (kind == "checkerboard") {
         CopyMapping(&in);
-        in.Copy(ParameterType::Integer, "dimension");
+        in.Copy(ParameterType::Integer, {"dimension"});
         operands({"tex1", "tex2"}, 1);
     } else if (kind == "dots") {
         CopyMapping(&in);
         operands({"inside", "outside"}, 1);
     } else if (kind == "fbm" || kind == "wrinkled" || (kind == "marble" && isSpectrum)) {
-        in.Copy(ParameterType::Integer, "octaves");
-        for (const char* name : {"roughness", "scale", "variation"})
-            in.Copy(ParameterType::Float, name);
+        in.Copy(ParameterType::Integer, {"octaves"});
+        in.Copy(ParameterType::Float, {"roughness", "scale", "variation"});
     } else if (kind != "windy") {
         in.Fail(fmt::format("{} texture \"{}\" is not supported", isSpectrum ? "spectrum" : "float",
                             Printable(kind)));
@@ -143,7 +141,7 @@ T Bilinear(const std::array<T, 4>& c, float u, float v) {
 }
 
 // Cuts bilinear patches into triangles, 2 where one is flat, and 128 otherwise.
-Entity TranslatePatches(V4Reader in) {
+Entity TranslatePatches(V4Reader& in) {
     constexpr int kCurvedSteps = 8;
     const auto p = Vectors<Vec3f>(in, ParameterType::Point3, "P");
     const auto n = Vectors<Vec3f>(in, ParameterType::Normal, "N");
@@ -202,10 +200,10 @@ Entity TranslatePatches(V4Reader in) {
                 triangles.insert(triangles.end(), {a, a + 1, c + 1, a, c + 1, c});
             }
     }
-    in.Add(ParameterType::Point3, "P", points);
-    in.Add(ParameterType::Point2, "uv", uvs);
-    in.Add(ParameterType::Integer, "indices", triangles);
-    if (!normals.empty()) in.Add(ParameterType::Normal, "N", normals);
+    in.write.Floats(ParameterType::Point3, "P", std::move(points));
+    in.write.Floats(ParameterType::Point2, "uv", std::move(uvs));
+    in.write.Ints("indices", std::move(triangles));
+    if (!normals.empty()) in.write.Floats(ParameterType::Normal, "N", std::move(normals));
     return in.Finish("trianglemesh", "Shape \"bilinearmesh\"");
 }
 
@@ -213,51 +211,49 @@ Entity TranslatePatches(V4Reader in) {
 void CopyAlpha(V4Reader* in) {
     const float alpha = in->Float("alpha", 1);
     if (const TextureRef* texture = in->Texture("alpha"))
-        in->SetTexture("coverage", *texture);
+        in->write.Texture("coverage", *texture);
     else if (alpha <= 0)
-        in->SetBool("invisible", true);
+        in->write.Bool("invisible", true);
     else if (alpha < 1)
-        in->Set("coverage", alpha);
+        in->write.Float("coverage", alpha);
 }
 
 }  // namespace
 
-Entity TranslateShape(V4Reader in) {
+Entity TranslateShape(V4Reader& in) {
     const std::string& kind = in.Name();
-    const auto copy = [&](ParameterType type, std::initializer_list<const char*> names) {
-        for (const char* name : names) in.Copy(type, name);
-    };
     CopyAlpha(&in);
     if (kind == "bilinearmesh") return TranslatePatches(in);
     if (kind == "trianglemesh") {
-        copy(ParameterType::Integer, {"indices", "faceIndices"});
-        copy(ParameterType::Point3, {"P"});
-        copy(ParameterType::Point2, {"uv"});
-        copy(ParameterType::Normal, {"N"});
+        in.Copy(ParameterType::Integer, {"indices", "faceIndices"});
+        in.Copy(ParameterType::Point3, {"P"});
+        in.Copy(ParameterType::Point2, {"uv"});
+        in.Copy(ParameterType::Normal, {"N"});
         in.Ignore({"S"});
         // Three points are a triangle.
         if (!in.Has(ParameterType::Integer, "indices") &&
             in.All().GetFloats(ParameterType::Point3, "P").size() == 9)
-            in.Add(ParameterType::Integer, "indices", std::vector<int>{0, 1, 2});
+            in.write.Ints("indices", {0, 1, 2});
     } else if (kind == "plymesh") {
-        copy(ParameterType::String, {"filename"});
+        in.Copy(ParameterType::String, {"filename"});
         if (in.Texture("displacement"))
             in.Fail(
                 "\"displacement\" of a plymesh is not supported; displace the mesh itself, or "
                 "use the material's \"displacement\", which tilts its normals");
         in.Ignore({"edgelength"});
     } else if (kind == "loopsubdiv") {
-        copy(ParameterType::Integer, {"levels", "indices"});
-        copy(ParameterType::Point3, {"P"});
-        copy(ParameterType::String, {"scheme"});
+        in.Copy(ParameterType::Integer, {"levels", "indices"});
+        in.Copy(ParameterType::Point3, {"P"});
+        in.Copy(ParameterType::String, {"scheme"});
     } else if (kind == "sphere" || kind == "cylinder" || kind == "disk") {
-        copy(ParameterType::Float, {"radius", "zmin", "zmax", "phimax", "height", "innerradius"});
+        in.Copy(ParameterType::Float,
+                {"radius", "zmin", "zmax", "phimax", "height", "innerradius"});
     } else if (kind == "curve") {
-        copy(ParameterType::Point3, {"P"});
-        copy(ParameterType::Normal, {"N"});
-        copy(ParameterType::String, {"type", "basis"});
-        copy(ParameterType::Integer, {"degree", "splitdepth"});
-        copy(ParameterType::Float, {"width", "width0", "width1", "splitdepth"});
+        in.Copy(ParameterType::Point3, {"P"});
+        in.Copy(ParameterType::Normal, {"N"});
+        in.Copy(ParameterType::String, {"type", "basis"});
+        in.Copy(ParameterType::Integer, {"degree", "splitdepth"});
+        in.Copy(ParameterType::Float, {"width", "width0", "width1", "splitdepth"});
     } else {
         in.Fail(
             fmt::format("Shape \"{}\" is not supported in pbrt-v4; sphere, cylinder, disk, "
@@ -267,27 +263,27 @@ Entity TranslateShape(V4Reader in) {
     return in.Finish(kind, "Shape \"" + kind + "\"");
 }
 
-Entity TranslateMedium(V4Reader in) {
+Entity TranslateMedium(V4Reader& in) {
     const std::string& kind = in.Name();
     const std::string owner = "medium \"" + Printable(kind) + "\"";
     in.String("type");
     const bool isGrid = kind == "uniformgrid";
     if (!isGrid && kind != "homogeneous")
         in.Fail(fmt::format("{} is not supported; homogeneous and uniformgrid are", owner));
-    for (const char* name : {"g", "scale"}) in.Copy(ParameterType::Float, name);
+    in.Copy(ParameterType::Float, {"g", "scale"});
     if (in.Has(ParameterType::String, "preset") && !isGrid) {
-        in.Copy(ParameterType::String, "preset");
+        in.Copy(ParameterType::String, {"preset"});
     } else {
-        in.Set("sigma_a", in.Surface("sigma_a", Rgb::Ones()));
-        in.Set("sigma_s", in.Surface("sigma_s", Rgb::Ones()));
+        in.write.Spectrum("sigma_a", in.Surface("sigma_a", Rgb::Ones()));
+        in.write.Spectrum("sigma_s", in.Surface("sigma_s", Rgb::Ones()));
     }
     if ((in.Light("Le", Rgb::Zero()) > 0).any() || in.Has(ParameterType::Float, "temperature"))
         in.Fail("media that emit light are not supported");
     in.Ignore({"Lescale", "temperaturescale", "temperatureoffset"});
     if (isGrid) {
-        in.Copy(ParameterType::Float, "density");
-        for (const char* name : {"nx", "ny", "nz"}) in.Copy(ParameterType::Integer, name);
-        for (const char* name : {"p0", "p1"}) in.Copy(ParameterType::Point3, name);
+        in.Copy(ParameterType::Float, {"density"});
+        in.Copy(ParameterType::Integer, {"nx", "ny", "nz"});
+        in.Copy(ParameterType::Point3, {"p0", "p1"});
     }
     return in.Finish(isGrid ? "heterogeneous" : kind, owner);
 }

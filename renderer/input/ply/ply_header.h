@@ -1,4 +1,4 @@
-// Reads the headers of PLY files.
+// Reads the headers and values of PLY files, and divides their polygons.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "renderer/base/error.h"
+#include "renderer/base/math.h"
 #include "renderer/files/file_io.h"
 
 namespace lull {
@@ -155,5 +157,15 @@ struct PlyCursor {
             for (size_t i = 0; i < count; ++i) Word();
     }
 };
+
+// Divides polygons into triangles.
+
+inline constexpr size_t kMostPolygonCorners = 256;
+
+// Returns the triangles of a simple polygon of 3 to kMostPolygonCorners corners, by the numbers of
+// its corners. Where it is convex, those of a fan about the first, as in pbrt-v3's quads; so it is
+// where `positions` lacks one of its vertices.
+std::vector<std::array<size_t, 3>> TrianglesOf(std::span<const uint32_t> vertices,
+                                               std::span<const Vec3f> positions);
 
 }  // namespace lull

@@ -9,12 +9,12 @@
 #include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/commands/tables.h"
 #include "renderer/lab/comparison/compared_files.h"
-#include "renderer/lab/comparison/error_curves.h"
+#include "renderer/lab/comparison/comparison.h"
 #include "renderer/mpi/job.h"
 #include "renderer/results/image_files.h"
 #include "renderer/results/report.h"
 #include "stopping/base/parallel.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 
 namespace lull::compare {
 
@@ -293,8 +293,7 @@ void WriteComparison(const CompareOptions& options, ComparisonReport report, Res
     results.WriteText(options.output + ".compare.json", Dump(ComparisonJson(report)));
     if (!options.report.empty()) results.WriteText(options.report, MakeComparisonPage(report));
     fmt::print("{}", ComparisonTable(report));
-    for (const std::string& file : results.Names()) fmt::print("{}\n", file);
-    results.Check();
+    results.PrintAndCheck();
 }
 
 void AddCommand(CLI::App& app, Command* command, MpiJob* job) {

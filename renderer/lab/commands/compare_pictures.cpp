@@ -5,7 +5,7 @@
 #include "renderer/image/image_io.h"
 #include "renderer/lab/commands/compare_options.h"
 #include "renderer/lab/commands/lab_options.h"
-#include "renderer/lab/viewpoints/picture_comparison.h"
+#include "renderer/lab/viewpoints/picture_folder.h"
 #include "renderer/results/report.h"
 #include "stopping/base/parallel.h"
 #include "stopping/rules/thresholds.h"

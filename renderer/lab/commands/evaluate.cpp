@@ -138,15 +138,10 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(CLI::ExistingFile)
         ->excludes(human)
         ->type_name("A.csv");
-    app.add_option("--predicted", o->predicted, "Evaluate these thresholds; can be given again")
+    AddList(app, "--predicted", &o->predicted, "Evaluate these thresholds; can be given again")
         ->check(CLI::ExistingFile)
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("P.csv");
-    app.add_option("--stop", o->rules, "Evaluate this rule; can be given again")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->type_name("RULE");
+    AddList(app, "--stop", &o->rules, "Evaluate this rule; can be given again")->type_name("RULE");
     AddCautionOption(app, &o->caution);
     app.add_flag(
         "--rivals", o->rivals,
@@ -156,10 +151,7 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_flag("--constants", o->constants, "Evaluate constant spp, too");
     AddChoiceOption(app, "--choose-by", &o->chooseBy,
                     "Choose settings of baselines by the least error, or critical error at 2 %");
-    app.add_option("--without", o->without, "Leave out this viewpoint; can be given again")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->type_name("NAME");
+    AddList(app, "--without", &o->without, "Leave out this viewpoint; can be given again");
     AddCriticalErrorOptions(app, &o->scoring);
     app.add_flag("--brief", o->brief, "Print no tables of single viewpoints");
     app.add_option("--csv", o->csv, "Write all rows to a CSV file")->type_name("F.csv");

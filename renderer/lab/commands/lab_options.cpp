@@ -25,6 +25,14 @@ void AddSplitOption(CLI::App& app, std::string* file, const std::string& help) {
         ->type_name("paper:FILE");
 }
 
+CLI::Option* AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,
+                     const std::string& help) {
+    return app.add_option(name, *list, help)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("NAME");
+}
+
 void AddViewingOption(CLI::App& app, DisplayModel* display) {
     app.add_option_function<std::string>(
            "--viewing",
@@ -53,12 +61,9 @@ void AllowOnly(const CLI::App& app, std::span<const char* const> names, const st
 
 void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blockSize) {
     CLI::Option* images =
-        app.add_option(
-               "--images", *folders,
-               "Pictures of another renderer, their spp in the file names, to run rules on;\n"
-               "NAME names the viewpoint [the folder's name]; can be given again")
-            ->expected(1)
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        AddList(app, "--images", folders,
+                "Pictures of another renderer, their spp in the file names, to run rules on;\n"
+                "NAME names the viewpoint [the folder's name]; can be given again")
             ->type_name("DIR[:NAME]");
     AddBlockOption(app, blockSize)->needs(images);
 }
@@ -91,6 +96,14 @@ ViewpointRecording RecordAndTell(const PictureFolder& folder, PictureRecordingOp
                               folder.files.rbegin()->first, viewpoint.blocks.size(),
                               viewpoint.blockCount));
     return viewpoint;
+}
+
+void WriteRecording(const ViewpointRecording& viewpoint, const std::string& path,
+                    const Messages& messages, ResultFiles* results) {
+    results->Write(path, [&](const std::string& file) {
+        AddToDatasetFile(viewpoint, file,
+                         [&] { messages.Note("waiting for another process to write " + file); });
+    });
 }
 
 }  // namespace lull

@@ -17,6 +17,10 @@ namespace lull {
 // it is judged by.
 void AddSplitOption(CLI::App& app, std::string* file, const std::string& help);
 
+// Adds an option that can be given again.
+CLI::Option* AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,
+                     const std::string& help);
+
 // Adds --viewing, the viewing conditions for visible differences; `display` must outlive the
 // parsing.
 void AddViewingOption(CLI::App& app, DisplayModel* display);
@@ -37,5 +41,10 @@ std::vector<NamedFile> InputsOf(const PictureFolder& folder);
 // Records pictures and tells every ten seconds how far it is, and at last how many there were.
 ViewpointRecording RecordAndTell(const PictureFolder& folder, PictureRecordingOptions options,
                                  const Messages& messages);
+
+// Adds the recording to the data set of a file, or makes it. Tells where it waits for another
+// process.
+void WriteRecording(const ViewpointRecording&, const std::string& path, const Messages&,
+                    ResultFiles*);
 
 }  // namespace lull

@@ -108,26 +108,20 @@ std::vector<int> LimitsOf(const Options& options, size_t blocks,
     return limits;
 }
 
-// There is no render that the ranks could share.
-ExitCode SayAllIsThere(const Options& options, MpiJob* ranks) {
-    ranks->Begin("nothing");
-    ranks->End();
-    MessagesOf(options.render)
-        .Note(fmt::format("{} has all blocks of '{}' already", options.output, options.name));
+// Writes to a new data set where that of the file cannot be written. Throws Error then.
+ExitCode Write(const ViewpointRecording& viewpoint, const Options& options) {
+    ResultFiles results;
+    WriteRecording(viewpoint, options.output, MessagesOf(options.render), &results);
+    results.PrintAndCheck();
     return kDone;
 }
 
-// Adds the recording to the data set, or to a new one where that cannot be written. Throws Error
-// then.
-void Write(const ViewpointRecording& viewpoint, const std::string& output,
-           const Messages& messages) {
-    ResultFiles results;
-    results.Write(output, [&](const std::string& file) {
-        AddToDatasetFile(viewpoint, file,
-                         [&] { messages.Note("waiting for another process to write " + file); });
-    });
-    for (const std::string& name : results.Names()) fmt::print("{}\n", name);
-    results.Check();
+// Returns whether nothing is left to record, and tells it.
+bool IsAllThere(const std::vector<int>& limits, const Options& options) {
+    if (std::ranges::any_of(limits, [](int limit) { return limit > 0; })) return false;
+    MessagesOf(options.render)
+        .Note(fmt::format("{} has all blocks of '{}' already", options.output, options.name));
+    return true;
 }
 
 ExitCode RecordFolder(const Options& options) {
@@ -141,18 +135,13 @@ ExitCode RecordFolder(const Options& options) {
     wanted.name = folder.name;
     wanted.render.schedule.cap = described.cap;
     const std::vector<int> limits = LimitsOf(wanted, size_t(described.blockCount), dataset);
-    const Messages messages = MessagesOf(options.render);
-    if (std::ranges::all_of(limits, [](int limit) { return limit == 0; })) {
-        messages.Note(
-            fmt::format("{} has all blocks of '{}' already", options.output, folder.name));
-        return kDone;
-    }
+    if (IsAllThere(limits, wanted)) return kDone;
     ViewpointRecording viewpoint;
     RunWithThreads(options.render.scene.compile.threads, [&] {
-        viewpoint = RecordAndTell(folder, {.blockSize = blockSize, .limits = limits}, messages);
+        viewpoint = RecordAndTell(folder, {.blockSize = blockSize, .limits = limits},
+                                  MessagesOf(options.render));
     });
-    Write(viewpoint, options.output, messages);
-    return kDone;
+    return Write(viewpoint, options);
 }
 
 ExitCode Run(Options options, MpiJob* ranks) {
@@ -168,8 +157,11 @@ ExitCode Run(Options options, MpiJob* ranks) {
     CheckRecordable(blocks, schedule);
     std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
     const std::vector<int> limits = LimitsOf(options, blocks.size(), dataset);
-    if (std::ranges::all_of(limits, [](int limit) { return limit == 0; }))
-        return SayAllIsThere(options, ranks);
+    if (IsAllThere(limits, options)) {  // there is no render that the ranks could share
+        ranks->Begin("nothing");
+        ranks->End();
+        return kDone;
+    }
 
     render.Compile();
     render.provenance.criterion = fmt::format("record:{}", fmt::join(limits, ","));
@@ -183,7 +175,7 @@ ExitCode Run(Options options, MpiJob* ranks) {
         &session, [&](const auto&... how) { return RecordBlocks(how..., limits, &viewpoint); });
     if (const auto code = render.End(result.cancelled)) return *code;
 
-    Write(viewpoint, options.output, MessagesOf(options.render));
+    Write(viewpoint, options);
     render.RemoveCheckpoint();
     return kDone;
 }

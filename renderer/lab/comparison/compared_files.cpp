@@ -165,14 +165,6 @@ void SetCosts(const std::vector<PixelRect>& blocks, ComparedFile* file) {
     file->image.costs = std::move(costs);
 }
 
-RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region) {
-    ComparedFile file = ReadComparedFile(path, path);
-    if (HaveOneSize(file.shown, region)) MoveTo(file.shown, &file);
-    if (!HaveOneSize(file.region, region))
-        throw Error(fmt::format("{}: has {}, not {}", path, SizeOf(file.shown), SizeOf(region)));
-    return std::move(file.image.image);
-}
-
 ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
                               const Comparison& comparison) {
     ComparedFile file = ReadComparedFile(path, name);

@@ -28,10 +28,6 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
 // Reads such a file as the picture that it shows (ShownWindow()). Throws Error.
 RgbImage ReadShownPicture(const std::string& path);
 
-// Reads an image as ReadShownPicture() does, or its data alone if they have the size of the region.
-// Throws Error if neither has.
-RgbImage ReadImageOfSize(const std::string& path, const PixelRect& region);
-
 // Reads an image to be compared with others of a region and blocks that are known; a picture for
 // displays of the same size can be of any part. Its wall seconds are 0 if the file has none. Throws
 // Error if it shows another part of the image.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/film/film.h"
-#include "renderer/image/rgb_image.h"
+#include "renderer/image/image.h"
 #include "renderer/vision/visible_difference.h"
 
 namespace lull {

@@ -204,7 +204,9 @@ std::string MakeComparisonPage(const ComparisonReport& report) {
                 MapUri(OnScale(image.visibleDifference), image.image.width, image.image.height);
     }
     NotePictureScale(report.comparison.region.Width(), report.comparison.region.Height(), &page);
-    return FillPage("comparison.html", {{"data", JsonForScript(page)}});
+    return FillPage("page.html", {{"data", JsonForScript(page)},
+                                  {"report.css", std::string(EmbeddedFile("comparison.css"))},
+                                  {"report.js", std::string(EmbeddedFile("comparison.js"))}});
 }
 
 }  // namespace lull

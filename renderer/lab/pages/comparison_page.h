@@ -1,7 +1,7 @@
 // Writes comparisons: as JSON for programs, as a page for people.
 #pragma once
 
-#include "renderer/lab/comparison/error_curves.h"
+#include "renderer/lab/comparison/comparison.h"
 #include "renderer/pages/html_page.h"
 
 namespace lull {

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <set>
 
 #include "renderer/base/error.h"
@@ -176,6 +178,115 @@ EntropiesOfPicture MeasureEntropies(const RgbImage& picture, int blockSize, int 
     std::vector<SvdEntropy> means;
     for (const BlockEntropies& block : result.blocks) means.push_back(block.mean);
     result.mean = MeanOf(means);
+    return result;
+}
+
+namespace {
+
+void Paste(const RgbImage& from, const PixelRect& rect, RgbImage* to) {
+    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
+        const ptrdiff_t begin = (ptrdiff_t(y) * from.width + rect.min.x()) * 3;
+        std::copy_n(from.values.begin() + begin, rect.Width() * 3, to->values.begin() + begin);
+    }
+}
+
+// A rule at work on all blocks of the pictures.
+class RuleOnPictures {
+  public:
+    RuleOnPictures(PictureRule given, const PictureFolder& folder, ScheduleOptions schedule)
+        : rule(std::move(given)) {
+        if (!rule.rule.stopAt && rule.rule.need > ViewNeed::Mean)
+            throw Error(
+                fmt::format("{}: the rule needs a half buffer, which pictures do not have; "
+                            "choose one that needs none, such as learned or entropy",
+                            rule.rule.text));
+        schedule.smallestSide = rule.rule.smallestSide;
+        blocks = MakeBlocks(folder.Region(), schedule);
+        stops.resize(blocks.size());
+        const double area = double(folder.Region().Area());
+        const CriterionMaker make = CriteriaOf(rule.rule);
+        for (int i = 0; const Block& block : blocks) {
+            const BlockInfo info{i++, double(block.pixels.Area()) / area};
+            criteria.push_back(block.votes ? make(info) : nullptr);
+        }
+        image.name = rule.name;
+        image.rule = rule.rule.text;
+        image.image = {folder.width, folder.height,
+                       std::vector<float>(size_t(folder.Region().Area()) * 3)};
+    }
+
+    // Decides at `spp`; picture() returns the picture, where one is needed.
+    void Observe(int spp, bool isLast, const std::function<const RgbImage&()>& picture) {
+        const auto looks = [&](const auto& criterion) {
+            return criterion && criterion->Need(spp) != ViewNeed::Nothing;
+        };
+        const RgbImage* shown = std::ranges::any_of(criteria, looks) ? &picture() : nullptr;
+        std::vector<Decision> decisions(blocks.size());
+        ForEachIndex(int(blocks.size()), [&](int n) {
+            const size_t i = size_t(n);
+            if (!criteria[i]) return;
+            const PixelRect& rect = blocks[i].pixels;
+            BlockView view{.width = rect.Width(), .height = rect.Height(), .spp = spp};
+            std::vector<float> pixels;
+            if (looks(criteria[i])) pixels = CutPixels(shown->values, shown->width, rect);
+            view.mean = pixels;
+            decisions[i] = criteria[i]->Observe(view);
+        });
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            hasLooked |= decisions[i].checked;
+            const int leader = blocks[i].leader;
+            const Decision& decision = decisions[leader >= 0 ? size_t(leader) : i];
+            if (stops[i] > 0 || !(decision.stop || isLast)) continue;
+            stops[i] = spp;
+            criteria[i].reset();
+            Paste(picture(), blocks[i].pixels, &image.image);
+        }
+    }
+
+    // Returns the image, whose blocks have all stopped.
+    ComparedImage End() {
+        for (const int spp : stops) image.costs.push_back({.spp = spp});
+        return std::move(image);
+    }
+
+    PictureRule rule;
+    bool hasLooked = false;
+
+  private:
+    std::vector<Block> blocks;
+    std::vector<int> stops;                            // 0: not yet
+    std::vector<std::unique_ptr<Criterion>> criteria;  // null: stopped, or follows another
+    ComparedImage image;
+};
+
+}  // namespace
+
+PictureComparison ComparePictures(const PictureFolder& folder, const ScheduleOptions& schedule,
+                                  std::vector<PictureRule> rules) {
+    PictureComparison result{.comparison = BeginComparison(folder.Region(), schedule)};
+    Comparison& comparison = result.comparison;
+    const int last = folder.files.rbegin()->first;
+    comparison.cap = last;
+    std::vector<std::unique_ptr<RuleOnPictures>> running;
+    for (PictureRule& rule : rules)
+        running.push_back(std::make_unique<RuleOnPictures>(std::move(rule), folder, schedule));
+    ComparedImage reference;
+    reference.name = "reference";
+    for (const int spp : folder.Spp()) {
+        std::optional<RgbImage> read;
+        const auto picture = [&]() -> const RgbImage& {
+            return read ? *read : read.emplace(ReadPicture(folder, spp));
+        };
+        for (const auto& one : running) one->Observe(spp, spp == last, picture);
+        if (spp == last) reference.image = picture();
+    }
+    for (const auto& one : running) {
+        if (!one->hasLooked) result.blind.push_back(one->rule.rule.text);
+        comparison.images.push_back(one->End());
+    }
+    for (size_t i = 0; i < comparison.blocks.size(); ++i) reference.costs.push_back({.spp = last});
+    comparison.images.push_back(std::move(reference));
+    for (ComparedImage& image : comparison.images) image.isDisplay = IsDisplayPicture(folder, last);
     return result;
 }
 

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "renderer/image/rgb_image.h"
+#include "renderer/image/image.h"
+#include "renderer/lab/comparison/comparison.h"
 #include "renderer/schedule/schedule.h"
+#include "stopping/rules/rule.h"
 #include "stopping/signals/attributes26.h"
 #include "stopping/signals/svd_entropy.h"
 
@@ -82,5 +84,27 @@ struct EntropiesOfPicture {
 // side than sub-blocks, or than the 5 that the attributes need. Shares the blocks between threads.
 EntropiesOfPicture MeasureEntropies(const RgbImage& picture, int blockSize, int subBlocks,
                                     bool withAttributes);
+
+// Builds the images that stopping rules, or people, would have left of such pictures.
+
+// A rule that stops blocks, and the name of its image.
+struct PictureRule {
+    std::string name;
+    Rule rule;
+};
+
+struct PictureComparison {
+    Comparison comparison;  // an image for each rule and, as the reference, the last picture
+    // The rules that have checked no picture, as the pictures are too far apart for them.
+    std::vector<std::string> blind = {};
+};
+
+// Shows the pictures, which come at the spp of the folder, to all rules; their context had the pass
+// of PassOfPictures(). Each block is taken from the picture at which the rule stopped it, or
+// the first that has as many spp as a rule that counts them says, or the last. Blocks too small for
+// a rule follow their neighbour. Reads a picture only where it is needed. Throws Error, also for a
+// rule that compares halves of the samples, which pictures do not have. Call Measure() for figures.
+PictureComparison ComparePictures(const PictureFolder&, const ScheduleOptions&,
+                                  std::vector<PictureRule> rules);
 
 }  // namespace lull

@@ -13,27 +13,6 @@ namespace lull {
 
 namespace {
 
-// FNV-1a, 64 bits (Fowler, Noll, Vo).
-class Hash {
-  public:
-    void Add(std::string_view text) {
-        for (const char c : text) AddByte(uint8_t(c));
-        AddByte(0);
-    }
-    void Add(int value) {
-        for (int i = 0; i < 4; ++i) AddByte(uint8_t(uint32_t(value) >> 8 * i));
-    }
-    void Add(const DisplayPixels& pixels) {
-        for (const uint8_t v : pixels) AddByte(v);
-    }
-    uint64_t Value() const { return value; }
-
-  private:
-    void AddByte(uint8_t byte) { value = (value ^ byte) * 0x100000001b3; }
-
-    uint64_t value = 0xcbf29ce484222325;
-};
-
 std::vector<double> LightnessOfCodes(const DisplayPixels& pixels) {
     std::vector<double> lightness(pixels.size() / 3);
     Lightness(pixels, lightness);
@@ -43,17 +22,18 @@ std::vector<double> LightnessOfCodes(const DisplayPixels& pixels) {
 }  // namespace
 
 std::string StudyId(const Study& study) {
-    Hash hash;
-    hash.Add(study.viewpoint);
-    for (const int spp : study.levels) hash.Add(spp);
+    uint64_t hash = 0xcbf29ce484222325;  // FNV-1a, 64 bits (Fowler, Noll, Vo)
+    const auto add = [&](const auto* values, size_t count) {
+        for (const std::byte b : std::as_bytes(std::span(values, count)))
+            hash = (hash ^ uint64_t(b)) * 0x100000001b3;
+    };
+    add(study.viewpoint.c_str(), study.viewpoint.size() + 1);
+    add(study.levels.data(), study.levels.size());
     for (const StudyBlock& block : study.blocks) {
-        for (const Vec2i& corner : {block.pixels.min, block.pixels.max}) {
-            hash.Add(corner.x());
-            hash.Add(corner.y());
-        }
-        for (const DisplayPixels& picture : block.pictures) hash.Add(picture);
+        for (const Vec2i& corner : {block.pixels.min, block.pixels.max}) add(corner.data(), 2);
+        for (const DisplayPixels& picture : block.pictures) add(picture.data(), picture.size());
     }
-    return fmt::format("{:016x}", hash.Value());
+    return fmt::format("{:016x}", hash);
 }
 
 double NoiseOf(const StudyBlock& block, size_t level) {

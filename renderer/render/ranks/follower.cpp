@@ -20,12 +20,8 @@ class Follower {
         executor.pausing = true;  // until rank 0 has said where blocks are
     }
 
-    RenderResult Follow() {
-        return rank.Guarded([&] { return RunAll(); });
-    }
-
-  private:
-    RenderResult RunAll() {
+    // After an exception no task is at work.
+    RenderResult Follow() try {
         bool told = false;
         while (!ended) {
             channel.Exchange(
@@ -39,25 +35,29 @@ class Follower {
         }
         executor.Quiesce();
         return executor.Result();
+    } catch (...) {
+        executor.Quiesce();
+        throw;
     }
 
+  private:
     void Handle(RankWord word, StateReader& reader) {
         if (word == RankWord::Answer) {
-            const AnswerMessage answer = GetAnswer(reader);
+            const auto answer = reader.Get<AnswerMessage>();
             needs.at(size_t(answer.block)) = answer.need;
             const int ready = schedule.Decide(answer.block, {answer.stop, answer.noise});
             if (!executor.pausing) rank.Enqueue([this, ready] { executor.tasks.Spawn(ready); });
         } else if (word == RankWord::Round) {
             TracePart(reader.Get<LightRound>());
         } else if (word == RankWord::Splats) {
-            SplatPlane& plane = context.lightRounds->Planes().at(size_t(reader.Get<int32_t>()));
+            SplatPlane& plane = context.lightRounds->Planes().at(size_t(reader.Get<int>()));
             plane.Get(plane.Region(), &reader);
         } else if (word == RankWord::Lit) {
             schedule.BeginRound(context.lightRounds->End());
             executor.pausing = false;
             rank.EnqueueReady();
         } else if (word == RankWord::Start) {
-            Begin(GetStart(reader));
+            Begin(&reader);
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, needs.size());
             GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), context.film);
@@ -66,7 +66,7 @@ class Follower {
         } else if (word == RankWord::Pause) {
             executor.pausing = isAskedToPause = true;
         } else if (word == RankWord::Collect) {
-            if (reader.Get<uint8_t>())
+            if (reader.Get<bool>())
                 for (const int block : executor.Undo()) touched[size_t(block)] = true;
             SendPixels();
         } else if (word == RankWord::Resume || word == RankWord::Begin) {
@@ -85,14 +85,16 @@ class Follower {
     }
 
     // Goes on from where rank 0 says, as soon as the sums have come. It has those of all pixels.
-    void Begin(StartMessage start) {
-        if (start.blocks.size() != schedule.Unlocked().Blocks().size())
+    void Begin(StateReader* reader) {
+        auto deal = reader->GetVector<int>(kDamagedMessage);
+        const auto starts = reader->GetVector<BlockStart>(kDamagedMessage);
+        needs = reader->GetVector<ViewNeed>(kDamagedMessage);
+        if (starts.size() != schedule.Unlocked().Blocks().size())
             throw std::runtime_error("the ranks have different blocks");
         before = begun ? schedule.Share().deal : std::vector<int>();
         begun = true;
-        schedule.Restart(start.blocks, {channel.Rank(), std::move(start.deal)});
+        schedule.Restart(starts, {channel.Rank(), std::move(deal)});
         executor.ledger.TakeEffort();
-        needs = std::move(start.needs);
         touched.assign(needs.size(), false);
     }
 
@@ -110,18 +112,19 @@ class Follower {
     void SendSplats() {
         for (size_t i = 0; i < context.lightRounds->Planes().size(); ++i)
             channel.Post(0, PackSplats(int(i), context.lightRounds->Planes()[i]));
-        channel.Post(0, PackTraced(isWhole));
+        channel.Post(0, Pack(RankWord::Traced, isWhole));
     }
 
     void SendPart(int block) {
         const std::vector<PixelRect> tiles = schedule.TilesOfRank(block, channel.Rank());
         const TileEffort taken = rank.TakeEffort();
         const PartMessage part{block, taken.samples, executor.ledger.TakeSeconds(block),
-                               taken.seconds, MeansOf(tiles, needs[size_t(block)], *context.film)};
+                               taken.seconds};
         touched[size_t(block)] = true;
         if (needs[size_t(block)] == ViewNeed::Measured)
             channel.Post(0, PackPixels(block, tiles, *context.film));
-        channel.Post(0, Pack(part));
+        channel.Post(
+            0, Pack(RankWord::Part, part, MeansOf(tiles, needs[size_t(block)], *context.film)));
     }
 
     // Sends pixels that have changed since the last time, or may have.

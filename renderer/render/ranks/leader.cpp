@@ -30,12 +30,8 @@ class Leader {
         ForgetParts();
     }
 
-    RenderResult Lead() {
-        return rank.Guarded([&] { return RunAll(); });
-    }
-
-  private:
-    RenderResult RunAll() {
+    // After an exception no task is at work.
+    RenderResult Lead() try {
         SendStart({});
         executor.RestartIntervals();
         // Passes that an interruption has cut off need the light of their round, too.
@@ -65,7 +61,7 @@ class Leader {
             else if (deal.empty() || schedule.TimeCalled())
                 channel.PostToAll(Pack(RankWord::Resume));
             else
-                Deal();
+                Deal(executor.ledger.Blocks(schedule.Unlocked()));
             nextDeal = Seconds() + std::max(options.dealInterval, kLeastRun * (Seconds() - pause));
         }
         channel.PostToAll(Pack(RankWord::End));
@@ -77,8 +73,12 @@ class Leader {
             result.shares.push_back(double(std::ranges::count(dealt, other)) /
                                     double(dealt.size()));
         return result;
+    } catch (...) {
+        executor.Quiesce();
+        throw;
     }
 
+  private:
     // Learns from the samples of all ranks, if a round has ended, and lets each of them trace a
     // part of the light of the next, of which all of them need the whole.
     void EndLightRound() {
@@ -93,7 +93,7 @@ class Leader {
         splats.clear();
         traced.clear();
         executor.isLightTraced = true;
-        channel.PostToAll(Pack(rounds.Round()));
+        channel.PostToAll(Pack(RankWord::Round, rounds.Round()));
         TracePart(0);
         Await(traced);
         for (int other = 1; other < channel.Count(); ++other)
@@ -136,7 +136,7 @@ class Leader {
     void Merge(int from) {
         for (const std::vector<std::byte>& message : splats[from]) {
             StateReader reader(message);
-            context.lightRounds->Planes().at(size_t(reader.Get<int32_t>())).Merge(&reader);
+            context.lightRounds->Planes().at(size_t(reader.Get<int>())).Merge(&reader);
         }
         splats.erase(from);
     }
@@ -156,8 +156,6 @@ class Leader {
     }
 
     // Deals out the tiles by `deal`, with all pixels here and nobody at work.
-    void Deal() { Deal(executor.ledger.Blocks(schedule.Unlocked())); }
-
     void Deal(const std::vector<BlockResult>& blocks) {
         const std::vector<int> before = schedule.Share().deal;
         schedule.Restart(StartsOf(blocks, context, options), {0, std::exchange(deal, {})});
@@ -219,20 +217,19 @@ class Leader {
     // Tells the others where the blocks are and who has which tiles, and gives them the sums of
     // those that they did not have by the deal before.
     void SendStart(const std::vector<int>& before) {
-        StartMessage message;
-        message.deal = schedule.Share().deal;
+        std::vector<BlockStart> starts;
+        std::vector<ViewNeed> needs;
         const std::span<const Block> blocks = schedule.Unlocked().Blocks();
         for (int i = 0; i < int(blocks.size()); ++i) {
             const Block& block = blocks[size_t(i)];
             const bool mustEnd = schedule.HasClock() && schedule.Unlocked().MustEnd(i);
-            message.blocks.push_back({block.spp, block.stopped, block.stoppedByVote, block.noise,
-                                      mustEnd ? schedule.Unlocked().PassEnd(i) : 0,
-                                      schedule.Unlocked().HasVoted(i)});
-            message.needs.push_back(block.stopped
-                                        ? ViewNeed::Nothing
-                                        : executor.criteria.NeedAt(i, NextSpp(block.spp)));
+            starts.push_back({block.spp, block.stopped, block.stoppedByVote, block.noise,
+                              mustEnd ? schedule.Unlocked().PassEnd(i) : 0,
+                              schedule.Unlocked().HasVoted(i)});
+            needs.push_back(block.stopped ? ViewNeed::Nothing
+                                          : executor.criteria.NeedAt(i, NextSpp(block.spp)));
         }
-        channel.PostToAll(Pack(message));
+        channel.PostToAll(Pack(RankWord::Start, schedule.Share().deal, starts, needs));
         for (int to = 1; to < channel.Count() && executor.ledger.Samples() > 0; ++to)
             for (int i = 0; i < int(blocks.size()); ++i) {
                 const std::vector<PixelRect> tiles = rank.NewTiles(i, to, before);
@@ -269,14 +266,13 @@ class Leader {
                 schedule.CallTime();
                 channel.PostToAll(Pack(RankWord::TimeUp));
             }
-            if (executor.IsPauseDue() && HasGoneOn()) executor.pausing = true;
+            // With new samples, so that the shortest interval leads to an end.
+            if (executor.IsPauseDue() && executor.ledger.Samples() > samplesGathered)
+                executor.pausing = true;
             ThinkOfDeal();
             executor.ledger.Report(&schedule);
         }
     }
-
-    // Returns whether there are new samples, so that the shortest interval leads to an end.
-    bool HasGoneOn() { return executor.ledger.Samples() > samplesGathered; }
 
     // Brings everything to rest, and all pixels here.
     void Gather(bool undo) {
@@ -288,7 +284,7 @@ class Leader {
         Await(quiet);
         executor.Quiesce();  // decisions on arrived messages
         if (undo) executor.Undo();
-        channel.PostToAll(PackCollect(undo));
+        channel.PostToAll(Pack(RankWord::Collect, undo));
         Await(collected);
         samplesGathered = film->SampleCount();
         executor.ledger.SetSamples(samplesGathered);
@@ -324,7 +320,8 @@ class Leader {
 
     void Handle(int from, RankWord word, StateReader& reader) {
         if (word == RankWord::Part) {
-            TakePart(from, GetPart(reader));
+            const auto part = reader.Get<PartMessage>();
+            TakePart(from, part, reader.GetVector<float>(kDamagedMessage));
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, parts.size());
             GetPixels(reader, schedule.TilesOfRank(block, from), film);
@@ -332,7 +329,7 @@ class Leader {
             std::vector<std::byte>& message = splats[from].emplace_back(reader.Left());
             reader.GetAll(std::span(message));
         } else if (word == RankWord::Traced) {
-            executor.isLightTraced = reader.Get<uint8_t>() && executor.isLightTraced;
+            executor.isLightTraced = reader.Get<bool>() && executor.isLightTraced;
             traced.insert(from);
         } else if (word == RankWord::Quiet) {
             quiet.insert(from);
@@ -343,12 +340,12 @@ class Leader {
         }
     }
 
-    void TakePart(int from, PartMessage part) {
+    void TakePart(int from, const PartMessage& part, std::vector<float> values) {
         executor.ledger.AddPart(part.block, part.seconds, part.samples);
         {
             std::lock_guard lock(partsMutex);
             speeds.Add(from, part.samples, part.busySeconds);
-            parts[size_t(part.block)].emplace_back(from, std::move(part.values));
+            parts[size_t(part.block)].emplace_back(from, std::move(values));
         }
         if (IsLastPart(part.block)) rank.Enqueue([this, block = part.block] { Decide(block); });
     }
@@ -361,18 +358,15 @@ class Leader {
     }
 
     void Decide(int block) {
-        if (const std::optional<BlockAnswer> known = TakeAnswer(block)) {
-            TellAnswer(block, *known);
-            executor.tasks.Spawn(schedule.Decide(block, *known));
+        std::unique_lock lock(partsMutex);
+        const auto known = answers.extract(block);
+        lock.unlock();
+        if (known) {
+            TellAnswer(block, known.mapped());
+            executor.tasks.Spawn(schedule.Decide(block, known.mapped()));
         } else {
             executor.tasks.Spawn(executor.DecideBlock(block));
         }
-    }
-
-    std::optional<BlockAnswer> TakeAnswer(int block) {
-        std::lock_guard lock(partsMutex);
-        const auto node = answers.extract(block);
-        return node ? std::optional(node.mapped()) : std::nullopt;
     }
 
     void EndPass(int block) {
@@ -397,7 +391,8 @@ class Leader {
         const bool isAlone = schedule.BlockAt(block).partner < 0;
         const ViewNeed need =
             answer.stop && isAlone ? ViewNeed::Nothing : executor.criteria.NeedAt(block, next);
-        channel.PostToAll(Pack(AnswerMessage{block, answer.stop, answer.noise, need}));
+        channel.PostToAll(
+            Pack(RankWord::Answer, AnswerMessage{block, answer.stop, answer.noise, need}));
     }
 
     const RenderContext& context;

@@ -121,18 +121,6 @@ void RankChannel::Wait() {
 
 namespace {
 
-StateWriter Begin(RankWord word) {
-    StateWriter writer;
-    writer.Put(word);
-    return writer;
-}
-
-int64_t AreaOf(const std::vector<PixelRect>& tiles) {
-    int64_t area = 0;
-    for (const PixelRect& tile : tiles) area += tile.Area();
-    return area;
-}
-
 // Copies a row-major tile to its place in a row-major block.
 const float* PutTile(const float* from, const PixelRect& tile, const PixelRect& block, float* to) {
     for (int y = tile.min.y(); y < tile.max.y(); ++y, from += 3 * tile.Width())
@@ -144,102 +132,20 @@ const float* PutTile(const float* from, const PixelRect& tile, const PixelRect& 
 
 }  // namespace
 
-std::vector<std::byte> Pack(RankWord word) { return Begin(word).bytes; }
-
-std::vector<std::byte> Pack(const StartMessage& message) {
-    StateWriter writer = Begin(RankWord::Start);
-    writer.Put(uint64_t(message.deal.size()));
-    writer.PutAll(std::span(message.deal));
-    writer.Put(uint64_t(message.blocks.size()));
-    for (size_t i = 0; i < message.blocks.size(); ++i) {
-        writer.Put(message.blocks[i]);
-        writer.Put(message.needs[i]);
-    }
-    return std::move(writer.bytes);
-}
-
-std::vector<std::byte> Pack(const AnswerMessage& message) {
-    StateWriter writer = Begin(RankWord::Answer);
-    writer.Put(message);
-    return std::move(writer.bytes);
-}
-
-std::vector<std::byte> Pack(const PartMessage& message) {
-    StateWriter writer = Begin(RankWord::Part);
-    writer.Put(int32_t(message.block));
-    writer.Put(message.samples);
-    writer.Put(message.seconds);
-    writer.Put(message.busySeconds);
-    writer.Put(uint64_t(message.values.size()));
-    writer.PutAll(std::span(message.values));
-    return std::move(writer.bytes);
-}
-
-std::vector<std::byte> PackCollect(bool undo) {
-    StateWriter writer = Begin(RankWord::Collect);
-    writer.Put(uint8_t(undo));
-    return std::move(writer.bytes);
-}
-
-std::vector<std::byte> Pack(const LightRound& round) {
-    StateWriter writer = Begin(RankWord::Round);
-    writer.Put(round);
-    return std::move(writer.bytes);
-}
-
-std::vector<std::byte> PackTraced(bool isWhole) {
-    StateWriter writer = Begin(RankWord::Traced);
-    writer.Put(uint8_t(isWhole));
-    return std::move(writer.bytes);
-}
-
 std::vector<std::byte> PackSplats(int plane, const SplatPlane& splats) {
-    StateWriter writer = Begin(RankWord::Splats);
-    writer.Put(int32_t(plane));
-    splats.Put(splats.Region(), &writer);
-    return std::move(writer.bytes);
+    return Pack(RankWord::Splats, plane,
+                [&](StateWriter* writer) { splats.Put(splats.Region(), writer); });
 }
 
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles,
                                   const Film& film) {
-    StateWriter writer = Begin(RankWord::Pixels);
-    writer.Put(int32_t(block));
-    for (const PixelRect& tile : tiles) PutPlanes(film, tile, &writer);
-    return std::move(writer.bytes);
-}
-
-StartMessage GetStart(StateReader& reader) {
-    StartMessage message;
-    const auto deals = reader.Get<uint64_t>();
-    if (deals == 0 || deals > reader.Left() / sizeof(int))
-        throw std::runtime_error("a message of a rank is damaged");
-    message.deal.resize(deals);
-    reader.GetAll(std::span(message.deal));
-    for (auto left = reader.Get<uint64_t>(); left > 0; --left) {
-        message.blocks.push_back(reader.Get<BlockStart>());
-        message.needs.push_back(reader.Get<ViewNeed>());
-    }
-    return message;
-}
-
-AnswerMessage GetAnswer(StateReader& reader) { return reader.Get<AnswerMessage>(); }
-
-PartMessage GetPart(StateReader& reader) {
-    PartMessage message;
-    message.block = reader.Get<int32_t>();
-    message.samples = reader.Get<int64_t>();
-    message.seconds = reader.Get<double>();
-    message.busySeconds = reader.Get<double>();
-    const auto size = reader.Get<uint64_t>();
-    if (size != reader.Left() / sizeof(float))
-        throw std::runtime_error("a message of a rank is damaged");
-    message.values.resize(size);
-    reader.GetAll(std::span(message.values));
-    return message;
+    return Pack(RankWord::Pixels, block, [&](StateWriter* writer) {
+        for (const PixelRect& tile : tiles) PutPlanes(film, tile, writer);
+    });
 }
 
 int GetBlock(StateReader& reader, size_t blocks) {
-    const int block = reader.Get<int32_t>();
+    const int block = reader.Get<int>();
     if (block < 0 || size_t(block) >= blocks)
         throw std::runtime_error("a message of a rank is about a block that there is not");
     return block;
@@ -267,13 +173,14 @@ std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed need, c
 
 void PutMeans(const std::vector<float>& values, const std::vector<PixelRect>& tiles,
               const PixelRect& block, FilmView* view) {
-    const size_t means = size_t(AreaOf(tiles)) * 3;
-    if (values.size() != means * (view->halfMean.empty() ? 1 : 2))
+    size_t size = 0;
+    for (const PixelRect& tile : tiles) size += 3 * size_t(tile.Area());
+    if (values.size() != size * (view->halfMean.empty() ? 1 : 2))
         throw std::runtime_error("a rank has sent another part of a block than was asked for");
     const float* from = values.data();
-    for (const PixelRect& tile : tiles) from = PutTile(from, tile, block, view->mean.data());
-    if (view->halfMean.empty()) return;
-    for (const PixelRect& tile : tiles) from = PutTile(from, tile, block, view->halfMean.data());
+    for (std::vector<float>* to : {&view->mean, &view->halfMean})
+        for (const PixelRect& tile : tiles)
+            if (!to->empty()) from = PutTile(from, tile, block, to->data());
 }
 
 }  // namespace lull

@@ -20,34 +20,31 @@ namespace lull {
 
 enum class RankWord : uint8_t {
     // From rank 0.
-    Start,    // StartMessage; then come the sums of tiles that the rank did not own
+    // The deal (RankTiles), the BlockStart of each block, and the ViewNeed of criterion and clock
+    // after its next pass; then come the sums of tiles that the rank did not own.
+    Start,
     Begin,    // all of them have been sent
     Round,    // LightRound: trace your part of its light, with no tile under way
     Lit,      // it has come, by Splats: begin the passes of the round
     Answer,   // AnswerMessage
     TimeUp,   // no more passes
     Pause,    // finish the tiles under way, and say Quiet
-    Collect,  // then send pixels: CollectMessage
+    Collect,  // then send pixels; whether passes under way are undone before
     Resume,
     End,
     // To rank 0.
-    Part,   // PartMessage
+    // PartMessage; the means of its tiles, then the half means, as far as needed; none where the
+    // sums themselves are, which have been sent before.
+    Part,
     Quiet,  // all parts have been sent
     Collected,
     Interrupted,  // a signal has come
     Traced,       // all Splats of its part have been sent; whether it is whole
     // Both ways.
-    Pixels,  // sums of a block's tiles, of layers as well
-    Splats,  // light of a round, of one of its planes
+    Pixels,  // a block, and the sums of its tiles, of layers as well
+    Splats,  // one of the planes of a round's light, and its sums
     Ping,    // to be answered at once by
     Alive
-};
-
-// Where all blocks are when a rank begins.
-struct StartMessage {
-    std::vector<int> deal;  // of the tiles, see RankTiles
-    std::vector<BlockStart> blocks;
-    std::vector<ViewNeed> needs;  // of criterion and clock after each block's next pass
 };
 
 // Decision on a block.
@@ -64,28 +61,32 @@ struct PartMessage {
     int64_t samples;     // taken since the last part
     double seconds;      // of processors, for this block
     double busySeconds;  // of the rank's threads, on the average, since the last part
-    // The means of its tiles, then the half means, as far as needed; empty where the sums
-    // themselves are, which have been sent before.
-    std::vector<float> values;
 };
 
-std::vector<std::byte> Pack(RankWord);
-std::vector<std::byte> Pack(const StartMessage&);
-std::vector<std::byte> Pack(const AnswerMessage&);
-std::vector<std::byte> Pack(const PartMessage&);
-std::vector<std::byte> PackCollect(bool undo);
-std::vector<std::byte> Pack(const LightRound&);
-std::vector<std::byte> PackTraced(bool isWhole);
+inline constexpr const char* kDamagedMessage = "a message of a rank is damaged";
+
+// Returns a message of the word and these values. Vectors are read by StateReader::GetVector();
+// functions append bytes themselves.
+template <typename... Values>
+std::vector<std::byte> Pack(RankWord word, const Values&... values) {
+    StateWriter writer;
+    const auto put = [&](const auto& value) {
+        if constexpr (requires { value(&writer); })
+            value(&writer);
+        else if constexpr (requires { value.size(); })
+            writer.PutVector(value);
+        else
+            writer.Put(value);
+    };
+    (put(word), ..., put(values));
+    return std::move(writer.bytes);
+}
 std::vector<std::byte> PackSplats(int plane, const SplatPlane&);
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&);
 
-// Read the rest of a message after its word. Throw std::runtime_error for other bytes.
-StartMessage GetStart(StateReader&);
-AnswerMessage GetAnswer(StateReader&);
-PartMessage GetPart(StateReader&);
-// Reads the number of a block, below `blocks`.
+// Read the number of a block, below `blocks`, and sums of these tiles into the film. Throw
+// std::runtime_error for other bytes.
 int GetBlock(StateReader&, size_t blocks);
-// Reads sums of these tiles into the film.
 void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*);
 
 // Returns the means of tiles, pixel by pixel, then the half means if they are wanted; nothing where

@@ -52,15 +52,6 @@ class Rank {
   public:
     Rank(const RenderContext&, const RenderOptions&, tbb::task_arena*, RankHooks);
 
-    // Runs `body`; after an exception no task is at work.
-    template <typename Body>
-    RenderResult Guarded(const Body& body) try {
-        return body();
-    } catch (...) {
-        executor.Quiesce();
-        throw;
-    }
-
     // Runs `work` on a thread of the arena; its exceptions are thrown by the channel's Exchange().
     void Enqueue(std::function<void()> work) { executor.tasks.Enqueue(arena, std::move(work)); }
     void EnqueueReady() {

@@ -108,14 +108,14 @@ bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit, bool 
     return isZero(shape.alpha) || (isShadow && isZero(shape.shadowAlpha));
 }
 
+// Filters of Embree, which reject hits that alpha cuts out, and of rays that a shape is hidden
+// from. Like the callbacks they are called with one ray at a time, as rays are traced.
 void FilterByAlpha(const RTCFilterFunctionNArguments* args, bool isShadow) {
     if (IsCutOut(*static_cast<const ShapeUser*>(args->geometryUserPtr),
                  *reinterpret_cast<const RTCRay*>(args->ray),
                  *reinterpret_cast<const RTCHit*>(args->hit), isShadow))
         args->valid[0] = 0;
 }
-
-}  // namespace
 
 void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, false); }
 void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, true); }
@@ -135,6 +135,8 @@ void FilterSingleSided(const RTCFilterFunctionNArguments* args) {
                      *reinterpret_cast<const RTCHit*>(args->hit)))
         args->valid[0] = 0;
 }
+
+}  // namespace
 
 EmbreeScene Accelerator::Implementation::NewScene() {
     EmbreeScene scene(rtcNewScene(device.get()));
@@ -163,15 +165,12 @@ void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shape
         std::visit(
             [&]<typename S>(const S&) {
                 if constexpr (!std::is_same_v<S, Mesh>) {
-                    rtcSetGeometryBoundsFunction(geometry, BoundsCallback<S>, nullptr);
-                    rtcSetGeometryIntersectFunction(geometry,
-                                                    shape.coverage     ? CoveredIntersectCallback<S>
-                                                    : shape.hiddenFrom ? SeenIntersectCallback<S>
-                                                                       : IntersectCallback<S>);
-                    rtcSetGeometryOccludedFunction(geometry,
-                                                   shape.coverage     ? CoveredOccludedCallback<S>
-                                                   : shape.hiddenFrom ? SeenOccludedCallback<S>
-                                                                      : OccludedCallback<S>);
+                    if (shape.coverage)
+                        SetCallbacks<S, Passing::Uncovered>(geometry);
+                    else if (shape.hiddenFrom)
+                        SetCallbacks<S, Passing::Hidden>(geometry);
+                    else
+                        SetCallbacks<S, Passing::None>(geometry);
                 }
             },
             shape.geometry);

@@ -41,14 +41,6 @@ struct MovingUser {
     void Attach(RTCDevice device, RTCScene world, unsigned id);
 };
 
-// Filters of Embree, which reject hits that alpha cuts out, and of rays that a shape is hidden
-// from. Like the callbacks below they are called with one ray at a time, as rays are traced one at
-// a time.
-void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args);
-void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args);
-void FilterByCoverage(const RTCFilterFunctionNArguments* args);
-void FilterSingleSided(const RTCFilterFunctionNArguments* args);
-
 struct Accelerator::Implementation {
     Device device;
     std::vector<ShapeUser> users;
@@ -119,55 +111,11 @@ void BoundsCallback(const RTCBoundsFunctionArguments* args) {
         *args->bounds_o = PaddedBounds(shape.WorldBounds());
 }
 
-inline void SetHit(const ShapeHit& hit, const RTCIntersectFunctionNArguments* args,
-                   RTCRayHit* rayHit) {
-    rayHit->ray.tfar = hit.t;
-    rayHit->hit.u = hit.u;
-    rayHit->hit.v = hit.v;
-    rayHit->hit.geomID = args->geomID;
-    rayHit->hit.primID = args->primID;
-    rayHit->hit.instID[0] = args->context->instID[0];
-}
-
-template <typename S>
-void IntersectCallback(const RTCIntersectFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
-    const auto hit =
-        IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(rayHit->ray));
-    if (hit) SetHit(*hit, args, rayHit);
-}
-
-template <typename S>
-void OccludedCallback(const RTCOccludedFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-    if (IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(*ray)))
-        ray->tfar = -kInfinity;
-}
-
-// Those of shapes that are hidden from some rays.
-template <typename S>
-void SeenIntersectCallback(const RTCIntersectFunctionNArguments* args) {
-    if (!IsHidden(*static_cast<const ShapeUser*>(args->geometryUserPtr),
-                  reinterpret_cast<const RTCRayHit*>(args->rayhit)->ray))
-        IntersectCallback<S>(args);
-}
-
-template <typename S>
-void SeenOccludedCallback(const RTCOccludedFunctionNArguments* args) {
-    if (!IsHidden(*static_cast<const ShapeUser*>(args->geometryUserPtr),
-                  *reinterpret_cast<const RTCRay*>(args->ray)))
-        OccludedCallback<S>(args);
-}
-
-// Those of shapes of which parts are missing.
-
 // Makes a number in [0, 1) of a ray and a primitive: the same for both always, and as good as
 // random from one ray or one primitive to another.
 float NumberOf(const RTCRay& ray, const RTCHit& hit);
 
-// Returns the distance to the first point of a primitive that is there.
+// Returns the first point of a primitive that is there.
 template <typename S>
 std::optional<ShapeHit> IntersectCovered(const ShapeUser& user, uint32_t geometry,
                                          uint32_t primitive, const RTCRay& r) {
@@ -201,21 +149,45 @@ std::optional<ShapeHit> IntersectCovered(const ShapeUser& user, uint32_t geometr
     return {};
 }
 
-template <typename S>
-void CoveredIntersectCallback(const RTCIntersectFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+// The rays that pass a shape: none, those that it is hidden from, or some where parts are missing.
+enum class Passing { None, Hidden, Uncovered };
+
+// Returns where a ray meets a primitive that `args` of a callback name, unless it passes.
+template <typename S, Passing kPassing>
+std::optional<ShapeHit> Meet(const auto* args, const RTCRay& ray) {
     const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
-    const auto hit = IntersectCovered<S>(user, args->geomID, args->primID, rayHit->ray);
-    if (hit) SetHit(*hit, args, rayHit);
+    if constexpr (kPassing == Passing::Uncovered)
+        return IntersectCovered<S>(user, args->geomID, args->primID, ray);
+    if (kPassing == Passing::Hidden && IsHidden(user, ray)) return {};
+    return IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(ray));
 }
 
-template <typename S>
-void CoveredOccludedCallback(const RTCOccludedFunctionNArguments* args) {
+template <typename S, Passing kPassing>
+void IntersectCallback(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    auto* rayHit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto hit = Meet<S, kPassing>(args, rayHit->ray);
+    if (!hit) return;
+    rayHit->ray.tfar = hit->t;
+    rayHit->hit.u = hit->u;
+    rayHit->hit.v = hit->v;
+    rayHit->hit.geomID = args->geomID;
+    rayHit->hit.primID = args->primID;
+    rayHit->hit.instID[0] = args->context->instID[0];
+}
+
+template <typename S, Passing kPassing>
+void OccludedCallback(const RTCOccludedFunctionNArguments* args) {
     if (!args->valid[0]) return;
     auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
-    if (IntersectCovered<S>(user, args->geomID, args->primID, *ray)) ray->tfar = -kInfinity;
+    if (Meet<S, kPassing>(args, *ray)) ray->tfar = -kInfinity;
+}
+
+template <typename S, Passing kPassing>
+void SetCallbacks(RTCGeometry geometry) {
+    rtcSetGeometryBoundsFunction(geometry, BoundsCallback<S>, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, IntersectCallback<S, kPassing>);
+    rtcSetGeometryOccludedFunction(geometry, OccludedCallback<S, kPassing>);
 }
 
 }  // namespace lull

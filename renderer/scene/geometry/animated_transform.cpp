@@ -18,14 +18,16 @@ Eigen::Quaterniond Interpolate(const Eigen::Quaterniond& a, const Eigen::Quatern
     return Eigen::Quaterniond(a.coeffs() * std::cos(angle) + across * std::sin(angle)).normalized();
 }
 
+Vec3f CornerOf(const Bounds3f& box, int corner) {
+    return {corner & 1 ? box.lower.x() : box.upper.x(), corner & 2 ? box.lower.y() : box.upper.y(),
+            corner & 4 ? box.lower.z() : box.upper.z()};
+}
+
 }  // namespace
 
 Bounds3f TransformBox(const Mat4d& m, const Bounds3f& box) {
     Bounds3f result;
-    for (int corner = 0; corner < 8; ++corner)
-        result.Extend(TransformPoint(m, Vec3f(corner & 1 ? box.lower.x() : box.upper.x(),
-                                              corner & 2 ? box.lower.y() : box.upper.y(),
-                                              corner & 4 ? box.lower.z() : box.upper.z())));
+    for (int i = 0; i < 8; ++i) result.Extend(TransformPoint(m, CornerOf(box, i)));
     return result;
 }
 
@@ -99,10 +101,8 @@ double AnimatedTransform::Sagitta(const Bounds3f& box, double step) const {
     const double length = std::max(endTime - startTime, 1e-30);
     const double turn = 1.01 * 2 * std::acos(std::clamp(cosHalfAngle, -1., 1.)) / length;
     double reach = 0, change = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3d x(corner & 1 ? box.lower.x() : box.upper.x(),
-                                corner & 2 ? box.lower.y() : box.upper.y(),
-                                corner & 4 ? box.lower.z() : box.upper.z());
+    for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector3d x = CornerOf(box, i).cast<double>();
         for (const Parts& part : parts) reach = std::max(reach, (part.scale * x).norm());
         change = std::max(change, ((parts[1].scale - parts[0].scale) * x).norm() / length);
     }

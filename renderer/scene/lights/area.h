@@ -45,7 +45,6 @@ struct AreaLight {
         return LightSample{.L = emitted,
                            .wi = wi,
                            .pdf = s->pdf,
-                           .isDelta = false,
                            .isHidden = isHidden,
                            .p = s->p,
                            .pError = s->pError,
@@ -56,7 +55,24 @@ struct AreaLight {
         return VisitEmitter(surface, [&](const auto& e) { return lull::Pdf(e, from, p, n); });
     }
 
-    std::optional<LightBounds> Bounds() const;
+    LightBounds Bounds() const {
+        LightBounds bounds{
+            .box = VisitEmitter(surface, [](const auto& e) { return e.WorldBounds(); })};
+        if (const auto* cone = std::get_if<SpotCone>(profile)) {
+            cone->Bound(&bounds);
+            bounds.power = BoundedPower(Whole());
+            return bounds;
+        }
+        const NormalBounds normals =
+            VisitEmitter(surface, [](const auto& e) { return e.Normals(); });
+        bounds.axis = normals.axis;
+        bounds.cosNormals = normals.cosAngle;
+        if (const auto* spread = std::get_if<Spread>(profile))
+            bounds.cosEmission = spread->cosEmission;
+        bounds.power = BoundedPower(Power());
+        bounds.isTwoSided = twoSided || normals.isTwoSided;
+        return bounds;
+    }
     Rgb Power() const { return profile ? Rgb(PowerFraction(*profile) * Whole()) : Whole(); }
     float Area() const {
         return VisitEmitter(surface, [](const auto& e) { return e.Area(); });

@@ -99,17 +99,7 @@ void EnvironmentMap::Brightness(int row, std::span<float> cells) const {
             0.75f * column[u / 2] + 0.25f * column[NeighbourOf(u, image.width, Wrap::Repeat)];
 }
 
-Rgb EnvironmentMap::MeanTexel() const {
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
-    std::visit(
-        [&](const auto& texels) {
-            for (int y = 0; y < image.height; ++y)
-                for (int x = 0; x < image.width; ++x)
-                    sum += TexelRgb(image, texels, x, y).template cast<double>();
-        },
-        image.texels);
-    return scale * (sum / (double(image.width) * image.height)).cast<float>();
-}
+Rgb EnvironmentMap::MeanTexel() const { return scale * lull::MeanTexel(image); }
 
 Portal Portal::Make(std::span<const float> corners, const FileLoc& loc) {
     const auto fail = [&] {
@@ -234,8 +224,11 @@ int Blacken(const Rgb& L, Image* image) {
     return count;
 }
 
-// Returns the direction of latitude-longitude coordinates, each in [0, 1]; unit.
-Vec3f DirectionOf(const Vec2f& st, float* sine) {
+// Returns the direction, unit, of a point of the square, and the sine of its colatitude; 1 of equal
+// areas.
+Vec3f DirectionOf(MapProjection projection, const Vec2f& st, float* sine) {
+    *sine = 1;
+    if (projection == MapProjection::EqualArea) return DirectionOfEqualAreaSquare(st);
     const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
     const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
     *sine = sinTheta;
@@ -265,14 +258,17 @@ float IlluminanceOf(const EnvironmentMap& map, int width, int height) {
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x) {
             const Vec2f st((float(x) + 0.5f) / float(columns), (float(y) + 0.5f) / float(rows));
-            float weight = 1;
-            const Vec3f w = map.Projection() == MapProjection::EqualArea
-                                ? DirectionOfEqualAreaSquare(st)
-                                : DirectionOf(st, &weight);
+            float weight;
+            const Vec3f w = DirectionOf(map.Projection(), st, &weight);
             solidAngle += double(weight);
             if (w.z() > 0) sum += double(weight * w.z() * Luminance(map.Radiance(st)));
         }
     return float(4 * kPi * sum / solidAngle);
+}
+
+// Returns the steradians that an area of the square shows, where DirectionOf() finds this sine.
+float SolidAnglePerArea(MapProjection projection, float sine) {
+    return projection == MapProjection::EqualArea ? 4 * kPi : 2 * kPi * kPi * sine;
 }
 
 }  // namespace
@@ -338,54 +334,37 @@ std::optional<LightSample> InfiniteLight::Sample(const Vec3f& from, const Vec2f&
         return LightSample{.L = LeAndPdf(from, sample->first).L,
                            .wi = sample->first,
                            .pdf = sample->second,
-                           .isDelta = false,
-                           .isHidden = false,
                            .isAtInfinity = true};
     }
-    float mapPdf = 1;
+    float mapPdf = 1, sine;
     const Vec2f st = map ? map->Sample(u, &mapPdf) : u;
-    Vec3f local;
-    float perSolidAngle;
-    if (map && map->Projection() == MapProjection::EqualArea) {
-        local = DirectionOfEqualAreaSquare(st);
-        perSolidAngle = mapPdf / (4 * kPi);
-    } else {
-        float sinTheta;
-        local = DirectionOf(st, &sinTheta);
-        perSolidAngle = mapPdf / (2 * kPi * kPi * sinTheta);
-    }
+    const Vec3f local = DirectionOf(Projection(), st, &sine);
     const Vec3f wi = (worldFromLight * local).normalized();
-    const float pdf = perSolidAngle * Stretch(wi);
+    const float pdf = mapPdf / SolidAnglePerArea(Projection(), sine) * Stretch(wi);
     if (!(pdf > 0) || !std::isfinite(pdf)) return {};
     if (map) map->Prefetch(st);
     return LightSample{.L = map ? Rgb::Ones() : constant,
                        .wi = wi,
                        .pdf = pdf,
-                       .isDelta = false,
-                       .isHidden = false,
                        .isOnMap = map != nullptr,
                        .isAtInfinity = true,
                        .p = {st.x(), st.y(), 0}};
 }
 
 Emitted InfiniteLight::LeAndPdf(const Vec3f& from, const Vec3f& w) const {
+    const float throughPortal = portal ? portal->Pdf(from, w) : 1;
+    if (throughPortal == 0) return {Rgb::Zero(), 0};
     const Vec3f local = (lightFromWorld * w).normalized();
-    if (portal) [[unlikely]] {
-        const float pdf = portal->Pdf(from, w);
-        if (pdf == 0) return {Rgb::Zero(), 0};
-        if (!map) return {constant, pdf};
-        const bool isEqualArea = map->Projection() == MapProjection::EqualArea;
-        return {map->Radiance(isEqualArea ? EqualAreaSquareOf(local) : CoordinatesOf(local)), pdf};
-    }
-    if (map && map->Projection() == MapProjection::EqualArea) {
-        const Vec2f st = EqualAreaSquareOf(local);
-        return {map->Radiance(st), map->Pdf(st) / (4 * kPi) * Stretch(w)};
-    }
-    const float sinTheta = SafeSqrt(1 - Sqr(local.z()));
-    const Vec2f st = map ? CoordinatesOf(local) : Vec2f::Zero();
+    Vec2f st = Vec2f::Zero();
+    if (map)
+        st = Projection() == MapProjection::EqualArea ? EqualAreaSquareOf(local)
+                                                      : CoordinatesOf(local);
+    const Rgb L = map ? map->Radiance(st) : constant;
+    if (portal) [[unlikely]]
+        return {L, throughPortal};
+    const float perArea = SolidAnglePerArea(Projection(), SafeSqrt(1 - Sqr(local.z())));
     const float mapPdf = map ? map->Pdf(st) : 1;
-    return {map ? map->Radiance(st) : constant,
-            sinTheta > 0 ? mapPdf / (2 * kPi * kPi * sinTheta) * Stretch(w) : 0};
+    return {L, perArea > 0 ? mapPdf / perArea * Stretch(w) : 0};
 }
 
 float InfiniteLight::Stretch(const Vec3f& w) const {
@@ -413,8 +392,7 @@ DistantLight DistantLight::Make(const LightReader& in) {
 }
 
 std::optional<LightSample> DistantLight::Sample(const Vec3f&, const Vec2f&) const {
-    return LightSample{
-        .L = L, .wi = w, .pdf = 1, .isDelta = true, .isHidden = false, .isAtInfinity = true};
+    return LightSample{.L = L, .wi = w, .isDelta = true, .isAtInfinity = true};
 }
 
 // The disc's irradiance is pi sin^2 of its radius times L.
@@ -435,8 +413,6 @@ std::optional<LightSample> SunLight::Sample(const Vec3f&, const Vec2f& u) const 
     return LightSample{.L = L,
                        .wi = ((1 - h) * w + across * (d.x() * s + d.y() * t)).normalized(),
                        .pdf = 1 / solidAngle,
-                       .isDelta = false,
-                       .isHidden = false,
                        .isAtInfinity = true};
 }
 

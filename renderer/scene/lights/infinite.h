@@ -92,14 +92,15 @@ class InfiniteLight {
 
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
     Emitted LeAndPdf(const Vec3f& from, const Vec3f& w) const;
-    bool HasPortal() const { return portal.has_value(); }
     // Returns the radiance of a sample that is on the map.
     Rgb Radiance(const LightSample& sample) const { return map->Radiance(sample.p.head<2>()); }
 
-    std::optional<LightBounds> Bounds() const { return {}; }
     Rgb Power() const;
 
   private:
+    MapProjection Projection() const {
+        return map ? map->Projection() : MapProjection::LatitudeLongitude;
+    }
     // Returns the solid angle in light space over that in the world, about the direction `w` of the
     // world: 1 unless the transform scales unevenly.
     float Stretch(const Vec3f& w) const;
@@ -124,7 +125,6 @@ struct DistantLight {
 
     static DistantLight Make(const LightReader&);
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    std::optional<LightBounds> Bounds() const { return {}; }
     Rgb Power() const { return kPi * Sqr(worldRadius) * L; }
 };
 
@@ -148,7 +148,6 @@ struct SunLight {
         if ((direction - w).squaredNorm() > 2 * height) return {Rgb::Zero(), 0};
         return {L, 1 / solidAngle};
     }
-    std::optional<LightBounds> Bounds() const { return {}; }
     Rgb Power() const { return power; }
 };
 

@@ -6,9 +6,12 @@
 //     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const
 //         returns light that may arrive at `from`, nothing where none does;
 //     Rgb Power() const
-//         returns W; of lights without a place, the power across the disk of the scene's radius;
-//     std::optional<LightBounds> Bounds() const
-//         returns where it is and where it shines; nothing if it has no place,
+//         returns W; of lights without a place, the power across the disk of the scene's radius,
+//
+// where it has a place, and shines otherwise than a point to all sides,
+//
+//     LightBounds Bounds() const
+//         returns where it is and where it shines,
 //
 // one of type Area, on which rays end,
 //
@@ -47,7 +50,7 @@ inline LightType TypeOf(const Light& light) {
 // Returns whether rays can find the light.
 inline bool IsVisible(const Light& light) {
     const AreaLight* area = std::get_if<AreaLight>(&light);
-    return area ? !area->isHidden : !IsDelta(TypeOf(light));
+    return area ? !area->isHidden : TypeOf(light) == LightType::Infinite;
 }
 
 // The functions of kinds of type Area; those of other types give none and are not found.

@@ -17,15 +17,10 @@ namespace {
 // tables, which sample every light 128 times for each voxel, take longer than many a render.
 constexpr size_t kMostTableLights = 100;
 
-struct WorldSphere {
-    Vec3f center;
-    float radius;
-};
-
-WorldSphere BoundingSphere(const Bounds3f& bounds) {
-    if (bounds.IsEmpty()) return {Vec3f::Zero(), 1};
+// Returns the radius of a sphere about the scene.
+float WorldRadius(const Bounds3f& bounds) {
     const Vec3f center = 0.5f * (bounds.lower + bounds.upper);
-    return {center, std::max((bounds.upper - center).norm(), 1e-10f)};
+    return bounds.IsEmpty() ? 1 : std::max((bounds.upper - center).norm(), 1e-10f);
 }
 
 // Adapts makers to the table of kinds.
@@ -148,12 +143,23 @@ size_t CountLights(const Description& description, const ShapeTable& shapes) {
     return count;
 }
 
+// Returns where a light is and where it shines; nothing if it has no place.
+template <typename L>
+std::optional<LightBounds> BoundsOf(const L& light) {
+    if constexpr (requires { light.Bounds(); })
+        return light.Bounds();
+    else if constexpr (L::kType == LightType::DeltaPosition)
+        return LightBounds{
+            .box = {light.p, light.p}, .cosNormals = -1, .power = BoundedPower(light.Power())};
+    return {};
+}
+
 std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
     std::vector<LightBounds> bounds;
     bounds.reserve(lights.size());
     std::vector<int> unbounded;
     for (const Light& light : lights) {
-        const auto placed = std::visit([](const auto& l) { return l.Bounds(); }, light);
+        const auto placed = std::visit([](const auto& l) { return BoundsOf(l); }, light);
         if (!placed) unbounded.push_back(int(&light - lights.data()));
         bounds.push_back(placed.value_or(LightBounds{}));
     }
@@ -231,11 +237,11 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
 
 void LightTable::AddLights(const Description& description, const ShapeTable& shapes, bool asPbrtV3,
                            Warnings& warnings) {
-    const WorldSphere world = BoundingSphere(shapes.bounds);
+    const float worldRadius = WorldRadius(shapes.bounds);
     for (const LightEntity& entity : description.lights) {
         std::optional<Light> light;
         warnings.Try([&] {
-            light = MakeLight({description, entity, world.radius, !asPbrtV3, warnings});
+            light = MakeLight({description, entity, worldRadius, !asPbrtV3, warnings});
             if (light) CheckReach(*light, entity, shapes.reach);
         });
         if (!light) continue;

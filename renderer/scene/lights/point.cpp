@@ -27,8 +27,6 @@ std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in, bool isR
         in.warnings.Substitute(in.entity.loc, error.what(), "white stands in");
         return nullptr;
     }
-    Image& image = made->image;
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
     std::visit(
         [&](auto& texels) {
             using T = std::decay_t<decltype(texels[0])>;
@@ -38,12 +36,9 @@ std::shared_ptr<const LightImage> ReadLightImage(const LightReader& in, bool isR
                 in.warnings.Add(in.entity.loc, "light map texel that is not finite or negative",
                                 file);
             }
-            for (int y = 0; y < image.height; ++y)
-                for (int x = 0; x < image.width; ++x)
-                    sum += TexelRgb(image, texels, x, y).template cast<double>();
         },
-        image.texels);
-    made->mean = (sum / (double(image.width) * image.height)).cast<float>();
+        made->image.texels);
+    made->mean = MeanTexel(made->image);
     return made;
 }
 
@@ -63,11 +58,12 @@ SpotCone SpotCone::Make(const Entity& entity, const Mat4d& worldFromLight) {
             shape};
 }
 
-Vec2f SpotCone::CosinesOfBounds() const {
+void SpotCone::Bound(LightBounds* bounds) const {
     const float start = std::acos(std::clamp(cosFalloffStart, -1.f, 1.f));
     const float total = std::acos(std::clamp(cosTotalWidth, -1.f, 1.f));
-    return {std::cos(std::clamp(start, 0.f, total)),
-            std::cos(std::clamp(total - start, 0.f, total) + 1e-3f)};
+    bounds->axis = axis;
+    bounds->cosNormals = std::cos(std::clamp(start, 0.f, total));
+    bounds->cosEmission = std::cos(std::clamp(total - start, 0.f, total) + 1e-3f);
 }
 
 Spread Spread::Make(double degrees) {
@@ -84,6 +80,28 @@ float PowerFraction(const EmissionProfile& profile) {
     return cone ? cone->SolidAngle() / (4 * kPi) : 1;
 }
 
+namespace {
+
+// Returns the sample of a light at p; radiance(wi, distance2) returns nothing where it is dark.
+template <typename F>
+std::optional<LightSample> SampleFrom(const Vec3f& p, const Vec3f& from, const F& radiance) {
+    const Vec3f d = p - from;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0)) return {};
+    const Vec3f wi = d / std::sqrt(distance2);
+    const std::optional<Rgb> L = radiance(wi, distance2);
+    if (!L || !IsFinite(*L)) return {};
+    return LightSample{.L = *L, .wi = wi, .isDelta = true, .p = p};
+}
+
+// Returns the factor that makes up the "power" of a light of pbrt-v4, whose image emits `whole`.
+float FactorOfPower(const Entity& entity, float whole) {
+    const float power = entity.parameters.GetFloat("power", -1);
+    return power > 0 && whole > 0 ? power / whole : 1;
+}
+
+}  // namespace
+
 PointLight PointLight::Make(const LightReader& in) {
     const Parameters& params = in.entity.parameters;
     const Vec3f from = params.GetPoint3("from", Vec3f::Zero());
@@ -92,20 +110,7 @@ PointLight PointLight::Make(const LightReader& in) {
 }
 
 std::optional<LightSample> PointLight::Sample(const Vec3f& from, const Vec2f&) const {
-    const Vec3f d = p - from;
-    const float distance2 = d.squaredNorm();
-    const Rgb L = I / distance2;
-    if (!(distance2 > 0) || !IsFinite(L)) return {};
-    return LightSample{.L = L,
-                       .wi = d / std::sqrt(distance2),
-                       .pdf = 1,
-                       .isDelta = true,
-                       .isHidden = false,
-                       .p = p};
-}
-
-std::optional<LightBounds> PointLight::Bounds() const {
-    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+    return SampleFrom(p, from, [&](const Vec3f&, float distance2) -> Rgb { return I / distance2; });
 }
 
 SpotLight SpotLight::Make(const LightReader& in) {
@@ -116,36 +121,12 @@ SpotLight SpotLight::Make(const LightReader& in) {
 }
 
 std::optional<LightSample> SpotLight::Sample(const Vec3f& from, const Vec2f&) const {
-    const Vec3f d = p - from;
-    const float distance2 = d.squaredNorm();
-    if (!(distance2 > 0)) return {};
-    const Vec3f wi = d / std::sqrt(distance2);
-    const float falloff = cone.Falloff(-wi);
-    const Rgb L = I * (falloff / distance2);
-    if (falloff == 0 || !IsFinite(L)) return {};
-    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
+    return SampleFrom(p, from, [&](const Vec3f& wi, float distance2) -> std::optional<Rgb> {
+        const float falloff = cone.Falloff(-wi);
+        if (falloff == 0) return {};
+        return I * (falloff / distance2);
+    });
 }
-
-// Within the cone the light is taken as bright as a point light of this intensity; it leaves along
-// "normals" up to where it begins to fall off.
-std::optional<LightBounds> SpotLight::Bounds() const {
-    const Vec2f cosines = cone.CosinesOfBounds();
-    return LightBounds{.box = {p, p},
-                       .axis = cone.axis,
-                       .cosNormals = cosines.x(),
-                       .cosEmission = cosines.y(),
-                       .power = BoundedPower(4 * kPi * I)};
-}
-
-namespace {
-
-// Returns the factor that makes up the "power" of a light of pbrt-v4, whose image emits `whole`.
-float FactorOfPower(const Entity& entity, float whole) {
-    const float power = entity.parameters.GetFloat("power", -1);
-    return power > 0 && whole > 0 ? power / whole : 1;
-}
-
-}  // namespace
 
 GoniometricLight GoniometricLight::Make(const LightReader& in) {
     Rgb I = LightColor(in.entity, "I", in.warnings);
@@ -157,27 +138,16 @@ GoniometricLight GoniometricLight::Make(const LightReader& in) {
 }
 
 std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from, const Vec2f&) const {
-    const Vec3f d = p - from;
-    const float distance2 = d.squaredNorm();
-    if (!(distance2 > 0)) return {};
-    const Vec3f wi = d / std::sqrt(distance2);
-    Rgb L = I / distance2;
-    if (image) {
+    return SampleFrom(p, from, [&](const Vec3f& wi, float distance2) -> Rgb {
+        const Rgb L = I / distance2;
+        if (!image) return L;
         const Vec3f w = (lightFromWorld * -wi).normalized();
-        if (isEqualArea) {
-            L *= NearestRgb(image->image, EqualAreaSquareOf({w.x(), w.z(), w.y()})).mean();
-        } else {
-            const float phi = std::atan2(w.z(), w.x());
-            L *= image->Lookup({(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
-                                std::acos(std::clamp(w.y(), -1.f, 1.f)) * kInvPi});
-        }
-    }
-    if (!IsFinite(L)) return {};
-    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
-}
-
-std::optional<LightBounds> GoniometricLight::Bounds() const {
-    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
+        if (isEqualArea)
+            return L * NearestRgb(image->image, EqualAreaSquareOf({w.x(), w.z(), w.y()})).mean();
+        const float phi = std::atan2(w.z(), w.x());
+        return L * image->Lookup({(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
+                                  std::acos(std::clamp(w.y(), -1.f, 1.f)) * kInvPi});
+    });
 }
 
 namespace {
@@ -224,19 +194,15 @@ ProjectionLight ProjectionLight::Make(const LightReader& in) {
 }
 
 std::optional<LightSample> ProjectionLight::Sample(const Vec3f& from, const Vec2f&) const {
-    const Vec3f d = p - from;
-    const float distance2 = d.squaredNorm();
-    if (!(distance2 > 0)) return {};
-    const Vec3f wi = d / std::sqrt(distance2);
-    const Vec3f w = lightFromWorld * -wi;
-    constexpr float kHither = 1e-3f;  // pbrt-v3's near plane
-    if (!(w.z() >= kHither)) return {};
-    const Vec2f q = w.head<2>() * (perTangent / w.z());
-    if (!(q.cwiseAbs().array() <= screen.array()).all()) return {};
-    Rgb L = I / distance2;
-    if (image) L *= image->Lookup((q + screen).cwiseQuotient(2 * screen));
-    if (!IsFinite(L)) return {};
-    return LightSample{.L = L, .wi = wi, .pdf = 1, .isDelta = true, .isHidden = false, .p = p};
+    return SampleFrom(p, from, [&](const Vec3f& wi, float distance2) -> std::optional<Rgb> {
+        const Vec3f w = lightFromWorld * -wi;
+        constexpr float kHither = 1e-3f;  // pbrt-v3's near plane
+        if (!(w.z() >= kHither)) return {};
+        const Vec2f q = w.head<2>() * (perTangent / w.z());
+        if (!(q.cwiseAbs().array() <= screen.array()).all()) return {};
+        const Rgb L = I / distance2;
+        return image ? Rgb(L * image->Lookup((q + screen).cwiseQuotient(2 * screen))) : L;
+    });
 }
 
 Rgb ProjectionLight::Power() const {
@@ -244,10 +210,6 @@ Rgb ProjectionLight::Power() const {
     const float cosCorner = 1 / std::sqrt(1 + (screen / perTangent).squaredNorm());
     const Rgb mean = image ? image->mean : Rgb(Rgb::Ones());
     return 2 * kPi * (1 - cosCorner) * I * mean;
-}
-
-std::optional<LightBounds> ProjectionLight::Bounds() const {
-    return LightBounds{.box = {p, p}, .cosNormals = -1, .power = BoundedPower(Power())};
 }
 
 }  // namespace lull

@@ -116,9 +116,9 @@ struct SpotCone {
     }
     // Returns about how many steradians the whole light would fill, as pbrt-v3 has it.
     float SolidAngle() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)); }
-    // Returns the cosines of the angle where the light begins to fall off, and of that from there
-    // to where it ends: LightBounds.
-    Vec2f CosinesOfBounds() const;
+    // Sets the directions of a light's bounds: it leaves along "normals" up to where it begins to
+    // fall off.
+    void Bound(LightBounds*) const;
 };
 
 // The light of each point leaves within a cone about its normal: the radiance falls with the
@@ -172,7 +172,6 @@ struct PointLight {
     static PointLight Make(const LightReader&);
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
     Rgb Power() const { return 4 * kPi * I; }
-    std::optional<LightBounds> Bounds() const;
 };
 
 // Emits I, W/sr, along the axis of a cone from one point.
@@ -185,7 +184,12 @@ struct SpotLight {
 
     static SpotLight Make(const LightReader&);
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    std::optional<LightBounds> Bounds() const;
+    // Within the cone the light is taken as bright as a point light of this intensity.
+    LightBounds Bounds() const {
+        LightBounds bounds{.box = {p, p}, .power = BoundedPower(4 * kPi * I)};
+        cone.Bound(&bounds);
+        return bounds;
+    }
     Rgb Power() const { return cone.SolidAngle() * I; }
 };
 
@@ -203,7 +207,6 @@ struct GoniometricLight {
     // Throws Error if the image cannot be read.
     static GoniometricLight Make(const LightReader&);
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    std::optional<LightBounds> Bounds() const;
     Rgb Power() const { return image ? Rgb(4 * kPi * I * image->mean) : Rgb(4 * kPi * I); }
 };
 
@@ -223,7 +226,6 @@ struct ProjectionLight {
     // Throws Error for a field of view outside (0, 180) or an image that cannot be read.
     static ProjectionLight Make(const LightReader&);
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
-    std::optional<LightBounds> Bounds() const;
     Rgb Power() const;
 };
 

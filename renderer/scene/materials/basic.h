@@ -1,6 +1,7 @@
-// pbrt-v3's materials that are a few textures and a few lobes.
+// pbrt-v3's materials that are textures and a few lobes.
 #pragma once
 
+#include "renderer/bsdf/subsurface.h"
 #include "renderer/scene/materials/material_inputs.h"
 
 namespace lull {
@@ -52,9 +53,12 @@ struct Glass {
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
-// Adds the lobes of a dielectric of index `eta`, smooth or rough, and sets the index.
-void AddDielectricLobes(const Rgb& reflected, const Rgb& transmitted, float eta, const Roughness&,
-                        const MaterialInputs&, Bsdf*);
+// Adds the lobes of a dielectric of index `eta`, smooth or rough.
+void AddDielectricLobes(const Rgb& reflected, const Rgb& transmitted, float eta, bool isSmooth,
+                        const TrowbridgeReitz&, Bsdf*);
+// Adds them, unless both colours are black, and sets the index.
+void AddDielectric(const Rgb& reflected, const Rgb& transmitted, float eta, const Roughness&,
+                   const MaterialInputs&, Bsdf*);
 
 // Represents a rough conductor.
 struct Metal {
@@ -71,8 +75,8 @@ struct Metal {
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
-// Returns the conductor of index 1 + i k that reflects so much head-on, as pbrt-v4 has it.
-ConductorInterface ConductorOf(const Rgb& reflectance);
+// Returns k of the conductor of index 1 + i k that reflects so much head-on, as pbrt-v4 has it.
+Rgb AbsorptionOf(const Rgb& reflectance);
 
 // Represents a diffuse surface under a glossy coat.
 struct Plastic {
@@ -122,6 +126,37 @@ struct Uber {
     Roughness roughness;
 
     explicit Uber(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
+
+    MaterialTraits Traits(const MaterialReader& in) const;
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Represents Disney's principled material (Burley 2012 and 2015).
+struct Disney {
+    SpectrumTexture color, scatterDistance;
+    FloatTexture metallic, eta, rough, specularTint, anisotropic, sheen, sheenTint, clearcoat,
+        clearcoatGloss, specTrans;
+    bool thin;
+    FloatTexture flatness, diffTrans;  // of thin surfaces
+
+    explicit Disney(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
+
+    MaterialTraits Traits(const MaterialReader& in) const;
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+    // Returns nothing if the diffuse part does not scatter below the surface.
+    std::optional<SubsurfaceProfile> Profile(const MaterialInputs& in) const;
+};
+
+// Represents hair and fur, on shapes whose u runs along the hair and v across it.
+struct Hair {
+    // The first of these that is given says how much light the hair absorbs.
+    std::optional<SpectrumTexture> sigmaA, color;
+    FloatTexture eumelanin, pheomelanin;
+    FloatTexture eta, betaM, betaN, alpha;
+
+    explicit Hair(const MaterialReader& in);
     std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
     MaterialTraits Traits(const MaterialReader& in) const;

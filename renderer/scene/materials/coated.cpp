@@ -65,9 +65,8 @@ CoatedConductor::CoatedConductor(const MaterialReader& in)
 void CoatedConductor::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     Rgb n = in.Color(eta), absorption = in.Color(k);
     if (reflectance) {
-        const Rgb r = in.Color(*reflectance).min(0.9999f);
         n = Rgb::Ones();
-        absorption = 2 * (r / (1 - r)).sqrt();
+        absorption = AbsorptionOf(in.Color(*reflectance));
     }
     n /= index;
     absorption /= index;

@@ -8,22 +8,54 @@
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/materials/basic.h"
 #include "renderer/scene/materials/coated.h"
-#include "renderer/scene/materials/disney.h"
 #include "renderer/scene/materials/fourier.h"
-#include "renderer/scene/materials/hair.h"
 #include "renderer/scene/materials/material_inputs.h"
 #include "renderer/scene/materials/metallic_roughness.h"
 #include "renderer/scene/materials/subsurface.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
-namespace {
+
+// Represents a weighted sum of two other materials.
+struct Mix {
+    SpectrumTexture amount;             // of the first; the second gets 1 - amount
+    std::optional<FloatTexture> share;  // the amount where it is a number, as in pbrt-v4
+    std::array<int, 2> operands;        // into the table, before this one
+
+    explicit Mix(const MaterialReader& in)
+        : amount(in.ShareOfColors("amount", 0.5f)),
+          share(in.FloatOrNone("share")),
+          operands(in.entity.operands) {}
+
+    // A material can only be named after it was made, so there are no cycles.
+    std::string Problem(const MaterialReader& in) const;
+
+    MaterialTraits Traits(const MaterialReader& in) const;
+    // pbrt-v3 shades a mix in the frame of the first material, so its tilt counts.
+    SurfaceTilt Tilt(const MaterialReader& in) const;
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
 
 // The functions of a kind are listed in materials/material_inputs.h.
 using MaterialKind =
     std::variant<Matte, Plastic, Metal, Glass, Mirror, Uber, Substrate, Translucent, Mix, Interface,
                  Disney, Hair, Fourier, MetallicRoughness, Subsurface, KdSubsurface, CoatedDiffuse,
                  CoatedConductor, ThinDielectric>;
+
+struct Material {
+    MaterialKind kind;
+    MaterialTraits traits;  // of the lobes
+    SurfaceTilt tilt;
+    bool isTilted = false;               // by a map
+    bool turnsNormal = false;            // of the Bsdf
+    SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of bump maps
+
+    // The lobes where they are constant, so that a hit costs no more than their copy.
+    std::vector<Lobe> constantLobes{};
+    float constantEta = 1;
+};
+
+namespace {
 
 // Adapts constructors to the table of kinds.
 template <typename K>
@@ -53,23 +85,6 @@ constexpr Kind<MaterialKind(const MaterialReader&)> kMaterials[] = {
     {"coatedconductor", Make<CoatedConductor>},
     {"thindielectric", Make<ThinDielectric>},
 };
-
-}  // namespace
-
-struct Material {
-    MaterialKind kind;
-    MaterialTraits traits;  // of the lobes
-    SurfaceTilt tilt;
-    bool isTilted = false;               // by a map
-    bool turnsNormal = false;            // of the Bsdf
-    SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of bump maps
-
-    // The lobes where they are constant, so that a hit costs no more than their copy.
-    std::vector<Lobe> constantLobes{};
-    float constantEta = 1;
-};
-
-namespace {
 
 void AddLobes(const Material& material, const MaterialInputs& in, Bsdf* bsdf) {
     if (material.traits.isConstant) {
@@ -209,16 +224,6 @@ std::string ProblemOfIndex(const MaterialReader& in, const FloatTexture& index) 
                        in.entity.name, index.constant);
 }
 
-const MaterialTraits& TraitsOfOperand(int operand, std::span<const Material> materials) {
-    return materials[operand].traits;
-}
-const SurfaceTilt& TiltOfOperand(int operand, std::span<const Material> materials) {
-    return materials[operand].tilt;
-}
-void AddOperandLobes(int operand, const MaterialInputs& in, Bsdf* bsdf) {
-    AddLobes(in.materials[operand], in, bsdf);
-}
-
 MaterialTable::MaterialTable(const Description& description, const TextureTable& textures,
                              Warnings& warnings) {
     MaterialEntity plain;
@@ -272,11 +277,6 @@ std::optional<SubsurfaceProfile> MaterialTable::Profile(const TextureTable& text
                  });
 }
 
-Mix::Mix(const MaterialReader& in)
-    : amount(in.ShareOfColors("amount", 0.5f)),
-      share(in.FloatOrNone("share")),
-      operands(in.entity.operands) {}
-
 std::string Mix::Problem(const MaterialReader& in) const {
     for (int i = 0; i < 2; ++i) {
         const std::string parameter = "namedmaterial" + std::to_string(i + 1);
@@ -296,7 +296,7 @@ std::string Mix::Problem(const MaterialReader& in) const {
 MaterialTraits Mix::Traits(const MaterialReader& in) const {
     MaterialTraits traits = in.TraitsOf(0, amount, share);
     for (const int operand : operands) {
-        const MaterialTraits& other = TraitsOfOperand(operand, in.made);
+        const MaterialTraits& other = in.made[operand].traits;
         traits.needs = traits.needs | other.needs;
         traits.mostLobes += other.mostLobes;
         traits.isConstant &= other.isConstant;
@@ -304,16 +304,18 @@ MaterialTraits Mix::Traits(const MaterialReader& in) const {
     return traits;
 }
 
+SurfaceTilt Mix::Tilt(const MaterialReader& in) const { return in.made[operands[0]].tilt; }
+
 void Mix::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     const Rgb first =
         share ? Rgb::Constant(std::clamp(in(*share), 0.f, 1.f)).eval() : in.Color(amount);
     const Rgb second = (1 - first).max(0.f);
     // As in pbrt-v3 a lobe scaled to black stays among those to choose from.
     const int begin = bsdf->LobeCount(LobeSet::All);
-    AddOperandLobes(operands[0], in, bsdf);
+    lull::AddLobes(in.materials[operands[0]], in, bsdf);
     const int middle = bsdf->LobeCount(LobeSet::All);
     const float eta = bsdf->Eta();
-    AddOperandLobes(operands[1], in, bsdf);
+    lull::AddLobes(in.materials[operands[1]], in, bsdf);
     bsdf->Scale(begin, middle, first);
     bsdf->Scale(middle, bsdf->LobeCount(LobeSet::All), second);
     bsdf->SetEta(eta);  // pbrt-v3 takes the first material's

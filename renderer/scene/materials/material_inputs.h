@@ -162,12 +162,6 @@ inline bool IsAlwaysBlack(const SpectrumTexture& t) {
     return t.IsConstant() && (t.constant <= 0).all();
 }
 
-// Properties of the operand-th material of a mixture: its traits, normal maps, and its
-// lobes. In material.cpp, the only file that knows every kind.
-const MaterialTraits& TraitsOfOperand(int operand, std::span<const Material>);
-const SurfaceTilt& TiltOfOperand(int operand, std::span<const Material>);
-void AddOperandLobes(int operand, const MaterialInputs&, Bsdf*);
-
 // Reads roughness parameters and turns them into a microfacet distribution.
 
 // How a roughness becomes alpha: not at all, as in pbrt-v3, or by its root, as in pbrt-v4.

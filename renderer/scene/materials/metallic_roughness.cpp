@@ -2,6 +2,7 @@
 
 #include "renderer/base/math.h"
 #include "renderer/bsdf/directional_albedo.h"
+#include "renderer/scene/materials/basic.h"
 
 namespace lull {
 namespace {
@@ -207,16 +208,7 @@ void MetallicRoughness::AddSolid(const MaterialInputs& in, const Rgb& reflected,
         through *= bsdf->Shading().n.dot(in.hit->wo) > 0 ? Sqr(index) : 1 / Sqr(index);
     else
         bsdf->SetEta(index);
-    if (isSmooth) {
-        bsdf->Add(FresnelSpecular{reflected, through, index});
-    } else {
-        const float resolvable = ResolvableIndex(index);
-        const TrowbridgeReitz distribution(alphas.x(), alphas.y());
-        if (!IsBlack(reflected))
-            bsdf->Add(MicrofacetReflection<DielectricInterface>{reflected, distribution,
-                                                                DielectricInterface{resolvable}});
-        if (!IsBlack(through)) bsdf->Add(MicrofacetTransmission{through, distribution, resolvable});
-    }
+    AddDielectricLobes(reflected, through, index, isSmooth, {alphas.x(), alphas.y()}, bsdf);
 }
 
 void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {

@@ -52,7 +52,7 @@ std::string TranslucentSolid::Problem(const MaterialReader& in) const {
 }
 
 void TranslucentSolid::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    AddDielectricLobes(in.Color(kr), in.Color(kt), eta, roughness, in, bsdf);
+    AddDielectric(in.Color(kr), in.Color(kt), eta, roughness, in, bsdf);
 }
 
 Subsurface::Subsurface(const MaterialReader& in)

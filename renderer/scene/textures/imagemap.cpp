@@ -9,6 +9,18 @@
 
 namespace lull {
 
+Rgb MeanTexel(const Image& image) {
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    std::visit(
+        [&](const auto& texels) {
+            for (int y = 0; y < image.height; ++y)
+                for (int x = 0; x < image.width; ++x)
+                    sum += TexelRgb(image, texels, x, y).template cast<double>();
+        },
+        image.texels);
+    return (sum / (double(image.width) * image.height)).cast<float>();
+}
+
 void DecodeBytes(Image* image) {
     const auto* bytes = std::get_if<std::vector<uint8_t>>(&image->texels);
     if (!bytes) return;
@@ -78,14 +90,6 @@ TextureChannels GetChannels(const TextureInput& input, bool isFloat) {
     return TextureChannels::Luminance;
 }
 
-template <typename T>
-T FromRgb(const Rgb& c) {
-    if constexpr (std::is_same_v<T, float>)
-        return c.x();
-    else
-        return c;
-}
-
 }  // namespace
 
 template <typename T>
@@ -120,17 +124,21 @@ Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input) {
             fmt::format("texture \"{}\": {}", Printable(entity.textureName), error.what());
         input.warnings.Substitute(entity.loc, what, "grey stands in");
         const float grey = map.scale * (gamma == kSrgb ? LinearFromSrgb(0.5f) : 0.5f);
-        return ConstantTexture<T>(grey);
+        return TextureHandle<T>{Filled<T>(grey)};
     }
 
     if (map.image->notFinite > 0)
         input.warnings.Add(
             entity.loc, "values of a texture that are not finite count as 0",
             fmt::format("{} of \"{}\"", map.image->notFinite, Printable(filename, 200)));
-    if (map.image->uniform && map.wrap != Wrap::Black && map.wrapT != Wrap::Black)
-        return TextureHandle<T>{FromRgb<T>(map.inverts
-                                               ? Inverted(Rgb(map.scale * *map.image->uniform))
-                                               : Rgb(map.scale * *map.image->uniform))};
+    if (map.image->uniform && map.wrap != Wrap::Black && map.wrapT != Wrap::Black) {
+        const Rgb scaled = map.scale * *map.image->uniform;
+        const Rgb color = map.inverts ? Inverted(scaled) : scaled;
+        if constexpr (std::is_same_v<T, float>)
+            return TextureHandle<T>{color.x()};
+        else
+            return TextureHandle<T>{color};
+    }
     return map;
 }
 

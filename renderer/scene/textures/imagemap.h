@@ -72,19 +72,6 @@ inline Footprint BilinearFootprint(const Vec2f& st, int width, int height, Wrap 
     return {x.i0, x.i1, y.i0, y.i1, x.w0 * y.w0, x.w1 * y.w0, x.w0 * y.w1, x.w1 * y.w1};
 }
 
-inline Footprint BilinearFootprint(const Vec2f& st, int width, int height, Wrap wrap) {
-    if (wrap == Wrap::Mirror) return BilinearFootprint(st, width, height, wrap, wrap);
-    Footprint1D x, y;
-    if (wrap == Wrap::Repeat) {
-        x = RepeatFootprint(st.x(), width);
-        y = RepeatFootprint(st.y(), height);
-    } else {
-        x = BoundedFootprint(st.x(), width, wrap == Wrap::Black);
-        y = BoundedFootprint(st.y(), height, wrap == Wrap::Black);
-    }
-    return {x.i0, x.i1, y.i0, y.i1, x.w0 * y.w0, x.w1 * y.w0, x.w0 * y.w1, x.w1 * y.w1};
-}
-
 // Returns the weighted mean of the texels of a footprint: a float for one channel, RGB for three.
 // `stride` is the number of channels stored; `decode` maps a stored value to float.
 template <int Channels, typename T, typename Decode>
@@ -117,6 +104,9 @@ Rgb TexelRgb(const Image& image, const std::vector<T>& texels, int x, int y) {
     if (image.channels < 3) return Rgb::Constant(ToFloat(t[0]));
     return {ToFloat(t[0]), ToFloat(t[1]), ToFloat(t[2])};
 }
+
+// Returns the mean of the texels of an image that is not empty; linear, alpha ignored.
+Rgb MeanTexel(const Image& image);
 
 // Looks up an image whose first row is at st.y = 0, as environment maps are; texels count as
 // linear, alpha is ignored. The image must not be empty.
@@ -158,9 +148,7 @@ template <typename T>
 T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c) {
     const TextureImage& image = *map.image;
     const Vec2f st = Map(map.mapping, c);
-    const Footprint f = map.wrap == map.wrapT
-                            ? BilinearFootprint(st, image.width, image.height, map.wrap)
-                            : BilinearFootprint(st, image.width, image.height, map.wrap, map.wrapT);
+    const Footprint f = BilinearFootprint(st, image.width, image.height, map.wrap, map.wrapT);
     const auto blend = [&](const auto& texels) -> T {
         using Stored = typename std::decay_t<decltype(texels.values)>::value_type;
         constexpr int channels = std::decay_t<decltype(texels)>::kChannels;
@@ -179,11 +167,6 @@ T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c)
     };
     const T value = map.scale * Visit(image.texels, blend);
     return map.inverts ? Inverted(value) : value;
-}
-
-template <typename T>
-SurfaceNeeds Needs(const ImageMap<T>& map, const TextureTable&) {
-    return Needs(map.mapping);
 }
 
 // Reads "filename" or "embeddedimage" (into Description::images), "gamma" (the file is

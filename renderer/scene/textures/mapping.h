@@ -71,6 +71,9 @@ inline Mapping3D MakeMapping3D(const TextureInput& input) {
     return {input.entity.worldFromTexture.cast<float>()};
 }
 
+// Noise in these coordinates needs the distance between samples.
+inline SurfaceNeeds Needs(const Mapping3D&) { return kNeedsFootprint; }
+
 inline Vec3f TransformPoint(const Eigen::Matrix4f& m, const Vec3f& p) {
     const Eigen::Vector4f q = m * p.homogeneous();
     return q.head<3>() / q.w();

@@ -42,17 +42,8 @@ inline int GetOctaves(const TextureInput& input) {
 
 template <typename T, OctaveSum sum>
 T Evaluate(const Octaves<T, sum>& texture, const TextureTable&, const TextureContext& c) {
-    const float v = sum(Map(texture.mapping, c), Spacing2(texture.mapping, c), texture.roughness,
-                        texture.octaves);
-    if constexpr (std::is_same_v<T, float>)
-        return v;
-    else
-        return Rgb::Constant(v);
-}
-
-template <typename T, OctaveSum sum>
-SurfaceNeeds Needs(const Octaves<T, sum>&, const TextureTable&) {
-    return kNeedsFootprint;
+    return Filled<T>(sum(Map(texture.mapping, c), Spacing2(texture.mapping, c), texture.roughness,
+                         texture.octaves));
 }
 
 template <typename T, OctaveSum sum>
@@ -73,15 +64,7 @@ T Evaluate(const Windy<T>& windy, const TextureTable&, const TextureContext& c) 
     const float spacing2 = Spacing2(windy.mapping, c);
     const float wind = FractionalBrownianMotion(0.1f * p, Sqr(0.1f) * spacing2, 0.5f, 3);
     const float v = std::abs(wind) * FractionalBrownianMotion(p, spacing2, 0.5f, 6);
-    if constexpr (std::is_same_v<T, float>)
-        return v;
-    else
-        return Rgb::Constant(v);
-}
-
-template <typename T>
-SurfaceNeeds Needs(const Windy<T>&, const TextureTable&) {
-    return kNeedsFootprint;
+    return Filled<T>(v);
 }
 
 template <typename T>
@@ -99,8 +82,6 @@ struct Marble {
 };
 
 Rgb Evaluate(const Marble& marble, const TextureTable&, const TextureContext& c);
-
-inline SurfaceNeeds Needs(const Marble&, const TextureTable&) { return kNeedsFootprint; }
 
 inline Made<Rgb, Marble> MakeMarble(const TextureInput& input) {
     const Parameters& parameters = input.entity.parameters;

@@ -1,20 +1,20 @@
 // Textures that are constants, mixtures of others, and patterns of these.
 #pragma once
 
+#include <fmt/core.h>
+
 #include "renderer/base/variant.h"
 #include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/noise.h"
 #include "renderer/scene/textures/texture_image.h"
+#include "stopping/base/input_file.h"
 
 namespace lull {
 
 // Makes "constant" textures, which leave nothing to evaluate.
 template <typename T>
 TextureHandle<T> MakeConstant(const TextureInput& input) {
-    if constexpr (std::is_same_v<T, float>)
-        return {input.entity.parameters.GetFloat("value", 1)};
-    else
-        return {input.entity.parameters.GetSpectrum("value", Rgb::Constant(1))};
+    return {GetValue<T>(input, "value", 1)};
 }
 
 // Multiplies two textures.
@@ -26,11 +26,6 @@ struct Scale {
 template <typename T>
 T Evaluate(const Scale<T>& scale, const TextureTable& table, const TextureContext& c) {
     return table.Evaluate(scale.tex1, c) * table.Evaluate(scale.tex2, c);
-}
-
-template <typename T>
-SurfaceNeeds Needs(const Scale<T>& scale, const TextureTable& table) {
-    return table.Needs(scale.tex1) | table.Needs(scale.tex2);
 }
 
 template <typename T>
@@ -55,11 +50,6 @@ template <typename T>
 T Evaluate(const MixTexture<T>& mix, const TextureTable& table, const TextureContext& c) {
     const float amount = table.Evaluate(mix.amount, c);
     return (1 - amount) * table.Evaluate(mix.tex1, c) + amount * table.Evaluate(mix.tex2, c);
-}
-
-template <typename T>
-SurfaceNeeds Needs(const MixTexture<T>& mix, const TextureTable& table) {
-    return table.Needs(mix.tex1) | table.Needs(mix.tex2) | table.Needs(mix.amount);
 }
 
 template <typename T>
@@ -91,11 +81,6 @@ T Evaluate(const DirectionMix<T>& mix, const TextureTable& table, const TextureC
 }
 
 template <typename T>
-SurfaceNeeds Needs(const DirectionMix<T>& mix, const TextureTable& table) {
-    return table.Needs(mix.tex1) | table.Needs(mix.tex2);
-}
-
-template <typename T>
 Made<T, DirectionMix<T>> MakeDirectionMix(const TextureInput& input) {
     const Vec3f given = input.entity.parameters.GetVector3("dir", Vec3f::UnitY());
     const Vec3f direction = TransformVector(input.entity.worldFromTexture, given);
@@ -120,23 +105,12 @@ T Evaluate(const Bilerp<T>& bilerp, const TextureTable&, const TextureContext& c
            s * t * bilerp.v11;
 }
 
-template <typename T>
-SurfaceNeeds Needs(const Bilerp<T>& bilerp, const TextureTable&) {
-    return Needs(bilerp.mapping);
-}
-
 // Reads the corners, which are constants in pbrt-v3: textures are not looked up there.
 template <typename T>
 Made<T, Bilerp<T>> MakeBilerp(const TextureInput& input) {
-    const auto corner = [&](const char* name, float otherwise) -> T {
-        const Parameters& parameters = input.entity.parameters;
-        if constexpr (std::is_same_v<T, float>)
-            return parameters.GetFloat(name, otherwise);
-        else
-            return parameters.GetSpectrum(name, Rgb::Constant(otherwise));
-    };
-    return Bilerp<T>{MakeMapping2D(input), corner("v00", 0), corner("v01", 1), corner("v10", 0),
-                     corner("v11", 1)};
+    return Bilerp<T>{MakeMapping2D(input), GetValue<T>(input, "v00", 0),
+                     GetValue<T>(input, "v01", 1), GetValue<T>(input, "v10", 0),
+                     GetValue<T>(input, "v11", 1)};
 }
 
 // Shows texture coordinates as red and green: for debugging parametrisations.
@@ -148,8 +122,6 @@ inline Rgb Evaluate(const UvColors& uv, const TextureTable&, const TextureContex
     const Vec2f st = Map(uv.mapping, c);
     return {st.x() - std::floor(st.x()), st.y() - std::floor(st.y()), 0};
 }
-
-inline SurfaceNeeds Needs(const UvColors& uv, const TextureTable&) { return Needs(uv.mapping); }
 
 inline Made<Rgb, UvColors> MakeUvColors(const TextureInput& input) {
     return UvColors{MakeMapping2D(input)};
@@ -181,6 +153,11 @@ inline bool IsSecondColor(const Mapping3D& mapping, const TextureContext& c) {
     return (IsOdd(p.x()) != IsOdd(p.y())) != IsOdd(p.z());
 }
 
+inline SurfaceNeeds Needs(const std::variant<Mapping2D, Mapping3D>& mapping) {
+    const auto* plane = std::get_if<Mapping2D>(&mapping);
+    return plane ? Needs(*plane) : kNeedsNothing;
+}
+
 template <typename T>
 T Evaluate(const Checkerboard<T>& board, const TextureTable& table, const TextureContext& c) {
     const bool second =
@@ -188,22 +165,40 @@ T Evaluate(const Checkerboard<T>& board, const TextureTable& table, const Textur
     return table.Evaluate(second ? board.tex2 : board.tex1, c);
 }
 
-template <typename T>
-SurfaceNeeds Needs(const Checkerboard<T>& board, const TextureTable& table) {
-    const auto* mapping = std::get_if<Mapping2D>(&board.mapping);
-    return (mapping ? Needs(*mapping) : kNeedsNothing) | table.Needs(board.tex1) |
-           table.Needs(board.tex2);
-}
-
 // Constant 1 substitutes a dimension other than 2 and 3.
 template <typename T>
-Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input);
+Made<T, Checkerboard<T>> MakeCheckerboard(const TextureInput& input) {
+    const TextureEntity& entity = input.entity;
+    const int dimension = entity.parameters.GetInt("dimension", 2);
+    Checkerboard<T> board{Mapping3D{}, GetTexture<T>(input, "tex1", 1),
+                          GetTexture<T>(input, "tex2", 0)};
+    if (dimension != 2 && dimension != 3) {
+        input.warnings.Substitute(
+            entity.loc, fmt::format("{}-dimensional checkerboard is not supported", dimension),
+            "1 stands in");
+        return TextureHandle<T>{Filled<T>(1)};
+    }
+
+    if (dimension == 2) {
+        board.mapping = MakeMapping2D(input);
+        const std::string mode = entity.parameters.GetString("aamode", "closedform");
+        if (mode != "none" && mode != "closedform")
+            input.warnings.Add(entity.loc, "unknown aamode of checkerboard ignored",
+                               Printable(mode));
+    } else {
+        board.mapping = MakeMapping3D(input);
+    }
+    if (board.tex1.IsConstant() && board.tex2.IsConstant() &&
+        AllEqual(board.tex1.constant, board.tex2.constant))
+        return board.tex1;
+    return board;
+}
 
 // Scatters discs over the unit squares of a mapping, at most one per square.
 template <typename T>
 struct Dots {
     Mapping2D mapping;
-    TextureHandle<T> inDot, aroundDots;
+    TextureHandle<T> tex1, tex2;  // in the dots, around them
 };
 
 // Returns whether the point lies in a disc of radius 0.35, placed by noise within its square.
@@ -219,12 +214,7 @@ inline bool IsInDot(const Vec2f& st) {
 
 template <typename T>
 T Evaluate(const Dots<T>& dots, const TextureTable& table, const TextureContext& c) {
-    return table.Evaluate(IsInDot(Map(dots.mapping, c)) ? dots.inDot : dots.aroundDots, c);
-}
-
-template <typename T>
-SurfaceNeeds Needs(const Dots<T>& dots, const TextureTable& table) {
-    return Needs(dots.mapping) | table.Needs(dots.inDot) | table.Needs(dots.aroundDots);
+    return table.Evaluate(IsInDot(Map(dots.mapping, c)) ? dots.tex1 : dots.tex2, c);
 }
 
 // pbrt-v3 passes "inside" and "outside" in the wrong order, so that the dots show "outside". Scenes

@@ -11,16 +11,17 @@
 
 namespace lull {
 
+template <typename T, typename... More>
+using AllTextureKinds =
+    std::variant<Scale<T>, MixTexture<T>, ImageMap<T>, Checkerboard<T>, Fbm<T>, Bilerp<T>, Dots<T>,
+                 Windy<T>, Wrinkled<T>, DirectionMix<T>, More...>;
+
 struct FloatTextureNode {
-    std::variant<Scale<float>, MixTexture<float>, ImageMap<float>, Checkerboard<float>, Fbm<float>,
-                 Bilerp<float>, Dots<float>, Windy<float>, Wrinkled<float>, DirectionMix<float>>
-        kind;
+    AllTextureKinds<float> kind;
 };
 
 struct SpectrumTextureNode {
-    std::variant<Scale<Rgb>, MixTexture<Rgb>, ImageMap<Rgb>, Checkerboard<Rgb>, Fbm<Rgb>, Marble,
-                 Bilerp<Rgb>, Dots<Rgb>, Windy<Rgb>, Wrinkled<Rgb>, UvColors, DirectionMix<Rgb>>
-        kind;
+    AllTextureKinds<Rgb, Marble, UvColors> kind;
 };
 
 namespace {
@@ -42,55 +43,45 @@ TextureHandle<TypeOf<Node>> AddNode(const TextureInput& input, Nodes<Node>* node
     if constexpr (std::is_same_v<decltype(made), Handle>) {
         return made;
     } else {
-        return Visit(made, [&]<typename T>(T& texture) {
+        return Visit(made, [&]<typename T>(T& texture) -> Handle {
             if constexpr (std::is_same_v<T, Handle>) {
                 return texture;
             } else {
                 nodes->push_back({std::move(texture)});
-                Handle handle = ConstantTexture<TypeOf<Node>>(0);
-                handle.index = int(nodes->size()) - 1;
-                return handle;
+                return {Filled<TypeOf<Node>>(0), int(nodes->size()) - 1};
             }
         });
     }
 }
 
-constexpr TextureKind<FloatTextureNode> kFloatKinds[] = {
-    {"constant", AddNode<MakeConstant<float>>},
-    {"scale", AddNode<MakeScale<float>>},
-    {"mix", AddNode<MakeMix<float>>},
-    {"imagemap", AddNode<MakeImageMap<float>>},
-    {"fbm", AddNode<MakeOctaves<float, FractionalBrownianMotion>>},
-    {"checkerboard", AddNode<MakeCheckerboard<float>>},
-    {"bilerp", AddNode<MakeBilerp<float>>},
-    {"directionmix", AddNode<MakeDirectionMix<float>>},
-    {"dots", AddNode<MakeDots<float>>},
-    {"windy", AddNode<MakeWindy<float>>},
-    {"wrinkled", AddNode<MakeOctaves<float, Turbulence>>},
+template <typename Node, typename T = TypeOf<Node>>
+constexpr TextureKind<Node> kKinds[] = {
+    {"constant", AddNode<MakeConstant<T>>},
+    {"scale", AddNode<MakeScale<T>>},
+    {"mix", AddNode<MakeMix<T>>},
+    {"imagemap", AddNode<MakeImageMap<T>>},
+    {"fbm", AddNode<MakeOctaves<T, FractionalBrownianMotion>>},
+    {"checkerboard", AddNode<MakeCheckerboard<T>>},
+    {"bilerp", AddNode<MakeBilerp<T>>},
+    {"directionmix", AddNode<MakeDirectionMix<T>>},
+    {"dots", AddNode<MakeDots<T>>},
+    {"windy", AddNode<MakeWindy<T>>},
+    {"wrinkled", AddNode<MakeOctaves<T, Turbulence>>},
 };
 
-constexpr TextureKind<SpectrumTextureNode> kSpectrumKinds[] = {
-    {"constant", AddNode<MakeConstant<Rgb>>},
-    {"scale", AddNode<MakeScale<Rgb>>},
-    {"mix", AddNode<MakeMix<Rgb>>},
-    {"imagemap", AddNode<MakeImageMap<Rgb>>},
-    {"fbm", AddNode<MakeOctaves<Rgb, FractionalBrownianMotion>>},
-    {"checkerboard", AddNode<MakeCheckerboard<Rgb>>},
+constexpr TextureKind<SpectrumTextureNode> kColorKinds[] = {
     {"marble", AddNode<MakeMarble>},
     {"uv", AddNode<MakeUvColors>},
-    {"bilerp", AddNode<MakeBilerp<Rgb>>},
-    {"directionmix", AddNode<MakeDirectionMix<Rgb>>},
-    {"dots", AddNode<MakeDots<Rgb>>},
-    {"windy", AddNode<MakeWindy<Rgb>>},
-    {"wrinkled", AddNode<MakeOctaves<Rgb, Turbulence>>},
 };
 
 // Makes one texture, or a substitute for one of an unsupported kind.
-template <typename Node, size_t N>
-TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
-                                        const TextureInput& input, Nodes<Node>* nodes) {
+template <typename Node>
+TextureHandle<TypeOf<Node>> MakeTexture(const TextureInput& input, Nodes<Node>* nodes) {
     const TextureEntity& entity = input.entity;
-    if (const auto* kind = FindKind(kinds, entity.name)) {
+    const TextureKind<Node>* kind = FindKind(kKinds<Node>, entity.name);
+    if constexpr (std::is_same_v<Node, SpectrumTextureNode>)
+        if (!kind) kind = FindKind(kColorKinds, entity.name);
+    if (kind) {
         const auto handle = kind->make(input, nodes);
         entity.parameters.ReportUnused(fmt::format("texture \"{}\"", Printable(entity.textureName)),
                                        input.warnings);
@@ -100,7 +91,7 @@ TextureHandle<TypeOf<Node>> MakeTexture(const TextureKind<Node> (&kinds)[N],
                                          entity.isSpectrum ? "spectrum" : "float",
                                          Printable(entity.textureName), Printable(entity.name));
     input.warnings.Substitute(entity.loc, what, "1 stands in");
-    return ConstantTexture<TypeOf<Node>>(1);
+    return {Filled<TypeOf<Node>>(1)};
 }
 
 // Finds the texture that a parameter names among those made so far.
@@ -136,9 +127,17 @@ std::optional<TextureHandle<T>> Find(const std::vector<TextureHandle<T>>& made,
     return std::nullopt;
 }
 
+// Returns the inputs of the mapping and of the textures that a texture is made of.
 template <typename Node>
 SurfaceNeeds NodeNeeds(const Node& node, const TextureTable& table) {
-    return Visit(node.kind, [&](const auto& kind) { return Needs(kind, table); });
+    return Visit(node.kind, [&](const auto& kind) {
+        SurfaceNeeds needs = kNeedsNothing;
+        if constexpr (requires { kind.mapping; }) needs = Needs(kind.mapping);
+        if constexpr (requires { kind.tex1; })
+            needs = needs | table.Needs(kind.tex1) | table.Needs(kind.tex2);
+        if constexpr (requires { kind.amount; }) needs = needs | table.Needs(kind.amount);
+        return needs;
+    });
 }
 
 }  // namespace
@@ -154,13 +153,13 @@ TextureTable::TextureTable(const Description& description, Warnings& warnings) {
         const TextureInput input{entity, description, *this, images, warnings};
         // Each texture takes a place in both lists, so that its index is its place in the
         // description; the one of the other type is never referred to.
-        auto asFloat = ConstantTexture<float>(0);
-        auto asSpectrum = ConstantTexture<Rgb>(0);
+        FloatTexture asFloat{0};
+        SpectrumTexture asSpectrum{Rgb::Zero()};
         warnings.Try([&] {
             if (entity.isSpectrum)
-                asSpectrum = MakeTexture(kSpectrumKinds, input, &spectra);
+                asSpectrum = MakeTexture(input, &spectra);
             else
-                asFloat = MakeTexture(kFloatKinds, input, &floats);
+                asFloat = MakeTexture(input, &floats);
         });
         madeFloats.push_back(asFloat);
         madeSpectra.push_back(asSpectrum);

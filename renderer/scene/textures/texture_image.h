@@ -100,22 +100,30 @@ TextureHandle<T> GetTexture(const TextureInput& input, const std::string& name, 
         return input.table.GetSpectrum(input.entity, name, Rgb::Constant(otherwise));
 }
 
+// Reads a parameter that is a constant of type T.
 template <typename T>
-TextureHandle<T> ConstantTexture(float value) {
+T GetValue(const TextureInput& input, const std::string& name, float otherwise) {
     if constexpr (std::is_same_v<T, float>)
-        return {value};
+        return input.entity.parameters.GetFloat(name, otherwise);
     else
-        return {Rgb::Constant(value)};
+        return input.entity.parameters.GetSpectrum(name, Rgb::Constant(otherwise));
+}
+
+// Returns the number, or the colour whose components it is.
+template <typename T>
+T Filled(float value) {
+    if constexpr (std::is_same_v<T, float>)
+        return value;
+    else
+        return Rgb::Constant(value);
 }
 
 // Compare constants of either type.
 inline bool AllEqual(float a, float b) { return a == b; }
 inline bool AllEqual(const Rgb& a, const Rgb& b) { return (a == b).all(); }
-inline bool IsConstant(const FloatTexture& t, float value) {
-    return t.IsConstant() && t.constant == value;
-}
-inline bool IsConstant(const SpectrumTexture& t, float value) {
-    return t.IsConstant() && (t.constant == value).all();
+template <typename T>
+bool IsConstant(const TextureHandle<T>& t, float value) {
+    return t.IsConstant() && AllEqual(t.constant, Filled<T>(value));
 }
 
 }  // namespace lull

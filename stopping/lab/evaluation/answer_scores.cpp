@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -27,56 +26,42 @@ constexpr const char* kHead = "block,spp,noise_seen";
 constexpr const char* kTrackHead = "block,spp,noise_seen,observer,track";
 constexpr int kMostBlocks = 1 << 16, kMostSpp = 1 << 24;
 
-// Returns the three whole numbers of a line; nothing if it is something else.
-std::optional<std::array<int, 3>> ParseNumbers(std::string_view line) {
-    std::array<int, 3> numbers;
-    const char *at = line.data(), *end = at + line.size();
-    for (size_t i = 0; i < numbers.size(); ++i) {
-        if (i > 0 && (at == end || *at++ != ',')) return {};
-        const auto [rest, error] = std::from_chars(at, end, numbers[i]);
-        if (error != std::errc()) return {};
-        at = rest;
-    }
-    if (at != end) return {};
-    return numbers;
+// Takes a whole number from the beginning of a text. Returns whether it is there.
+bool TakeNumber(std::string_view* text, int* number) {
+    const auto [rest, error] = std::from_chars(text->data(), text->data() + text->size(), *number);
+    text->remove_prefix(size_t(rest - text->data()));
+    return error == std::errc();
 }
 
-// Returns where the comma number `count` of a line is; npos if there are fewer.
-size_t CommaAt(std::string_view line, int count) {
-    size_t at = line.find(',');
-    for (int i = 1; i < count && at != std::string_view::npos; ++i) at = line.find(',', at + 1);
-    return at;
-}
-
-// Takes observer and track from the end of a line. Returns whether they are there.
-bool ParseTrack(std::string_view* line, SingleAnswer* answer) {
-    const size_t begin = CommaAt(*line, 3), end = line->rfind(',');
-    if (begin == std::string_view::npos || end <= begin) return false;
-    const std::string_view track = line->substr(end + 1);
-    if (!track.empty()) {
-        const auto [rest, error] =
-            std::from_chars(track.data(), track.data() + track.size(), answer->track);
-        if (error != std::errc() || rest != track.data() + track.size() || answer->track < 1)
-            return false;
-    }
-    answer->observer = line->substr(begin + 1, end - begin - 1);
-    *line = line->substr(0, begin);
+bool TakeComma(std::string_view* text) {
+    if (!text->starts_with(',')) return false;
+    text->remove_prefix(1);
     return true;
 }
 
+// Takes the observer, who can have commas, and the track, which can be missing.
+bool TakeTrack(std::string_view* text, SingleAnswer* answer) {
+    const size_t end = text->rfind(',');
+    if (end == std::string_view::npos) return false;
+    answer->observer = text->substr(0, end);
+    text->remove_prefix(end + 1);
+    return text->empty() || (TakeNumber(text, &answer->track) && answer->track >= 1);
+}
+
 // Throws std::invalid_argument with the reason.
-SingleAnswer ParseAnswer(std::string_view line, bool hasTrack) {
+SingleAnswer ParseAnswer(const std::string& line, bool hasTrack) {
     SingleAnswer answer;
-    const std::string whole(line);
-    const bool isWhole = !hasTrack || ParseTrack(&line, &answer);
-    const std::optional<std::array<int, 3>> numbers = ParseNumbers(line);
-    if (!isWhole || !numbers)
+    std::string_view rest = line;
+    int block = 0, spp = 0, seen = 0;
+    const bool isWhole = TakeNumber(&rest, &block) && TakeComma(&rest) && TakeNumber(&rest, &spp) &&
+                         TakeComma(&rest) && TakeNumber(&rest, &seen) &&
+                         (!hasTrack || (TakeComma(&rest) && TakeTrack(&rest, &answer)));
+    if (!isWhole || !rest.empty())
         throw std::invalid_argument(
-            "'" + Printable(whole) + "' is not an answer; " +
+            "'" + Printable(line) + "' is not an answer; " +
             (hasTrack
                  ? "three whole numbers, the observer and a track are needed, as in 5,640,1,ada,3"
                  : "three whole numbers are needed, as in 5,640,1"));
-    const auto [block, spp, seen] = *numbers;
     if (block < 0 || block >= kMostBlocks)
         throw std::invalid_argument("there can be no block " + std::to_string(block) +
                                     "; blocks are counted from 0, row by row");
@@ -208,7 +193,6 @@ std::vector<LabelledBlock> BlocksOf(const ViewpointRecording& viewpoint,
         if (answered.contains(number))
             blocks.push_back({.viewpoint = viewpoint.name,
                               .block = number,
-                              .cap = viewpoint.cap,
                               .passSpp = viewpoint.passSpp,
                               .recording = &recording});
     return blocks;

@@ -7,11 +7,10 @@
 #include <stdexcept>
 
 #include "stopping/lab/evaluation/simulation.h"
-#include "stopping/lab/evaluation/two_figures.h"
 #include "stopping/lab/recordings/extension.h"
-#include "stopping/lab/recordings/training_samples.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/learned.h"
-#include "stopping/rules/lnoise.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {
@@ -87,16 +86,13 @@ void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBl
     const auto run = [&](std::span<const LabelledBlock> on) {
         return EvaluateRivals(on, wanted.chooseBy, wanted.grid);
     };
-    const auto ruleOf = [](Rival& rival) {
-        return EvaluatedRule{rival.rule, rival.bestOfAll, std::move(rival.viewpoints)};
-    };
-    std::vector<Rival> recorded = run(blocks), longer;
+    std::vector<EvaluatedRule> recorded = run(blocks), longer;
     for (size_t i = 0; i < recorded.size(); ++i) {
         const auto extend = [&] {
             if (longer.empty()) longer = run(extended);
-            return ruleOf(longer[i]);
+            return std::move(longer[i]);
         };
-        AddTwoFigures(blocks, ruleOf(recorded[i]), extend, rules);
+        AddTwoFigures(blocks, std::move(recorded[i]), extend, rules);
     }
 }
 
@@ -114,11 +110,7 @@ EvaluatedRule EvaluateFile(const std::string& path, std::span<const LabelledBloc
                            bool clipped) {
     const std::vector<ThresholdsRow> rows = ReadThresholds(path);
     const Simulator simulator = [&](const LabelledBlock& block) {
-        const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
-        if (row == rows.end() || size_t(block.block) >= row->spp.size())
-            throw std::runtime_error(fmt::format("{}: has no threshold for block {} of '{}'", path,
-                                                 block.block, block.viewpoint));
-        RuleOutcome outcome = SimulateStop(block, row->spp[size_t(block.block)]);
+        RuleOutcome outcome = SimulateStop(block, ThresholdIn(rows, path, block));
         const int end = block.recording->spp.back();
         if (clipped && outcome.stop > end) {
             outcome.stop = end;
@@ -126,7 +118,7 @@ EvaluatedRule EvaluateFile(const std::string& path, std::span<const LabelledBloc
         }
         return outcome;
     };
-    return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator, "")};
+    return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator)};
 }
 
 // Marks the blocks that a model was trained on.
@@ -198,7 +190,7 @@ std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> block
         const auto trainedOn = TrainingBlocksOf(rule, context);
         const auto run = [&](std::span<const LabelledBlock> on) {
             EvaluatedRule made{
-                .name = rule, .viewpoints = Simulate(on, simulator, ""), .threshold = threshold};
+                .name = rule, .viewpoints = Simulate(on, simulator), .threshold = threshold};
             MarkSeen(trainedOn, &made);
             return made;
         };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <functional>
 #include <stdexcept>
 
@@ -31,40 +30,28 @@ std::vector<const RecordedRule*> RivalRules(std::span<const LabelledBlock> block
     return rivals;
 }
 
-std::string Text(double number) {
-    char text[32];
-    const auto end =
-        std::to_chars(text, text + sizeof(text), number, std::chars_format::general, 3).ptr;
-    return std::string(text, end);
-}
+std::string TextOf(double setting) { return fmt::format("{:.3g}", setting); }
 
-// Setting of a rule.
-struct Setting {
-    double threshold = 0;
-    std::string text = {};
-};
-
-std::vector<Setting> SettingsOf(const RecordedRule& rule) {
-    std::vector<Setting> settings;
+std::vector<double> SettingsOf(const RecordedRule& rule) {
     if (rule.replay == Replay::RanAlong)
-        for (const double t : kCyclesThresholds) settings.push_back({t, Text(t)});
-    else
-        for (double t = rule.largest; t >= rule.least; t /= 1.01) settings.push_back({t, Text(t)});
+        return {kCyclesThresholds.begin(), kCyclesThresholds.end()};
+    std::vector<double> settings;
+    for (double t = rule.largest; t >= rule.least; t /= 1.01) settings.push_back(t);
     return settings;
 }
 
 // Runs a setting over block number `index`; without verdicts if `brief`.
-using Run = std::function<RuleOutcome(size_t index, const Setting& setting, bool brief)>;
+using Run = std::function<RuleOutcome(size_t index, double setting, bool brief)>;
 
 // Returns costs[viewpoint][setting]. `begins` says where viewpoints begin in the blocks.
 std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
                                        std::span<const size_t> begins,
-                                       std::span<const Setting> settings, const Run& run,
+                                       std::span<const double> settings, const Run& run,
                                        ChooseBy chooseBy, int grid) {
     std::vector<std::vector<double>> costs;
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
         std::vector<double>& row = costs.emplace_back();
-        for (const Setting& setting : settings) {
+        for (const double setting : settings) {
             ViewpointOutcome viewpoint{.name = blocks[begins[v]].viewpoint};
             for (size_t i = begins[v]; i < begins[v + 1]; ++i)
                 viewpoint.blocks.push_back(
@@ -77,8 +64,8 @@ std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
 
 // Returns the setting of the least mean cost over all viewpoints but `left` (-1: none is left out),
 // the first among equals.
-Setting Best(const std::vector<std::vector<double>>& costs, std::span<const Setting> settings,
-             int left) {
+double Best(const std::vector<std::vector<double>>& costs, std::span<const double> settings,
+            int left) {
     std::vector<double> sums(settings.size(), 0);
     for (size_t v = 0; v < costs.size(); ++v)
         for (size_t s = 0; s < settings.size(); ++s)
@@ -86,15 +73,15 @@ Setting Best(const std::vector<std::vector<double>>& costs, std::span<const Sett
     return settings[size_t(std::ranges::min_element(sums) - sums.begin())];
 }
 
-Rival EvaluateRival(const std::string& name, std::span<const LabelledBlock> blocks,
-                    std::span<const size_t> begins, std::span<const Setting> settings,
-                    const Run& run, ChooseBy chooseBy, int grid) {
+EvaluatedRule EvaluateRival(const std::string& name, std::span<const LabelledBlock> blocks,
+                            std::span<const size_t> begins, std::span<const double> settings,
+                            const Run& run, ChooseBy chooseBy, int grid) {
     const auto costs = Costs(blocks, begins, settings, run, chooseBy, grid);
-    Rival rival{.rule = name, .viewpoints = {}, .bestOfAll = Best(costs, settings, -1).text};
+    EvaluatedRule rival{.name = name, .setting = TextOf(Best(costs, settings, -1))};
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
-        const Setting setting = Best(costs, settings, int(v));
+        const double setting = Best(costs, settings, int(v));
         ViewpointOutcome& viewpoint = rival.viewpoints.emplace_back(
-            ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = setting.text});
+            ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = TextOf(setting)});
         for (size_t i = begins[v]; i < begins[v + 1]; ++i)
             viewpoint.blocks.push_back({.human = blocks[i].human,
                                         .outcome = run(i, setting, false),
@@ -106,15 +93,15 @@ Rival EvaluateRival(const std::string& name, std::span<const LabelledBlock> bloc
 // Runs a rule over recordings, each of which it reads once.
 Run MakeRun(std::span<const LabelledBlock> blocks, const RecordedRule& entry) {
     if (entry.replay == Replay::RanAlong)
-        return [=](size_t index, const Setting& setting, bool brief) {
-            return SimulateCycles(blocks[index], setting.threshold, brief);
+        return [=](size_t index, double setting, bool brief) {
+            return SimulateCycles(blocks[index], setting, brief);
         };
     const Rule rule =
         ParseRule(std::string(entry.name) + ":1", {.passSpp = blocks.front().passSpp});
     std::vector<ErrorSeries> series;
     for (const LabelledBlock& block : blocks) series.push_back(MakeErrorSeries(block, rule));
-    return [=](size_t index, const Setting& setting, bool brief) {
-        return SimulateErrorRule(blocks[index], series[index], setting.threshold, brief);
+    return [=](size_t index, double setting, bool brief) {
+        return SimulateErrorRule(blocks[index], series[index], setting, brief);
     };
 }
 
@@ -125,8 +112,8 @@ double CostOf(const ViewpointOutcome& viewpoint, ChooseBy chooseBy, int grid) {
     return Score(std::span(&viewpoint, 1), {.grid = grid, .margins = {}}).absoluteError;
 }
 
-std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
-                                  int grid) {
+std::vector<EvaluatedRule> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
+                                          int grid) {
     std::vector<size_t> begins;
     for (size_t i = 0; i < blocks.size(); ++i)
         if (i == 0 || blocks[i].viewpoint != blocks[i - 1].viewpoint) begins.push_back(i);
@@ -136,7 +123,7 @@ std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseB
             "--stop takes rules with settings");
     begins.push_back(blocks.size());
 
-    std::vector<Rival> rivals;
+    std::vector<EvaluatedRule> rivals;
     for (const RecordedRule* rule : RivalRules(blocks))
         rivals.push_back(EvaluateRival(std::string(rule->name), blocks, begins, SettingsOf(*rule),
                                        MakeRun(blocks, *rule), chooseBy, grid));

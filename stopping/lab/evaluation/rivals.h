@@ -18,21 +18,14 @@ enum class ChooseBy { AbsoluteError, CriticalError };
 // errors, in spp.
 double CostOf(const ViewpointOutcome& viewpoint, ChooseBy, int grid);
 
-struct Rival {
-    std::string rule;  // a name of the table of rules
-    // One for each viewpoint, with the setting that is the best one on all others.
-    std::vector<ViewpointOutcome> viewpoints;
-    // The best setting on all viewpoints, for use on new ones. A threshold, to three digits.
-    std::string bestOfAll;
-};
-
 // Runs the rules over recorded blocks (grouped by viewpoint), each viewpoint
 // with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. Thresholds are RecordedRule's. Rules that compare halves are left out where a block was
-// recorded without (HasHalves()). Throws std::invalid_argument if there are fewer than two
+// samples. A rule has the best setting on all viewpoints, for use on new ones: a threshold, to
+// three digits. Thresholds are RecordedRule's. Rules that compare halves are left out where a block
+// was recorded without (HasHalves()). Throws std::invalid_argument if there are fewer than two
 // viewpoints.
-std::vector<Rival> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
-                                  int grid);
+std::vector<EvaluatedRule> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
+                                          int grid);
 
 // One sample count for all blocks of an image: the baseline of rules that measure blocks.
 

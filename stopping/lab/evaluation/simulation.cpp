@@ -121,13 +121,7 @@ int PassReaching(int spp, const LabelledBlock& block) {
 Simulator ThresholdsSimulator(const std::string& path) {
     const auto rows = std::make_shared<const std::vector<ThresholdsRow>>(ReadThresholds(path));
     return [=](const LabelledBlock& block) {
-        const auto row = std::ranges::find(*rows, block.viewpoint, &ThresholdsRow::name);
-        if (row == rows->end())
-            throw std::runtime_error(path + ": has no row '" + block.viewpoint + "'");
-        if (block.block >= int(row->spp.size()))
-            throw std::runtime_error(path + ": '" + block.viewpoint +
-                                     "' has no threshold for block " + std::to_string(block.block));
-        return SimulateStop(block, PassReaching(row->spp[size_t(block.block)], block));
+        return SimulateStop(block, PassReaching(ThresholdIn(*rows, path, block), block));
     };
 }
 
@@ -188,6 +182,15 @@ RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule) {
     return outcome;
 }
 
+int ThresholdIn(std::span<const ThresholdsRow> rows, const std::string& path,
+                const LabelledBlock& block) {
+    const auto row = std::ranges::find(rows, block.viewpoint, &ThresholdsRow::name);
+    if (row == rows.end() || size_t(block.block) >= row->spp.size())
+        throw std::runtime_error(path + ": has no threshold for block " +
+                                 std::to_string(block.block) + " of '" + block.viewpoint + "'");
+    return row->spp[size_t(block.block)];
+}
+
 RuleOutcome SimulateStop(const LabelledBlock& block, int spp) {
     RuleOutcome outcome = MakeOutcome(*block.recording, std::max(1, spp));
     AddVerdictsOfStop(block, &outcome);
@@ -225,19 +228,55 @@ Simulator MakeSimulator(const std::string& text, const RuleContext& context) {
     };
 }
 
-std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks, const Simulator& rule,
-                                       const std::string& setting) {
+std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks,
+                                       const Simulator& rule) {
     std::vector<RuleOutcome> outcomes(blocks.size());
     ForEachIndex(int(blocks.size()), [&](int i) { outcomes[size_t(i)] = rule(blocks[size_t(i)]); });
     std::vector<ViewpointOutcome> result;
     for (size_t i = 0; i < blocks.size(); ++i) {
         if (result.empty() || result.back().name != blocks[i].viewpoint)
-            result.push_back({.name = blocks[i].viewpoint, .setting = setting});
+            result.push_back({.name = blocks[i].viewpoint});
         result.back().blocks.push_back({.human = blocks[i].human,
                                         .outcome = std::move(outcomes[i]),
                                         .block = blocks[i].block});
     }
     return result;
+}
+
+namespace {
+
+bool HasOpen(const EvaluatedRule& rule) {
+    for (const ViewpointOutcome& viewpoint : rule.viewpoints)
+        for (const BlockOutcome& block : viewpoint.blocks)
+            if (block.outcome.open) return true;
+    return false;
+}
+
+// Marks the stops that lie beyond the ends of recordings. Outcomes are in the order of the blocks.
+void MarkOpen(std::span<const LabelledBlock> blocks, EvaluatedRule* rule) {
+    size_t next = 0;
+    for (ViewpointOutcome& viewpoint : rule->viewpoints)
+        for (BlockOutcome& block : viewpoint.blocks) {
+            const int end = blocks[next++].recording->spp.back();
+            block.outcome.open = end < kMostShownSpp && block.outcome.stop > end;
+        }
+}
+
+}  // namespace
+
+void AddTwoFigures(std::span<const LabelledBlock> blocks, EvaluatedRule recorded,
+                   const std::function<EvaluatedRule()>& extend,
+                   std::vector<EvaluatedRule>* rules) {
+    if (!HasOpen(recorded)) {
+        rules->push_back(std::move(recorded));
+        return;
+    }
+    recorded.openStops = OpenStops::Ends;
+    rules->push_back(std::move(recorded));
+    EvaluatedRule extended = extend();
+    MarkOpen(blocks, &extended);
+    extended.openStops = OpenStops::Extended;
+    rules->push_back(std::move(extended));
 }
 
 }  // namespace lull

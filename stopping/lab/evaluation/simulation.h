@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "stopping/lab/evaluation/evaluation.h"
-#include "stopping/lab/recordings/training_samples.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/rules/rule.h"
 
 namespace lull {
@@ -42,6 +42,11 @@ RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule);
 // Stops at `spp`, wherever the recording ends.
 RuleOutcome SimulateStop(const LabelledBlock& block, int spp);
 
+// Returns the threshold of a block in the rows of the file at `path`. Throws std::runtime_error if
+// there is none.
+int ThresholdIn(std::span<const ThresholdsRow> rows, const std::string& path,
+                const LabelledBlock& block);
+
 // Returns the outcome of a rule on a block; can be called from several threads.
 using Simulator = std::function<RuleOutcome(const LabelledBlock& block)>;
 
@@ -52,7 +57,16 @@ using Simulator = std::function<RuleOutcome(const LabelledBlock& block)>;
 Simulator MakeSimulator(const std::string& rule, const RuleContext& context = {});
 
 // Runs a rule over blocks, on all cores; the blocks of one viewpoint follow each other.
-std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks, const Simulator& rule,
-                                       const std::string& setting);
+std::vector<ViewpointOutcome> Simulate(std::span<const LabelledBlock> blocks,
+                                       const Simulator& rule);
+
+// Judges rules on recordings that end too early: once at least, and once extended.
+
+// Adds the outcome of a rule on `blocks`, whose recordings are unextended. Where it had not stopped
+// all of them it is added twice, so that no figure looks final: stopped at their ends, and then the
+// result of `extend`, its outcome on the same blocks with extended recordings. `extend` can be
+// empty if no recording ends below kMostShownSpp.
+void AddTwoFigures(std::span<const LabelledBlock> blocks, EvaluatedRule recorded,
+                   const std::function<EvaluatedRule()>& extend, std::vector<EvaluatedRule>* rules);
 
 }  // namespace lull

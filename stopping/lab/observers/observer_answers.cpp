@@ -47,10 +47,6 @@ double ToNumber(const Json& value, const char* key, double low, double high) {
     return value.get<double>();
 }
 
-double GetNumber(const Json& object, const char* key, double low, double high) {
-    return ToNumber(Get(object, key), key, low, high);
-}
-
 std::optional<double> GetOptional(const Json& object, const char* key) {
     if (!object.contains(key) || !object.at(key).is_number()) return {};
     return object.at(key).get<double>();
@@ -174,7 +170,7 @@ ObserverAnswers Read(const Json& json) {
     result.session = GetText(json, "session");
     result.started = GetText(json, "started");
     if (!Get(json, "finished").is_string()) Refuse("the observer had not finished");
-    result.seconds = GetNumber(json, "seconds", 0, 1e9);
+    result.seconds = ToNumber(Get(json, "seconds"), "seconds", 0, 1e9);
 
     const Json& study = Get(json, "study");
     ReadStudy(study, &result);

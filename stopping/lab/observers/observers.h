@@ -82,7 +82,7 @@ std::string DetailsCsv(const Collected& collected);
 std::string ObserversCsv(const Collected& collected);
 
 // Returns the single answers of observers who count, as read by ReadSingleAnswers()
-// (evaluation/single_answers.h) and `lull evaluate --answers`: for each adjustment, noise seen at
+// (evaluation/answer_scores.h) and `lull evaluate --answers`: for each adjustment, noise seen at
 // the levels that were left, and none at its end, with a number for the adjustment, as these
 // answers are steps on one path. Empty if there is none.
 std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint);

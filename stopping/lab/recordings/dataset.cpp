@@ -72,7 +72,7 @@ BlockRecording ReadBlock(const Hdf5Group& group) {
 
     block.values.resize(spp.size() * kRecordLength);
     for (const Channel& channel : kChannels) {
-        if (channel.optional && !group.HasArray(std::string(channel.name))) {
+        if (channel.optional && !group.Has(std::string(channel.name))) {
             block.absent.set(ChannelIndex(channel.name));
             continue;
         }

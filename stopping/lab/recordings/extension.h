@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "stopping/lab/recordings/training_samples.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 
 namespace lull {
 

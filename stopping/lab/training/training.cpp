@@ -12,8 +12,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "stopping/base/checksum.h"
-#include "stopping/base/counter_random.h"
 #include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 #include "stopping/base/state.h"
@@ -113,17 +111,12 @@ void Check(bool isRight, const char* message) {
     if (!isRight) throw std::invalid_argument(message);
 }
 
-NetworkShape ShapeOf(const TrainingSamples& samples, const TrainingOptions& options) {
-    return {
-        .inputs = InputCount(samples.settings), .steps = samples.settings.k, .lstm = options.units};
-}
-
 }  // namespace
 
 Trainer::Trainer(const TrainingSamples& samples, const TrainingOptions& options)
     : samples(samples),
       options(options),
-      weights(InitialWeights(ShapeOf(samples, options), options.seed)),
+      weights(InitialWeights(InputCount(samples.settings), options.units, options.seed)),
       optimizer{.rate = float(options.learningRate), .meanSquares = ZerosLike(weights)} {
     Check(options.batch > 0 && options.epochs > 0, "batch and epochs must be above 0");
     Check(options.dropout >= 0 && options.dropout < 1, "dropout must be in [0, 1)");

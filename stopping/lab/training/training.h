@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "stopping/lab/recordings/training_samples.h"
+#include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/lab/training/network_gradient.h"
-#include "stopping/lab/training/network_weights.h"
 
 namespace lull {
 

@@ -6,9 +6,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "stopping/base/checksum.h"
+#include "stopping/base/input_file.h"
 #include "stopping/lab/evaluation/simulation.h"
-#include "stopping/lab/evaluation/two_figures.h"
 #include "stopping/lab/recordings/extension.h"
 #include "stopping/rules/learned.h"
 
@@ -79,32 +78,10 @@ std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan,
 }
 
 void CheckSpacing(const ModelSettings& settings, int passSpp) {
-    for (const int spp : {settings.n, settings.voteSpacing})
-        if (passSpp > 0 && spp % passSpp != 0)
-            throw std::runtime_error(
-                fmt::format("--n and --vote-spacing must be multiples of the recordings' "
-                            "pass of {} spp, and {} is not",
-                            passSpp, spp));
-}
-
-std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split) {
-    const TrainingOptions& t = plan.training;
-    std::string files;
-    for (const std::string& path : plan.datasets)
-        files.append(files.empty() ? "" : "\n").append(FileText(path));
-    return {{"version", plan.version},
-            {"datasets", files},
-            {"human", FileText(plan.human)},
-            {"training_blocks", BlocksText(split.training)},
-            {"test_blocks", BlocksText(split.test)},
-            {"units", ListText(t.units)},
-            {"dropout", fmt::format("{}", t.dropout)},
-            {"learning_rate", fmt::format("{}", t.learningRate)},
-            {"batch", fmt::format("{}", t.batch)},
-            {"epochs", fmt::format("{}", t.epochs)},
-            {"seed", fmt::format("{}", t.seed)},
-            {"balance_viewpoints", t.balanceViewpoints ? "1" : "0"},
-            {"balance_classes", t.balanceClasses ? "1" : "0"}};
+    if (passSpp > 0 && settings.n % passSpp != 0)
+        throw std::runtime_error(
+            fmt::format("--n must be a multiple of the recordings' pass of {} spp, and {} is none",
+                        passSpp, settings.n));
 }
 
 namespace {
@@ -123,7 +100,7 @@ void AddOutcomes(const Network& network, const ModelSettings& settings,
     const auto simulator = [&](const LabelledBlock& block) {
         return SimulateRule(block, LearnedRule(model, block.passSpp));
     };
-    for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator, ""))
+    for (ViewpointOutcome& viewpoint : Simulate(blocks, simulator))
         viewpoints->push_back(std::move(viewpoint));
 }
 
@@ -205,7 +182,24 @@ std::optional<TrainingResult> TrainAll(
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
                                               const ScoreOptions& scoring) {
-    std::map<std::string, std::string> record = MakeRecord(plan, split);
+    const TrainingOptions& t = plan.training;
+    std::string files;
+    for (const std::string& path : plan.datasets)
+        files.append(files.empty() ? "" : "\n").append(FileText(path));
+    std::map<std::string, std::string> record = {
+        {"version", plan.version},
+        {"datasets", files},
+        {"human", FileText(plan.human)},
+        {"training_blocks", BlocksText(split.training)},
+        {"test_blocks", BlocksText(split.test)},
+        {"units", ListText(t.units)},
+        {"dropout", fmt::format("{}", t.dropout)},
+        {"learning_rate", fmt::format("{}", t.learningRate)},
+        {"batch", fmt::format("{}", t.batch)},
+        {"epochs", fmt::format("{}", t.epochs)},
+        {"seed", fmt::format("{}", t.seed)},
+        {"balance_viewpoints", t.balanceViewpoints ? "1" : "0"},
+        {"balance_classes", t.balanceClasses ? "1" : "0"}};
     for (const EvaluatedRule& rule : result.rules)
         record["judged on " + LabelOf(rule)] = ScoresText(rule.viewpoints, scoring);
     return record;

@@ -47,12 +47,8 @@ struct TrainingPlan {
 // name. Throws std::runtime_error.
 std::vector<BlockSplit> MakeSplits(const TrainingPlan& plan, std::span<const LabelledBlock> blocks);
 
-// Throws std::runtime_error if n or the spacing of votes is no multiple of the recordings' pass.
+// Throws std::runtime_error if n is no multiple of the recordings' pass.
 void CheckSpacing(const ModelSettings& settings, int passSpp);
-
-// Returns the training data and options of a network; without the date, so that the same training
-// gives the same text. Throws std::runtime_error if a file can no longer be read.
-std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split);
 
 // Trains networks, one after the other, and judges them.
 
@@ -80,7 +76,9 @@ std::optional<TrainingResult> TrainAll(
     const TrainingPlan& plan, std::span<const BlockSplit> splits, TrainingCheckpoint* checkpoint,
     const std::function<TrainingEvents(const BlockSplit&)>& eventsOf);
 
-// Returns the training data of the last network, its options, and its evaluation.
+// Returns the training data of the last network, its options, and its evaluation; without the date,
+// so that the same training gives the same text. Throws std::runtime_error if a file can no longer
+// be read.
 std::map<std::string, std::string> MakeRecord(const TrainingPlan& plan, const BlockSplit& split,
                                               const TrainingResult& result,
                                               const ScoreOptions& scoring);

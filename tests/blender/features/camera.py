@@ -1,7 +1,8 @@
 """Features of cameras and films."""
+import math
+
 from compatible import open_shutter
-from cases import ball, camera, case, cube, dressed, empty, matte, surface, the, wall, without
-from rooms import interior
+from cases import ball, case, cube, dressed, empty, matte, surface, the, wall, without
 from world import world_image
 
 
@@ -135,22 +136,16 @@ def transparent_glass(scene):
 
 @case("Cycles' own limits: 4 diffuse bounces, indirect light clamped at 10")
 def limits(scene):
-    interior(scene)
-    c = scene.cycles
+    without("ball", "floor")
+    cube(matte("white", (0.8, 0.8, 0.8, 1)), 4, (0, 0, 2))
+    scene.camera.location, scene.camera.rotation_euler = (0, -1.8, 2), (math.pi / 2, 0, 0)
+    scene.camera.data.lens = 18
+    key, c = the("key"), scene.cycles
+    key.location, key.rotation_euler, key.data.energy = (0, 0, 3.9), (0, 0, 0), 60
+    scene.lull.max_depth = c.max_bounces = c.transmission_bounces = 32
     c.diffuse_bounces, c.glossy_bounces, c.sample_clamp_indirect = 4, 4, 10
 
 
 @case("camera under a parent of uneven and negative scale")
 def sheared_camera(scene):
     scene.camera.parent = empty(scale=(1, 1.5, 0.8), rotation_euler=(0.1, 0, 0.3))
-
-
-@case("camera of a marker")
-def marker(scene):
-    first = scene.camera
-    camera((2, -5, 2.5), (1.25, 0, 0.4), lens=35)
-    other = scene.camera
-    scene.camera = first
-    scene.timeline_markers.new("a", frame=1).camera = first
-    scene.timeline_markers.new("b", frame=5).camera = other
-    scene.frame_set(6)

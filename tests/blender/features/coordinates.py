@@ -2,22 +2,11 @@
 import bpy
 import numpy as np
 
-from compatible import UV_WARP
-from cases import (
-    ball, case, checks, cube, dress, dressed, empty, geometry_nodes, image, link, matte, node, principled, textured, the, wall, without)
+from cases import case, checks, cube, dress, empty, geometry_nodes, image, link, matte, node, principled, textured, wall, without
 
 
 def uneven():
     return checks() * np.linspace(0.2, 1, 64)[None, :, None]
-
-
-@case("two Mapping nodes in a row")
-def mappings_in_a_row(scene):
-    made, shown, _, tree = textured(uneven())
-    scaled, turned = node(tree, 'ShaderNodeMapping', Scale=(2, 1, 1)), node(tree, 'ShaderNodeMapping', Location=(0.3, 0, 0), Rotation=(0, 0, 0.5))
-    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], scaled.inputs[0]), (scaled.outputs[0], turned.inputs[0]),
-         (turned.outputs[0], shown.inputs[0]))
-    wall(made)
 
 
 @case("muted nodes: Mapping and Mix")
@@ -69,16 +58,6 @@ def uvs_lacking(scene):
     wall(made)
 
 
-@case("noise over UVs that the mesh lacks")
-def noise_without_uvs(scene):
-    made, bsdf, tree = principled()
-    noise = node(tree, 'ShaderNodeTexNoise', Scale=3)
-    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], noise.inputs[0]), (noise.outputs[1], bsdf.inputs['Base Color']))
-    dressed(made)
-    layers = the("ball").data.uv_layers
-    layers.remove(layers[0])
-
-
 @case("UVs that geometry nodes store as vectors")
 def stored_uvs(scene):
     made, shown, _, tree = textured(uneven())
@@ -113,37 +92,3 @@ def instancer_uvs(scene):
     link(tree, (node(tree, 'ShaderNodeTexCoord', from_instancer=True).outputs['UV'], shown.inputs[0]))
     cube(made, 0.4).parent = carrier
     carrier.instance_type = 'FACES'
-
-
-@case("modifiers: UV Warp, and Wireframe of another material")
-def warped_uvs(scene):
-    o = wall(textured(uneven())[0], 0.7)
-    o.location.x = -1
-    warp = o.modifiers.new("warp", UV_WARP)
-    warp.scale, warp.offset = (2, 1), (0.3, 0.1)
-    o = cube(matte("red", (0.6, 0.1, 0.1, 1)), 0.8, (1, 0, 0.5))
-    o.data.materials.append(matte("green", (0.1, 0.6, 0.1, 1)))
-    wire = o.modifiers.new("wire", 'WIREFRAME')
-    wire.thickness, wire.material_offset = 0.1, 1
-
-
-@case("image projected on a sphere and a tube")
-def projections(scene):
-    without("ball")
-    for x, kind in (-0.8, 'SPHERE'), (0.8, 'TUBE'):
-        made, shown, _, tree = textured(checks() * (1, 0.7, 0.4), projection=kind)
-        link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], shown.inputs[0]))
-        ball(made, x)
-
-
-@case("grain of wood: waves and a ramp over stretched coordinates, with bump")
-def wood(scene):
-    made, bsdf, tree = principled()
-    stretch = node(tree, 'ShaderNodeMapping', Scale=(1, 4, 0.3), Rotation=(0.2, 0.3, 0))
-    wave, ramp, bump = node(tree, 'ShaderNodeTexWave', Scale=1.5, Distortion=3), node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeBump', Strength=0.1)
-    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.2, 0.08, 0.03, 1), (0.6, 0.35, 0.15, 1)
-    link(tree, (tree.nodes.new('ShaderNodeTexCoord').outputs['Object'], stretch.inputs[0]), (stretch.outputs[0], wave.inputs[0]),
-         (wave.outputs[0], ramp.inputs[0]), (ramp.outputs[0], bsdf.inputs['Base Color']), (wave.outputs[1], bump.inputs['Height']),
-         (bump.outputs[0], bsdf.inputs['Normal']), (wave.outputs[1], bsdf.inputs['Roughness']))
-    without("ball")
-    cube(made, 1.2, (0, 0, 0.6), rotation=(0, 0, 0.6))

@@ -5,7 +5,7 @@ import bpy
 from mathutils import Euler, Matrix
 
 from compatible import add_input, add_output
-from cases import camera, case, dressed, lamp, matte, node, surface, the, wall, without
+from cases import camera, case, lamp, matte, node, the, wall, without
 
 
 def only(kind, energy, at, turned=(0, 0, 0), **more):
@@ -43,21 +43,6 @@ def area_unseen_edge(scene):
 @case("area lamp as a portal")
 def portal(scene):
     lamp('AREA', 100, (0, 2, 1.5), (-1.57, 0, 0), size=2).data.cycles.is_portal = True
-
-
-@case("lamp in the reflection of a mirror")
-def reflected(scene):
-    dressed(surface('BsdfGlossy', Roughness=0)[0])
-
-
-@case("sun of 10 degrees")
-def sun_large(scene):
-    only('SUN', 3, (0, 0, 5), (0.7, 0, 0.5), angle=math.radians(10))
-
-
-@case("point lamp with a radius")
-def point_radius(scene):
-    only('POINT', 300, (1, -2, 3), shadow_soft_size=0.3)
 
 
 @case("point lamp with a radius, between a sun and the ball")
@@ -114,12 +99,6 @@ def noded(light):
     return light.node_tree, light.node_tree.nodes["Emission"]
 
 
-@case("colour of a lamp by a blackbody")
-def blackbody(scene):
-    tree, emission = noded(the("key").data)
-    tree.links.new(node(tree, 'ShaderNodeBlackbody', Temperature=3000).outputs[0], emission.inputs[0])
-
-
 @case("falloff of a lamp")
 def falloff(scene):
     tree, emission = noded(only('POINT', 50, (1, -2, 3), shadow_soft_size=0).data)
@@ -156,24 +135,6 @@ def through(tree, socket, *nodes):
     tree.links.new(nodes[-1].outputs[0], socket)
 
 
-@case("strength of a lamp by Value, Map Range and Clamp, its colour by a ramp, curves and a Mix")
-def lamp_constants(scene):
-    tree, emission = noded(the("key").data)
-    value = tree.nodes.new('ShaderNodeValue')
-    value.outputs[0].default_value = 0.8
-    mapped = node(tree, 'ShaderNodeMapRange')
-    mapped.inputs['To Max'].default_value = 2
-    through(tree, emission.inputs[1], value, mapped, node(tree, 'ShaderNodeClamp', Max=1.5))
-    ramp, curves = node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeRGBCurve')
-    ramp.color_ramp.elements[1].color = (1, 0.3, 0.1, 1)
-    curves.mapping.curves[3].points.new(0.3, 0.6)
-    mix = node(tree, 'ShaderNodeMixRGB', blend_type='ADD', Fac=0.5, Color2=(0, 0.3, 0.6, 1))
-    through(tree, ramp.inputs[0], value)
-    tree.links.new(ramp.outputs[0], curves.inputs['Color'])
-    tree.links.new(curves.outputs[0], mix.inputs[1])
-    through(tree, emission.inputs[0], mix)
-
-
 @case("strength of a spot lamp and colour of a point lamp by groups of nodes")
 def lamp_groups(scene):
     without("key")
@@ -199,12 +160,6 @@ def ies_times(scene):
     times = node(tree, 'ShaderNodeMath', operation='MULTIPLY')
     times.inputs[1].default_value = 4
     through(tree, emission.inputs[1], node(tree, 'ShaderNodeTexIES', ies=profile, Strength=0.7), times)
-
-
-@case("lamp whose colour is that of its place")
-def lamp_by_place(scene):
-    tree, emission = noded(only('POINT', 100, (0, -2, 2)).data)
-    tree.links.new(node(tree, 'ShaderNodeNewGeometry').outputs['Incoming'], emission.inputs[0])
 
 
 @case("lamp with nodes, and nothing linked to its output")

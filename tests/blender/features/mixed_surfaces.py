@@ -6,14 +6,13 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
-from compatible import displace, new_node, use_own_normals
+from compatible import displace, use_own_normals
 from cases import (
     add, ball, case, checks, cube, dress, dressed, empty, first, folder, geometry_nodes, image, link, matte, mix, node, principled, surface,
     textured, the, wall, without)
 from lamps import only
-from objects import lawn, particles
 from surfaces import half, leaf, sheet
-from textures import normal_map, waves
+from textures import normal_map
 
 
 @case("image texture over the UV map that is chosen for renders")
@@ -37,70 +36,9 @@ def colours_for_renders(scene):
     attributes.active_color_index, attributes.render_color_index = 0, 1
 
 
-@case("Attribute nodes: colours of points, and UVs")
-def attributes(scene):
-    made, bsdf, tree = principled()
-    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="mask").outputs[0], bsdf.inputs['Base Color']))
-    dressed(made)
-    for i, one in enumerate(the("ball").data.color_attributes.new("mask", 'FLOAT_COLOR', 'POINT').data):
-        one.color = (0.8, 0.2, 0.1 + 0.5 * (i % 2), 1)
-    made, shown, _, tree = textured()
-    link(tree, (node(tree, 'ShaderNodeAttribute', attribute_name="UVMap").outputs['Vector'], shown.inputs[0]))
-    dressed(made, "floor")
-
-
 @case("transparent image whose alpha is not linked")
 def alpha_unused(scene):
     wall(textured(half())[0])
-
-
-@case("transparent image with an alpha that is linked, on instances")
-def leaves(scene):
-    made, shown, bsdf, tree = textured(half())
-    link(tree, (shown.outputs[1], bsdf.inputs['Alpha']))
-    one = wall(made, 0.3, z=0.6)
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=3, location=(0, 0, 0.1))
-    one.parent = dress(matte("lawn", (0.1, 0.3, 0.1, 1)))
-    one.parent.instance_type = 'VERTS'
-
-
-@case("image texture through hue, gamma, contrast and Invert")
-def corrected(scene):
-    made, shown, bsdf, tree = textured()
-    made_of = [node(tree, 'ShaderNodeHueSaturation', Hue=0.6, Saturation=1.5, Value=0.8), node(tree, 'ShaderNodeGamma', Gamma=1.4),
-               node(tree, 'ShaderNodeBrightContrast', Bright=0.05, Contrast=0.2), node(tree, 'ShaderNodeInvert', Fac=0.3)]
-    source = shown.outputs[0]
-    for one in made_of:
-        link(tree, (source, one.inputs['Color']))
-        source = one.outputs[0]
-    link(tree, (source, bsdf.inputs['Base Color']))
-    dressed(made)
-
-
-@case("two images mixed by a third, with a mapping each")
-def mixed_images(scene):
-    made, shown, bsdf, tree = textured()
-    other = node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.3, 0.2), "other"))
-    mask = node(tree, 'ShaderNodeTexImage', image=image(waves(), "mask", 'Non-Color'))
-    mix, where = node(tree, 'ShaderNodeMixRGB'), tree.nodes.new('ShaderNodeTexCoord')
-    for i, one in enumerate((other, mask)):
-        turn = node(tree, 'ShaderNodeMapping', Scale=(1.5 + i, 2, 1), Rotation=(0, 0, 0.3 + i), Location=(0.2, 0.1, 0))
-        link(tree, (where.outputs['UV'], turn.inputs[0]), (turn.outputs[0], one.inputs[0]))
-    link(tree, (mask.outputs[0], mix.inputs[0]), (shown.outputs[0], mix.inputs[1]), (other.outputs[0], mix.inputs[2]),
-         (mix.outputs[0], bsdf.inputs['Base Color']))
-    wall(made)
-
-
-@case("image texture mirrored by nodes")
-def mirrored(scene):
-    made, shown, _, tree = textured(checks() * np.linspace(0.2, 1, 64)[None, :, None])
-    where, parts, back = (new_node(tree, 'ShaderNode' + k) for k in ('TexCoord', 'SeparateXYZ', 'CombineXYZ'))
-    link(tree, (where.outputs['UV'], parts.inputs[0]), (back.outputs[0], shown.inputs[0]))
-    for i in range(2):
-        times, fold = node(tree, 'ShaderNodeMath', operation='MULTIPLY'), node(tree, 'ShaderNodeMath', operation='PINGPONG')
-        times.inputs[1].default_value, fold.inputs[1].default_value = 3, 1
-        link(tree, (parts.outputs[i], times.inputs[0]), (times.outputs[0], fold.inputs[0]), (fold.outputs[0], back.inputs[i]))
-    wall(made)
 
 
 @case("image of few pixels that differ much")
@@ -128,17 +66,6 @@ def generated(scene):
     made, shown, _, tree = textured(extension='EXTEND', interpolation='Cubic')
     turn, where = node(tree, 'ShaderNodeMapping', Scale=(1.5, 1.5, 1), Location=(-0.2, -0.2, 0)), tree.nodes.new('ShaderNodeTexCoord')
     link(tree, (where.outputs['Generated'], turn.inputs[0]), (turn.outputs[0], shown.inputs[0]))
-    dressed(made)
-
-
-@case("gradient through a ramp")
-def gradient(scene):
-    made, bsdf, tree = principled()
-    where, shown, ramped = (new_node(tree, 'ShaderNode' + k) for k in ('TexCoord', 'TexGradient', 'ValToRGB'))
-    shown.gradient_type = 'SPHERICAL'
-    ramped.color_ramp.interpolation = 'CONSTANT'
-    ramped.color_ramp.elements[0].color, ramped.color_ramp.elements[1].position = (0.7, 0.1, 0.1, 1), 0.4
-    link(tree, (where.outputs['Generated'], shown.inputs[0]), (shown.outputs[0], ramped.inputs[0]), (ramped.outputs[0], bsdf.inputs['Base Color']))
     dressed(made)
 
 
@@ -188,16 +115,6 @@ def leaning(scene):
     only('SUN', 3, (0, 0, 9), (0.2, 1.3, 0), angle=0)
 
 
-@case("normal map under bump")
-def chained(scene):
-    normal_map(scene)
-    tree = the("ball").data.materials[0].node_tree
-    bsdf, mapped = first(tree, 'BSDF_PRINCIPLED'), first(tree, 'NORMAL_MAP')
-    bumped = node(tree, 'ShaderNodeBump', Strength=0.3)
-    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=6).outputs[0], bumped.inputs['Height']), (mapped.outputs[0], bumped.inputs['Normal']),
-         (bumped.outputs[0], bsdf.inputs['Normal']))
-
-
 @case("custom normals, and smooth shading with an angle")
 def custom_normals(scene):
     without("ball")
@@ -206,30 +123,6 @@ def custom_normals(scene):
         polygon.use_smooth = True
     use_own_normals(o)
     o.data.normals_split_custom_set_from_vertices([v.co.normalized() for v in o.data.vertices])
-
-
-@case("modifiers: array, mirror, solidify, bevel with weighted normals")
-def more_modifiers(scene):
-    without("ball")
-    o = cube(matte("box", (0.6, 0.2, 0.1, 1)), 0.6, (2.1, 0, 0.4))
-    o.scale = (-1, 1.3, 0.8)
-    for name, kind, values in (("bevel", 'BEVEL', dict(width=0.08, segments=3)), ("copies", 'ARRAY', dict(count=3)),
-                               ("other", 'MIRROR', dict(mirror_object=the("floor"))), ("normals", 'WEIGHTED_NORMAL', {})):
-        made = o.modifiers.new(name, kind)
-        for key, value in values.items():
-            setattr(made, key, value)
-    for polygon in o.data.polygons:
-        polygon.use_smooth = True
-    use_own_normals(o)
-
-
-@case("hair whose density is a group of vertices")
-def hair_by_group(scene):
-    o = lawn()
-    group = o.vertex_groups.new(name="dense")
-    group.add([v.index for v in o.data.vertices if v.co.x > 0], 1, 'REPLACE')
-    particles(o, count=1000, hair_length=0.6, root_radius=5)
-    o.particle_systems[0].vertex_group_density = "dense"
 
 
 @case("two-sided material by Backfacing")
@@ -262,15 +155,6 @@ def by_object(scene):
         link(tree, (info.outputs['Color'], bsdf.inputs[0]), *[(info.outputs['Object Index'], bsdf.inputs[1])] * (x < 0))
         o = ball(made, x)
         o.pass_index, o.color = 3 * (x < 0), (0.3, 0.6, 0.9, 1)
-
-
-@case("emission that the camera sees weaker")
-def emission_by_rays(scene):
-    made, bsdf, tree = surface('Emission')
-    ranged = node(tree, 'ShaderNodeMapRange')
-    ranged.inputs[3].default_value, ranged.inputs[4].default_value = 10, 1
-    link(tree, (tree.nodes.new('ShaderNodeLightPath').outputs['Is Camera Ray'], ranged.inputs[0]), (ranged.outputs[0], bsdf.inputs[1]))
-    dressed(made)
 
 
 @case("Add of Transparent and Emission, and their Mix")
@@ -364,15 +248,6 @@ def node_attribute(scene):
     value = next(s for s in store.inputs if s.type == 'VALUE' and s.enabled)
     link(group, (inlet.outputs[0], store.inputs[0]), (place.outputs[0], parts.inputs[0]), (parts.outputs[2], value),
          (store.outputs[0], dressing.inputs[0]), (dressing.outputs[0], outlet.inputs[0]))
-
-
-@case("image on the front and light on the back, by Backfacing")
-def sides_apart(scene):
-    made, shown, bsdf, tree = textured(checks() * (1, 0.5, 0.2))
-    mix(tree, tree.nodes.new('ShaderNodeNewGeometry').outputs['Backfacing'], bsdf, node(tree, 'ShaderNodeEmission', Strength=3))
-    wall(made, 0.9).location.x = -1
-    o = wall(made, 0.9, z=1.8)
-    o.location.x, o.rotation_euler.z = 1, math.pi - 0.4
 
 
 @case("glass and a mirror with bump")

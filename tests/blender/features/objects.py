@@ -23,11 +23,6 @@ def unseen_by_all(scene):
             setattr(the(o), "visible_" + name, False)
 
 
-@case("object without a shadow")
-def shadowless(scene):
-    the("ball").visible_shadow = False
-
-
 @case("copies that the camera does not see, or without a shadow")
 def unseen_copies(scene):
     without("ball")
@@ -36,18 +31,6 @@ def unseen_copies(scene):
         copy = empty(parts, location=(x, 0, 0))
         if name:
             setattr(copy, name, False)
-
-
-@case("wall before the camera that it does not see, half transparent")
-def unseen_wall(scene):
-    o = wall(principled(Alpha=0.5)[0])
-    o.location.y, o.visible_camera = -3, False
-
-
-@case("glass without a shadow")
-def glass_without_shadow(scene):
-    dressed(principled(Transmission=1, Roughness=0, IOR=1.45)[0])
-    the("ball").visible_shadow = False
 
 
 @case("holdout")
@@ -84,12 +67,6 @@ def override(scene):
 def layer_without(scene):
     hair(scene)
     scene.view_layers[0].use_sky = scene.view_layers[0].use_strand = False
-
-
-@case("view layer without surfaces")
-def layer_of_strands(scene):
-    hair(scene)
-    scene.view_layers[0].use_solid = False
 
 
 @case("empty slot of a material")
@@ -166,14 +143,6 @@ def faces(scene):
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=4, location=(0, 0, 0.3))
     carrier = dress(None)
     cube(matte("copy", (0.6, 0.2, 0.1, 1)), 0.4).parent = carrier
-    carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
-
-
-@case("lamps on faces")
-def lamps_on_faces(scene):
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=2, size=4, location=(0, 0, 3))
-    carrier = bpy.context.object
-    lamp('POINT', 50, (0, 0, 0)).parent = carrier
     carrier.instance_type, carrier.show_instancer_for_render = 'FACES', False
 
 
@@ -271,11 +240,6 @@ def volume(scene):
     without("ball")
 
 
-@case("unit scale of a scene")
-def units(scene):
-    scene.unit_settings.scale_length = 0.01
-
-
 @case("hair whose colour goes by Intercept and Random")
 def hair_info(scene):
     o = lawn()
@@ -286,14 +250,6 @@ def hair_info(scene):
          (random.outputs[0], bsdf.inputs['Base Color']))
     o.data.materials[0] = made
     particles(o, count=1000, hair_length=0.6, root_radius=5)
-
-
-@case("objects that keys hide")
-def hidden_by_keys(scene):
-    o = cube(matte("red", (0.6, 0.1, 0.1, 1)), 1, (1.5, 0, 0.5))
-    keyed(o, "hide_render", False, False, True, True)
-    keyed(the("ball"), "hide_render", True, True, False, False)
-    scene.frame_set(3)
 
 
 @case("cube and cylinder that are smooth without an angle")

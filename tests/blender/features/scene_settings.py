@@ -2,16 +2,14 @@
 import bpy
 import numpy as np
 
-from compatible import LINEAR, RAW, displace, offset_shadow, socket
+from compatible import LINEAR, RAW, displace, offset_shadow
 from cases import (
     case, checks, cube, dress, dressed, empty, first, floats, image, lamp, link, matte, mix, node, parts_of, principled, set_apart, surface,
     textured, the, wall, without)
-from camera import border, keyed, orthographic, shift
+from camera import border, orthographic
 from lamps import noded, only
-from objects import lawn, particles
-from surfaces import coated, half, leaf, pane
-from textures import displacement, normal_map, waves
-from world import world_image
+from surfaces import coated, half, pane
+from textures import displacement, waves
 
 
 @case("instanced collection with lamps in it, scaled and mirrored")
@@ -21,16 +19,6 @@ def lamps_in_collection(scene):
                      lamp('SPOT', 200, (-1, -1, 2), (0.5, 0, 0), shadow_soft_size=0.1, spot_size=1))
     for x, scale in (-1.5, (1, 1, 1)), (1.5, (-1.5, 1, 1.2)):
         empty(parts, location=(x, 0, 0.5), scale=scale)
-
-
-@case("lamps whose size, colour and energy are animated, and a driver")
-def animated_lamps(scene):
-    light = the("key").data
-    keyed(light, "size", 1, 1, 0.2, 2), keyed(light, "energy", 1, 1, 200, 400)
-    keyed(light, "color", (1, 1, 1), (1, 1, 1), (1, 0.5, 0.5), (1, 0.2, 0.2))
-    driver = the("ball").driver_add("location", 0).driver
-    driver.expression = "frame / 2"
-    scene.frame_set(2)
 
 
 @case("sun with a blackbody and a strength of nodes")
@@ -60,19 +48,6 @@ def tracking(scene):
     camera.data.dof.use_dof, camera.data.dof.focus_object, camera.data.dof.aperture_fstop = True, the("ball"), 0.2
 
 
-@case("orthographic camera, portrait, with a shift")
-def orthographic_portrait(scene):
-    orthographic(scene)
-    shift(scene)
-
-
-@case("camera of a field of view, another sensor")
-def field_of_view(scene):
-    data = scene.camera.data
-    data.lens_unit, data.sensor_width = 'FOV', 24
-    data.angle = 1.2
-
-
 @case("border, not cropped")
 def border_whole(scene):
     border(scene)
@@ -98,25 +73,6 @@ def layers(scene):
     set_apart(scene, the("ball"), "out").exclude = True
 
 
-@case("world: mirror ball, through hue and strength")
-def world_ball(scene):
-    world_image(scene)
-    tree = scene.world.node_tree
-    made, hue = first(tree, 'TEX_ENVIRONMENT'), node(tree, 'ShaderNodeHueSaturation', Hue=0.7, Saturation=1.5)
-    made.projection = 'MIRROR_BALL'
-    link(tree, (made.outputs[0], hue.inputs['Color']), (hue.outputs[0], tree.nodes["Background"].inputs[0]))
-    tree.nodes["Background"].inputs[1].default_value = 1.5
-
-
-@case("world: gradient of nodes, and Hosek's sky")
-def world_gradient(scene):
-    tree = scene.world.node_tree
-    made, mix = node(tree, 'ShaderNodeTexSky', sky_type='HOSEK_WILKIE'), node(tree, 'ShaderNodeMixRGB', Fac=0.5)
-    where, shown = tree.nodes.new('ShaderNodeTexCoord'), node(tree, 'ShaderNodeTexGradient')
-    link(tree, (where.outputs['Generated'], shown.inputs[0]), (shown.outputs[0], mix.inputs[1]), (made.outputs[0], mix.inputs[2]),
-         (mix.outputs[0], tree.nodes["Background"].inputs[0]))
-
-
 @case("shadow terminator of an object")
 def terminator(scene):
     without("ball")
@@ -124,17 +80,6 @@ def terminator(scene):
     o = dress(matte("red", (0.6, 0.2, 0.1, 1)), smooth=True)
     offset_shadow(o, 0.5)
     only('SUN', 3, (0, 0, 9), (0.9, 0.9, 0), angle=0)
-
-
-@case("curve with the profile of another, and an image texture")
-def curves(scene):
-    without("ball")
-    bpy.ops.curve.primitive_bezier_circle_add(radius=0.3, location=(0, 50, 0))
-    profile = bpy.context.object
-    bpy.ops.curve.primitive_bezier_curve_add(radius=1.2, location=(0, 0, 0.6))
-    o = bpy.context.object
-    o.data.bevel_mode, o.data.bevel_object, o.data.use_fill_caps = 'OBJECT', profile, True
-    o.data.materials.append(textured()[0])
 
 
 @case("text with an image texture")
@@ -207,32 +152,6 @@ def alpha_modes(scene):
         wall(made, 0.7).location.x = x
 
 
-@case("emission of the front alone, by Backfacing")
-def one_sided_light(scene):
-    without("key")
-    made, bsdf, tree = surface('Emission', Strength=6)
-    mix(tree, tree.nodes.new('ShaderNodeNewGeometry').outputs['Backfacing'], bsdf, tree.nodes.new('ShaderNodeBsdfTransparent'))
-    bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0.5, 2.6))
-    dress(made).rotation_euler.x = 2.6
-
-
-@case("waves, Musgrave and magic on a scaled object")
-def scaled_textures(scene):
-    made, bsdf, tree = principled()
-    where, mix = tree.nodes.new('ShaderNodeTexCoord'), tree.nodes.new('ShaderNodeMixRGB')
-    wave, magic = node(tree, 'ShaderNodeTexWave', Scale=2), node(tree, 'ShaderNodeTexMagic', Scale=3)
-    link(tree, (where.outputs['Object'], wave.inputs[0]), (where.outputs['Object'], magic.inputs[0]), (wave.outputs[0], mix.inputs[1]),
-         (magic.outputs[0], mix.inputs[2]), (node(tree, 'ShaderNodeTexMusgrave', Scale=3).outputs[0], mix.inputs[0]), (mix.outputs[0], bsdf.inputs['Base Color']))
-    dressed(made)
-    the("ball").scale = (-1.5, 0.8, 1)
-
-
-@case("normal map on an object of uneven negative scale")
-def normal_mirrored(scene):
-    normal_map(scene)
-    the("ball").scale = (-1.4, 0.8, 1)
-
-
 @case("displacement that only bumps, by an image")
 def bump_by_displacement(scene):
     displacement(scene)
@@ -260,18 +179,6 @@ def nested(scene):
         empty(of, within, location=(x, y, 0), rotation_euler=(0, 0, x), scale=(1, 1.3, 1))
 
 
-@case("particles of a collection, turned and scaled at random")
-def particle_collection(scene):
-    parts = parts_of(cube(matte("one", (0.1, 0.6, 0.1, 1)), 0.3, (0, 50, 0)), cube(matte("two", (0.6, 0.1, 0.1, 1)), 0.2, (3, 50, 0)))
-    particles(lawn(), count=60, render_type='COLLECTION', instance_collection=parts, particle_size=0.8, size_random=0.7, use_advanced_hair=True,
-              use_rotations=True, rotation_factor_random=0.8, phase_factor_random=2)
-
-
-@case("hair with interpolated children")
-def hair_children(scene):
-    particles(lawn(), count=100, hair_length=0.6, root_radius=5, child_type='INTERPOLATED', rendered_child_count=10)
-
-
 @case("object of no height, with a texture over places, and loose edges")
 def flat(scene):
     made, bsdf, tree = principled()
@@ -297,31 +204,11 @@ def names(scene):
     made.name, the("ball").name, the("key").name, scene.name = "Wände/\"weiß\" 木", "Tür/1 'a' \\b", "лампа", "Szene: \"1/2\""
 
 
-@case("Principled: coloured glass, rough")
-def coloured_glass(scene):
-    dressed(principled(Transmission=1, Roughness=0.3, Base_Color=(0.8, 0.4, 0.3, 1))[0])
-
-
-@case("Principled: half a metal, half a glass")
-def halves(scene):
-    dressed(principled(Metallic=0.5, Roughness=0.3, Base_Color=(0.8, 0.4, 0.3, 1))[0])
-    other = principled(Transmission=0.5, Roughness=0.2, Base_Color=(0.3, 0.4, 0.8, 1))[0]
-    bpy.ops.mesh.primitive_uv_sphere_add(location=(1.6, 0, 0.7), radius=0.7)
-    dress(other, smooth=True)
-
-
 @case("water in a glass: one interface in another")
 def water(scene):
     dressed(surface('BsdfGlass', Roughness=0, IOR=1.5)[0])
     bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, 0.7), radius=0.5, segments=32, ring_count=16)
     dress(surface('BsdfGlass', Roughness=0, IOR=1.33, Color=(0.5, 0.7, 1, 1))[0], smooth=True)
-
-
-@case("Mix by Facing: Diffuse and Glossy")
-def coat_by_facing(scene):
-    coated(scene)
-    tree = the("ball").data.materials[0].node_tree
-    link(tree, (node(tree, 'ShaderNodeLayerWeight', Blend=0.5).outputs['Facing'], first(tree, 'MIX_SHADER').inputs[0]))
 
 
 @case("Mix by Fresnel of an index of 2.5: Diffuse and tinted Glossy")
@@ -331,42 +218,10 @@ def coat_tinted(scene):
     first(tree, 'FRESNEL').inputs[0].default_value, first(tree, 'BSDF_GLOSSY').inputs[0].default_value = 2.5, (0.8, 0.2, 0.1, 1)
 
 
-@case("Diffuse, Translucent and Glossy mixed")
-def three_mixed(scene):
-    leaf(scene)
-    tree = the("wall").data.materials[0].node_tree
-    mix(tree, 0.2, first(tree, 'MIX_SHADER'), node(tree, 'ShaderNodeBsdfGlossy', Roughness=0.3))
-
-
-@case("Principled: emission of an image times a number")
-def screens(scene):
-    made, bsdf, tree = principled(Emission_Strength=2, Base_Color=(0.1, 0.1, 0.1, 1))
-    link(tree, (node(tree, 'ShaderNodeTexImage', image=image(checks() * (1, 0.5, 0.2), "screen")).outputs[0], socket(bsdf, 'Emission')))
-    wall(made)
-
-
 @case("frosted pane of glass, as a slab")
 def frosted(scene):
     pane(scene)
     scene.objects[-1].data.materials[0].node_tree.nodes["Glass BSDF"].inputs['Roughness'].default_value = 0.3
-
-
-@case("lampshade: Translucent around a lamp")
-def shade(scene):
-    without("ball", "key")
-    bpy.ops.mesh.primitive_cylinder_add(radius=0.6, depth=1, location=(0, 0, 1), end_fill_type='NOTHING')
-    dress(surface('BsdfTranslucent', Color=(0.8, 0.7, 0.5, 1))[0], smooth=True)
-    lamp('POINT', 80, (0, 0, 1), shadow_soft_size=0.1)
-
-
-@case("world: Preetham's sky, and Nishita's without a disc, mixed")
-def skies(scene):
-    tree = scene.world.node_tree
-    mix = node(tree, 'ShaderNodeMixRGB', Fac=0.5)
-    link(tree, (node(tree, 'ShaderNodeTexSky', sky_type='PREETHAM').outputs[0], mix.inputs[1]),
-         (node(tree, 'ShaderNodeTexSky', sky_type='NISHITA', sun_disc=False).outputs[0], mix.inputs[2]),
-         (mix.outputs[0], tree.nodes["Background"].inputs[0]))
-    tree.nodes["Background"].inputs[1].default_value = 0.1
 
 
 @case("orthographic camera with depth of field")

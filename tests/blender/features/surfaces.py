@@ -48,11 +48,6 @@ def oren_nayar(scene):
     dressed(surface('BsdfDiffuse', Color=(0.7, 0.6, 0.5, 1), Roughness=1)[0])
 
 
-@case("Glossy")
-def glossy(scene):
-    dressed(surface('BsdfGlossy', Roughness=0.3, Color=(0.9, 0.7, 0.4, 1))[0])
-
-
 @case("rough glass")
 def rough_glass(scene):
     dressed(surface('BsdfGlass', Roughness=0.4, IOR=1.45)[0])
@@ -103,11 +98,6 @@ def velvet(scene):
     dressed(surface('BsdfVelvet', Color=(0.5, 0.1, 0.1, 1))[0])
 
 
-@case("Toon")
-def toon(scene):
-    dressed(surface('BsdfToon', Color=(0.5, 0.1, 0.1, 1))[0])
-
-
 @case("Subsurface Scattering")
 def scattering(scene):
     dressed(surface('SubsurfaceScattering', Color=(0.8, 0.4, 0.3, 1))[0])
@@ -142,26 +132,10 @@ def alpha(scene):
     wall(made)
 
 
-@case("Mix with Transparent")
-def mix_transparent(scene):
-    made, shown, bsdf, tree = textured(half())
-    mix(tree, shown.outputs[1], tree.nodes.new('ShaderNodeBsdfTransparent'), bsdf)
-    wall(made)
-
-
 @case("coloured Transparent")
 def transparent_colour(scene):
     wall(surface('BsdfTransparent', Color=(0.8, 0.3, 0.2, 1))[0]).location.y = -1
     ball(matte("ball", (0.6, 0.2, 0.1, 1)))
-
-
-@case("Principled: rough walls seen along their surface")
-def rough_walls(scene):
-    made = principled(Roughness=0.9, Specular=0.2)[0]
-    mesh = bpy.data.meshes.new("walls")
-    mesh.from_pydata([(x, y, z) for x in (-1, 1) for y, z in ((-5, 0), (4, 0), (4, 3), (-5, 3))], [], [(0, 1, 2, 3), (4, 5, 6, 7)])
-    mesh.materials.append(made)
-    scene.collection.objects.link(bpy.data.objects.new("walls", mesh))
 
 
 def clear_for(kind, made, bsdf, tree):

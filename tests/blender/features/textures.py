@@ -29,30 +29,11 @@ def closest(scene):
     wall(textured(checks()[::8, ::8], interpolation='Closest')[0])
 
 
-@case("image texture over object coordinates")
-def object_coordinates(scene):
-    made, shown, _, tree = textured()
-    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Object'], shown.inputs[0])
-    dressed(made)
-
-
 @case("image texture without UVs")
 def no_uvs(scene):
     dressed(textured()[0])
     layers = the("ball").data.uv_layers
     layers.remove(layers[0])
-
-
-@case("image texture over the second of two sets of UVs, and bump")
-def two_uvs(scene):
-    made, shown, bsdf, tree = textured()
-    tree.links.new(node(tree, 'ShaderNodeUVMap', uv_map="small").outputs[0], shown.inputs[0])
-    bumped = node(tree, 'ShaderNodeBump', Strength=0.2)
-    tree.links.new(node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[0], bumped.inputs['Height'])
-    tree.links.new(bumped.outputs[0], bsdf.inputs['Normal'])
-    layer = wall(made).data.uv_layers.new(name="small")
-    for loop in layer.data:
-        loop.uv *= 0.5
 
 
 @case("image texture over a UV map that two meshes have in other places")
@@ -76,16 +57,6 @@ def multiplied(scene):
     dressed(made)
 
 
-@case("image texture through ramp and curves")
-def ramp(scene):
-    made, shown, bsdf, tree = textured()
-    ramped, curved = node(tree, 'ShaderNodeValToRGB'), node(tree, 'ShaderNodeRGBCurve')
-    ramped.color_ramp.elements[0].color = (0.1, 0.3, 0.1, 1)
-    for a, b in ((shown.outputs[0], ramped.inputs[0]), (ramped.outputs[0], curved.inputs['Color']), (curved.outputs[0], bsdf.inputs['Base Color'])):
-        tree.links.new(a, b)
-    dressed(made)
-
-
 @case("missing image")
 def missing(scene):
     made, shown, _, _ = textured()
@@ -100,16 +71,6 @@ def fine(scene):
     tree.links.new(node(tree, 'ShaderNodeTexNoise', Scale=500).outputs[1], bsdf.inputs['Base Color'])
     dressed(made, "floor")
     scene.lull.texture = 64
-
-
-@case("procedural textures: Voronoi, bricks")
-def noise(scene):
-    made, bsdf, tree = principled()
-    tree.links.new(node(tree, 'ShaderNodeTexVoronoi', Scale=4).outputs['Color'], bsdf.inputs['Base Color'])
-    dressed(made)
-    floored, bsdf, tree = principled()
-    tree.links.new(node(tree, 'ShaderNodeTexBrick', Scale=3).outputs['Color'], bsdf.inputs['Base Color'])
-    dressed(floored, "floor")
 
 
 @case("colours of vertices, used")

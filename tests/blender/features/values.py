@@ -4,7 +4,6 @@ import os
 import bpy
 import numpy as np
 
-from camera import keyed
 from cases import case, checks, cube, dressed, folder, image, link, mix, node, principled, textured, wall, without
 from surfaces import half
 
@@ -92,18 +91,6 @@ def sequence(scene):
     scene.frame_set(2)
 
 
-@case("keys of values of nodes, in a colour and in the world")
-def keyed_nodes(scene):
-    made, bsdf, tree = principled()
-    ramp, value = node(tree, 'ShaderNodeValToRGB'), tree.nodes.new('ShaderNodeValue')
-    ramp.color_ramp.elements[1].color = (0.1, 0.9, 0.1, 1)
-    link(tree, (value.outputs[0], ramp.inputs[0]), (ramp.outputs[0], bsdf.inputs['Base Color']))
-    dressed(made)
-    keyed(value.outputs[0], "default_value", 0, 0, 0.1, 0.2, 0.3, 0.4, 0.9)
-    keyed(scene.world.node_tree.nodes["Background"].inputs[1], "default_value", 1, 1, 1, 1, 1, 1, 0.3)
-    scene.frame_set(6)
-
-
 @case("packed image, and generated ones")
 def packed_images(scene):
     made, shown, _, _ = textured()
@@ -130,11 +117,3 @@ def formats(scene):
         link(tree, (shown.outputs[0], bsdf.inputs['Roughness']))
         wall(made, 0.5).location.x = x
     view.view_transform = before
-
-
-@case("normals in the camera's space as colours")
-def camera_normals(scene):
-    made, bsdf, tree = principled()
-    turn = node(tree, 'ShaderNodeVectorTransform', vector_type='NORMAL', convert_from='WORLD', convert_to='CAMERA')
-    link(tree, (tree.nodes.new('ShaderNodeNewGeometry').outputs['Normal'], turn.inputs[0]), (turn.outputs[0], bsdf.inputs['Base Color']))
-    dressed(made)

@@ -1,7 +1,7 @@
 """Features of worlds."""
 import numpy as np
 
-from cases import camera, case, dressed, empty, first, floats, image, link, mix, node, surface, without
+from cases import camera, case, dressed, first, floats, image, link, mix, node, surface, without
 
 
 def sky(scene, kind, **values):
@@ -42,16 +42,6 @@ def world_sun(scene):
 @case("world: sun that the horizon cuts")
 def world_sunset(scene):
     low_sun(scene, sun_elevation=0.02)
-
-
-@case("world: sky through nodes, under the noon's sun")
-def world_noon(scene):
-    world_sky(scene)
-    tree = scene.world.node_tree
-    made, hue = first(tree, 'TEX_SKY'), node(tree, 'ShaderNodeHueSaturation', Saturation=0.5, Value=0.7)
-    made.sun_elevation, made.sun_rotation = 1.4, -1
-    tree.links.new(made.outputs[0], hue.inputs['Color'])
-    tree.links.new(hue.outputs[0], tree.nodes["Background"].inputs[0])
 
 
 @case("world: sky with the sun, turned by nodes")
@@ -102,27 +92,6 @@ def world_volume(scene):
     tree.links.new(node(tree, 'ShaderNodeVolumeScatter', Density=0.1).outputs[0], tree.get_output_node('ALL').inputs['Volume'])
 
 
-@case("world: strength by Math, colour by Hue, Gamma and a Mix of numbers")
-def world_constants(scene):
-    tree = scene.world.node_tree
-    background = tree.nodes["Background"]
-    power = node(tree, 'ShaderNodeMath', operation='POWER')
-    power.inputs[0].default_value, power.inputs[1].default_value = 1.3, 3
-    hue, gamma = node(tree, 'ShaderNodeHueSaturation', Hue=0.6, Saturation=1.5, Color=(0.4, 0.3, 0.2, 1)), node(tree, 'ShaderNodeGamma', Gamma=1.2)
-    mix = node(tree, 'ShaderNodeMixRGB', blend_type='SCREEN', Fac=0.5, Color2=(0, 0.3, 0.1, 1))
-    link(tree, (power.outputs[0], background.inputs[1]), (hue.outputs[0], gamma.inputs[0]), (gamma.outputs[0], mix.inputs[1]),
-         (mix.outputs[0], background.inputs[0]))
-
-
-@case("world: image turned by an object")
-def world_object(scene):
-    world_image(scene)
-    tree = scene.world.node_tree
-    where = first(tree, 'TEX_COORD')
-    where.object = empty(rotation_euler=(0.4, 0.2, 1.5))
-    link(tree, (where.outputs['Object'], first(tree, 'MAPPING').inputs[0]))
-
-
 def by_window(tree):
     shown = node(tree, 'ShaderNodeTexGradient')
     tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Window'], shown.inputs[0])
@@ -133,13 +102,6 @@ def by_window(tree):
 def world_window(scene):
     tree = scene.world.node_tree
     tree.links.new(by_window(tree), tree.nodes["Background"].inputs[0])
-
-
-@case("world: gradient over the picture, for the camera alone")
-def world_gradient_behind(scene):
-    world_backdrop(scene)
-    tree = scene.world.node_tree
-    link(tree, (by_window(tree), first(tree, 'MIX_SHADER').inputs[2].links[0].from_node.inputs[0]))
 
 
 @case("world: image with a sun of one pixel")

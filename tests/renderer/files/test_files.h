@@ -44,6 +44,14 @@ struct TemporaryDirectory {
         return File(name);
     }
 
+    // Returns a message without the directory's name.
+    std::string WithoutPath(std::string message) const {
+        const std::string prefix = path.string() + "/";
+        for (size_t at; (at = message.find(prefix)) != std::string::npos;)
+            message.erase(at, prefix.size());
+        return message;
+    }
+
     int CountFiles() const {
         return int(std::distance(std::filesystem::directory_iterator(path), {}));
     }

@@ -100,6 +100,16 @@ struct OneChannel {
         frame.insert("Y", Imf::Slice::Make(type, texels, header.dataWindow()));
         return frame;
     }
+    // Writes scan lines; the file is whole once it is closed.
+    void Write(Imf::PixelType type, const void* texels) const {
+        Imf::OutputFile out(path.c_str(), header);
+        out.setFrameBuffer(Frame(type, texels));
+        out.writePixels(5);
+    }
+    void ExpectError(const std::string& part) const {
+        const std::string error = ErrorOf([&] { ReadExr(path); });
+        EXPECT_TRUE(Contains(error, part)) << error;
+    }
 };
 
 TEST(ExrFile, ReadsTiles) {
@@ -124,11 +134,7 @@ TEST(ExrFile, TurnsIntegersIntoZeroToOne) {
     file.header.channels().insert("Y", Imf::Channel(Imf::UINT));
     std::vector<uint32_t> integers(35, 1u << 30);
     integers[34] = 0xffffffff;
-    {
-        Imf::OutputFile out(file.path.c_str(), file.header);
-        out.setFrameBuffer(file.Frame(Imf::UINT, integers.data()));
-        out.writePixels(5);
-    }
+    file.Write(Imf::UINT, integers.data());
     const auto texels = std::get<std::vector<float>>(ReadImage(file.path).texels);
     EXPECT_EQ(texels[0], 0.25f);
     EXPECT_EQ(texels[34], 1);
@@ -140,17 +146,14 @@ TEST(ExrFile, RefusesDeepAndSubsampledData) {
     file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     file.header.channels().insert("RY", Imf::Channel(Imf::HALF, 7, 5));
     { Imf::OutputFile(file.path.c_str(), file.header); }
-    const std::string subsampled = ErrorOf([&] { ReadImage(file.path); });
-    EXPECT_TRUE(Contains(subsampled, "a.exr\": subsampled channels are not supported (RY)"))
-        << subsampled;
+    file.ExpectError("a.exr\": subsampled channels are not supported (RY)");
 
     file.header.channels() = Imf::ChannelList();
     file.header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
     file.header.setType(Imf::DEEPSCANLINE);
     file.header.compression() = Imf::ZIPS_COMPRESSION;
     { Imf::DeepScanLineOutputFile(file.path.c_str(), file.header); }
-    const std::string deep = ErrorOf([&] { ReadExr(file.path); });
-    EXPECT_TRUE(Contains(deep, "deep images are not supported")) << deep;
+    file.ExpectError("deep images are not supported");
 }
 
 // The library would allocate them first.
@@ -158,11 +161,7 @@ TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
     OneChannel file;
     file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     file.header.insert("note", Imf::StringAttribute("hello"));
-    {
-        Imf::OutputFile out(file.path.c_str(), file.header);
-        out.setFrameBuffer(file.Frame(Imf::FLOAT, file.values.data()));
-        out.writePixels(5);
-    }
+    file.Write(Imf::FLOAT, file.values.data());
     std::string bytes = ReadBytes(file.path);
     const std::string before("note\0string\0\5\0\0\0hello", 21);
     const size_t at = bytes.find(before);
@@ -173,17 +172,13 @@ TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
     channels.replace(channels.find("chlist"), 12, std::string("chlist\0\x14\0\0\0Y", 12));
     bytes.replace(at + 12, 4, "\xff\xff\xff\x7f");
     file.directory.Write("a.exr", bytes);
-    const std::string tooLong = ErrorOf([&] { ReadExr(file.path); });
-    EXPECT_TRUE(Contains(tooLong, "a.exr")) << tooLong;
-    EXPECT_TRUE(Contains(tooLong, "attribute 'note' has 2147483647 bytes, of which")) << tooLong;
+    file.ExpectError("a.exr\": its attribute 'note' has 2147483647 bytes, of which");
 
     file.directory.Write("a.exr", start);
-    const std::string cut = ErrorOf([&] { ReadExr(file.path); });
-    EXPECT_TRUE(Contains(cut, "cut short")) << cut;
+    file.ExpectError("cut short");
 
     file.directory.Write("a.exr", channels);
-    const std::string damaged = ErrorOf([&] { ReadExr(file.path); });
-    EXPECT_TRUE(Contains(damaged, "its list of channels is damaged")) << damaged;
+    file.ExpectError("its list of channels is damaged");
 }
 
 TEST(ExrFile, KnowsOtherPrimaries) {
@@ -193,11 +188,7 @@ TEST(ExrFile, KnowsOtherPrimaries) {
         Imf::Chromaticities primaries;
         if (isOther) primaries.red = {0.7347f, 0.2653f};  // ACES
         Imf::addChromaticities(file.header, primaries);
-        {
-            Imf::OutputFile out(file.path.c_str(), file.header);
-            out.setFrameBuffer(file.Frame(Imf::FLOAT, file.values.data()));
-            out.writePixels(5);
-        }  // the file is whole once it is closed
+        file.Write(Imf::FLOAT, file.values.data());
         EXPECT_EQ(ReadExr(file.path).attributes.contains("chromaticities"), isOther);
     }
 }

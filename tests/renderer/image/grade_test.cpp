@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "renderer/base/color.h"
+#include "renderer/base/math.h"
 
 namespace lull {
 namespace {
@@ -17,8 +17,6 @@ struct HalvingView final : ViewTransform {
     }
     const char* Name() const override { return "screen/half"; }
 };
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 std::vector<float> Shown(const Grade& grade, std::vector<float> rgb) {
     ApplyGrade(grade, rgb);
@@ -57,6 +55,27 @@ TEST(Grade, ShowsWhatAViewEncodes) {
     EXPECT_FLOAT_EQ(shown[0], LinearFromSrgb(0.25f));
     EXPECT_EQ(shown[1], 1);
     EXPECT_EQ(shown[2], 0);
+}
+
+// Values of Hable's formula, computed by hand.
+TEST(FilmicToneMap, IsHablesCurve) {
+    EXPECT_EQ(FilmicToneMap(0), 0);
+    EXPECT_NEAR(FilmicToneMap(0.18f), 0.1283f, 2e-4f);
+    EXPECT_NEAR(FilmicToneMap(1), 0.4929f, 2e-4f);
+    EXPECT_NEAR(FilmicToneMap(5.6f), 1, 1e-6f);  // the white point at twice the exposure
+}
+
+TEST(FilmicToneMap, RisesAndStaysFinite) {
+    float last = -1;
+    for (float x = 1e-6f; x < 1e30f; x *= 1.5f) {
+        const float y = FilmicToneMap(x);
+        EXPECT_GE(y, last) << x;
+        last = y;
+    }
+    EXPECT_LT(last, 1.3f);
+    EXPECT_EQ(FilmicToneMap(-1), 0);
+    EXPECT_EQ(FilmicToneMap(std::nanf("")), 0);
+    EXPECT_TRUE(std::isfinite(FilmicToneMap(kInfinity)));
 }
 
 }  // namespace

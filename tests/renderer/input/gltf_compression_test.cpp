@@ -8,15 +8,21 @@
 namespace lull {
 namespace {
 
-// Returns a file whose mesh of one triangle is compressed by Draco.
-GltfFile DracoFile() {
+// Returns a file whose mesh of one triangle is compressed by Draco; with red corners as bytes,
+// which nothing calls normalised, if it has colours.
+GltfFile DracoFile(bool hasColors = false) {
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(1);
+    const draco::FaceIndex face(0);
     const int position =
         builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
     const float corners[3][3] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}};
-    builder.SetAttributeValuesForFace(position, draco::FaceIndex(0), corners[0], corners[1],
-                                      corners[2]);
+    builder.SetAttributeValuesForFace(position, face, corners[0], corners[1], corners[2]);
+    if (hasColors) {
+        const int color = builder.AddAttribute(draco::GeometryAttribute::COLOR, 3, draco::DT_UINT8);
+        const uint8_t red[3] = {255, 0, 51};
+        builder.SetAttributeValuesForFace(color, face, red, red, red);
+    }
     const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
     draco::Encoder encoder;
     draco::EncoderBuffer buffer;
@@ -25,52 +31,27 @@ GltfFile DracoFile() {
     GltfFile file;
     const int view = file.View(std::string(buffer.data(), buffer.size()));
     file.root["accessors"] = {{{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
-                              {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}}};
-    const uint32_t id = mesh->GetNamedAttribute(draco::GeometryAttribute::POSITION)->unique_id();
-    file.Node(
-        {{"mesh", file.Mesh({{"POSITION", 0}},
-                            {{"indices", 1},
-                             {"extensions",
-                              {{"KHR_draco_mesh_compression",
-                                {{"bufferView", view}, {"attributes", {{"POSITION", id}}}}}}}})}});
+                              {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}},
+                              {{"componentType", 5121}, {"count", 3}, {"type", "VEC3"}}};
+    const auto id = [&](draco::GeometryAttribute::Type type) {
+        return mesh->GetNamedAttribute(type)->unique_id();
+    };
+    json accessors = {{"POSITION", 0}},
+         ids = {{"POSITION", id(draco::GeometryAttribute::POSITION)}};
+    if (hasColors) {
+        accessors["COLOR_0"] = 2;
+        ids["COLOR_0"] = id(draco::GeometryAttribute::COLOR);
+    }
+    const json extension = {{"bufferView", view}, {"attributes", ids}};
+    file.Node({{"mesh", file.Mesh(accessors,
+                                  {{"indices", 1},
+                                   {"extensions", {{"KHR_draco_mesh_compression", extension}}}})}});
     file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
     return file;
 }
 
-// Returns the same with red corners as bytes, which nothing calls normalised.
-GltfFile DracoColors() {
-    draco::TriangleSoupMeshBuilder builder;
-    builder.Start(1);
-    const int position =
-        builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-    const int color = builder.AddAttribute(draco::GeometryAttribute::COLOR, 3, draco::DT_UINT8);
-    const float corners[3][3] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}};
-    const uint8_t red[3] = {255, 0, 51};
-    builder.SetAttributeValuesForFace(position, draco::FaceIndex(0), corners[0], corners[1],
-                                      corners[2]);
-    builder.SetAttributeValuesForFace(color, draco::FaceIndex(0), red, red, red);
-    const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
-    draco::Encoder encoder;
-    draco::EncoderBuffer buffer;
-    EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
-    GltfFile file = DracoFile();
-    const int view = file.View(std::string(buffer.data(), buffer.size()));
-    file.root["accessors"].push_back({{"componentType", 5121}, {"count", 3}, {"type", "VEC3"}});
-    const auto id = [&](draco::GeometryAttribute::Type type) {
-        return mesh->GetNamedAttribute(type)->unique_id();
-    };
-    json& primitive = file.root["meshes"][0]["primitives"][0];
-    primitive["attributes"]["COLOR_0"] = 2;
-    primitive["extensions"]["KHR_draco_mesh_compression"] = {
-        {"bufferView", view},
-        {"attributes",
-         {{"POSITION", id(draco::GeometryAttribute::POSITION)},
-          {"COLOR_0", id(draco::GeometryAttribute::COLOR)}}}};
-    return file;
-}
-
 TEST(GltfCompression, TakesBytesOfDracoForNormalised) {
-    const Description d = GltfFolder().Parse(DracoColors());
+    const Description d = GltfFolder().Parse(DracoFile(true));
     ASSERT_EQ(d.shapes.size(), 1u);
     const std::vector<float> colors = FloatsOf(d.shapes[0], ParameterType::Float, "color");
     ASSERT_EQ(colors.size(), 12u);

@@ -15,8 +15,7 @@ GltfFile GoodFile() {
     file.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
     file.Node({{"mesh", file.Mesh({{"POSITION", p}, {"TEXCOORD_0", uv}},
                                   {{"indices", file.Indices({0, 1, 2})}, {"material", 0}})}});
-    file.root["cameras"] = {
-        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.root["cameras"] = json::array({kPerspectiveCamera});
     file.Node({{"camera", 0}});
     return file;
 }
@@ -53,18 +52,14 @@ TEST(GltfErrors, NameTheirPlace) {
         {"/meshes/0/primitives/0/material", 4,
          "/meshes/0/primitives/0/material: is 4, but there are only 1 materials"},
         {"/accessors/0/count", 4,
-         "/accessors/0: its 4 elements go beyond the 36 bytes of "
-         "/bufferViews/0"},
+         "/accessors/0: its 4 elements go beyond the 36 bytes of /bufferViews/0"},
         {"/accessors/0/count", 4294967295u,
-         "/accessors/0: its 4294967295 elements go beyond the 36 "
-         "bytes of /bufferViews/0"},
+         "/accessors/0: its 4294967295 elements go beyond the 36 bytes of /bufferViews/0"},
         {"/accessors/0/componentType", 5124,
-         "/accessors/0/componentType: is 5124, which is not "
-         "defined"},
+         "/accessors/0/componentType: is 5124, which is not defined"},
         {"/accessors/0/type", "VEC5", "/accessors/0/type: is \"VEC5\", which is not defined"},
         {"/accessors/0/byteOffset", 30,
-         "/accessors/0: its 3 elements go beyond the 36 bytes of "
-         "/bufferViews/0"},
+         "/accessors/0: its 3 elements go beyond the 36 bytes of /bufferViews/0"},
         {"/accessors/2",
          {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}},
          "/meshes/0/primitives/0/indices: is an accessor without a \"bufferView\", which is not "
@@ -78,8 +73,7 @@ TEST(GltfErrors, NameTheirPlace) {
          "/accessors/0: its elements of 12 bytes overlap: the byteStride of /bufferViews/0 is 8"},
         {"/bufferViews/0/buffer", 1, "/bufferViews/0/buffer: is 1, but there are only 1 buffers"},
         {"/materials/0/alphaMode", "MAYBE",
-         "/materials/0/alphaMode: is \"MAYBE\", which is not "
-         "defined"},
+         "/materials/0/alphaMode: is \"MAYBE\", which is not defined"},
         {"/materials/0/pbrMetallicRoughness/baseColorTexture/index", 3,
          "/materials/0/pbrMetallicRoughness/baseColorTexture/index: is 3, but there are only 1 "
          "textures"},

@@ -30,6 +30,9 @@ inline std::string Base64(const std::string& bytes) {
     return text;
 }
 
+inline const json kPerspectiveCamera = {{"type", "perspective"},
+                                        {"perspective", {{"yfov", 1}, {"znear", 0.1}}}};
+
 // Contents of a glTF file; the JSON may be changed at will before it is written.
 struct GltfFile {
     json root = {{"asset", {{"version", "2.0"}}},
@@ -93,6 +96,19 @@ struct GltfFile {
         return index;
     }
 
+    // Adds a node with a light to the scene.
+    void Light(const json& light, json node = json::object()) {
+        json& lights = root["extensions"]["KHR_lights_punctual"]["lights"];
+        lights.push_back(light);
+        node["extensions"]["KHR_lights_punctual"]["light"] = lights.size() - 1;
+        Node(node);
+    }
+    // Adds the triangle with a material to the scene.
+    void Surface(const json& material) {
+        root["materials"].push_back(material);
+        Node({{"mesh", Triangle({{"material", root["materials"].size() - 1}})}});
+    }
+
     std::string Text() const {
         json whole = root;
         if (!bytes.empty())
@@ -127,14 +143,10 @@ struct GltfFolder : TemporaryDirectory {
     // Returns the message of the Error that a text gives, without the folder's name; "" for none.
     std::string ErrorOf(const std::string& text, const std::string& name = "scene.gltf") const {
         const std::string written = Write(name, text);
-        std::string message = lull::ErrorOf([&] {
+        return WithoutPath(lull::ErrorOf([&] {
             Warnings ignored;
             ParseGltf(written, {}, ignored);
-        });
-        const std::string prefix = path.string() + "/";
-        for (size_t at; (at = message.find(prefix)) != std::string::npos;)
-            message.erase(at, prefix.size());
-        return message;
+        }));
     }
     std::string ErrorOf(const GltfFile& file) const { return ErrorOf(file.Text()); }
 };

@@ -8,15 +8,11 @@ const GltfFolder kFolder;
 
 TEST(GltfLights, AreTakenFromPhotometricUnits) {
     GltfFile file;
-    file.root["extensions"] = {
-        {"KHR_lights_punctual",
-         {{"lights",
-           {{{"type", "point"}, {"intensity", 683}, {"color", {1, 0.5, 0}}},
-            {{"type", "directional"}, {"intensity", 1366}},
-            {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}}}}}}};
-    for (int i = 0; i < 3; ++i)
-        file.Node(
-            {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}, {"scale", {3, 3, 3}}});
+    const json scaled = {{"scale", {3, 3, 3}}};
+    file.Light({{"type", "point"}, {"intensity", 683}, {"color", {1, 0.5, 0}}}, scaled);
+    file.Light({{"type", "directional"}, {"intensity", 1366}}, scaled);
+    file.Light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}},
+               scaled);
     const Description d = kFolder.Parse(file);
     ASSERT_EQ(d.lights.size(), 3u);
     EXPECT_TRUE(d.lights[0].parameters.GetSpectrum("I", Rgb::Zero()).isApprox(Rgb(1, 0.5f, 0)));
@@ -31,9 +27,7 @@ TEST(GltfLights, AreTakenFromPhotometricUnits) {
 TEST(GltfLights, HaveConesUpToRounding) {
     const auto cone = [](const json& spot) {
         GltfFile file;
-        file.root["extensions"] = {
-            {"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", spot}}}}}}};
-        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        file.Light({{"type", "spot"}, {"spot", spot}});
         return file;
     };
     const auto angles = [&](double inner, double outer) {
@@ -55,21 +49,14 @@ TEST(GltfLights, HaveConesUpToRounding) {
 
 TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {
     GltfFile file;
-    file.Node({{"mesh", file.Triangle()}});
-    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
-    file.root["extensions"] = {
-        {"KHR_lights_punctual",
-         {{"lights",
-           {{{"type", "point"}, {"intensity", 683}, {"extras", {{"lull", {{"radius", 0.5}}}}}},
-            {{"type", "point"}, {"extras", {{"lull", {{"radius", 0}}}}}}}}}}};
-    for (int i = 0; i < 2; ++i)
-        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}},
-                   {"translation", {1, 2, 3}},
-                   {"scale", {3, 3, 3}}});
+    for (const double radius : {0.5, 0.})
+        file.Light(
+            {{"type", "point"}, {"intensity", 683}, {"extras", {{"lull", {{"radius", radius}}}}}},
+            {{"translation", {1, 2, 3}}, {"scale", {3, 3, 3}}});
     const Description d = kFolder.Parse(file);
     EXPECT_EQ(d.lights.size(), 1u);
-    ASSERT_EQ(d.shapes.size(), 2u);
-    const ShapeEntity& sphere = d.shapes[1];
+    ASSERT_EQ(d.shapes.size(), 1u);
+    const ShapeEntity& sphere = d.shapes[0];
     EXPECT_EQ(sphere.name, "sphere");
     EXPECT_EQ(sphere.parameters.GetFloat("radius", 0), 0.5f);
     EXPECT_TRUE(TransformPoint(sphere.worldFromObject, {0, 0.5f, 0}).isApprox(Vec3f(1, 2.5f, 3)));
@@ -81,53 +68,39 @@ TEST(GltfLights, AreSpheresWithARadiusOfOurOwn) {
 
 TEST(GltfLights, AreSpheresThatShineAsSpots) {
     GltfFile file;
-    file.Node({{"mesh", file.Triangle()}});
-    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
-    file.root["extensions"] = {{"KHR_lights_punctual",
-                                {{"lights",
-                                  {{{"type", "spot"},
-                                    {"intensity", 683},
-                                    {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 1}}},
-                                    {"extras", {{"lull", {{"radius", 0.5}}}}}}}}}}};
-    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.Light({{"type", "spot"},
+                {"intensity", 683},
+                {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 1}}},
+                {"extras", {{"lull", {{"radius", 0.5}}}}}});
     const Description d = kFolder.Parse(file);
     EXPECT_TRUE(d.lights.empty());
-    ASSERT_EQ(d.shapes.size(), 2u);
-    ASSERT_TRUE(d.shapes[1].areaLight);
-    EXPECT_EQ(d.shapes[1].areaLight->name, "spot-squared");
-    const Parameters& light = d.shapes[1].areaLight->parameters;
+    ASSERT_TRUE(d.shapes.at(0).areaLight);
+    EXPECT_EQ(d.shapes[0].areaLight->name, "spot-squared");
+    const Parameters& light = d.shapes[0].areaLight->parameters;
     EXPECT_TRUE(light.GetSpectrum("L", Rgb::Zero()).isApprox(Rgb::Constant(4 / kPi)));
     EXPECT_TRUE(light.GetPoint3("to", Vec3f::Zero()).isApprox(Vec3f(0, 0, -1)));
     EXPECT_NEAR(light.GetFloat("coneangle", 0), 180 / kPi, 1e-4f);
     EXPECT_NEAR(light.GetFloat("conedeltaangle", 0), 90 / kPi, 1e-4f);
 }
 
-// They shine along the -z axis that a node's negative scale has turned, whatever its size.
 // A sphere under a mirroring transform shines inwards; their axis is that of the node.
 TEST(GltfLights, AreSpheresThatShineOutwardsInMirroredNodes) {
     for (const json& scale : {json{-1, 1, 1}, json{1, 1, -1}, json{-2, -2, -2}}) {
         GltfFile file;
-        file.root["extensions"] = {{"KHR_lights_punctual",
-                                    {{"lights",
-                                      {{{"type", "spot"},
-                                        {"spot", json::object()},
-                                        {"extras", {{"lull", {{"radius", 0.5}}}}}}}}}}};
-        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"scale", scale}});
+        file.Light(
+            {{"type", "spot"}, {"spot", json::object()}, {"extras", {{"lull", {{"radius", 0.5}}}}}},
+            {{"scale", scale}});
         const Mat4d m = kFolder.Parse(file).shapes.at(0).worldFromObject;
         EXPECT_NEAR((m.topLeftCorner<3, 3>().determinant()), 1, 1e-12) << scale;
         EXPECT_EQ(m(2, 2), scale[2] < 0 ? -1 : 1) << scale;
     }
 }
 
+// They shine along the -z axis that a node's negative scale has turned, whatever its size.
 TEST(GltfLights, AreMirroredWithTheirNodes) {
     const auto axisOf = [](const std::vector<double>& scale) {
         GltfFile file;
-        file.Node({{"mesh", file.Triangle()}});
-        file.root["extensionsUsed"] = {"KHR_lights_punctual"};
-        file.root["extensions"] = {
-            {"KHR_lights_punctual",
-             {{"lights", {{{"type", "spot"}, {"spot", {{"outerConeAngle", 1}}}}}}}}};
-        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"scale", scale}});
+        file.Light({{"type", "spot"}, {"spot", {{"outerConeAngle", 1}}}}, {{"scale", scale}});
         const LightEntity light = kFolder.Parse(file).lights.at(0);
         EXPECT_NEAR(light.parameters.GetFloat("coneangle", 0), 180 / kPi, 1e-4f);
         return TransformVector(light.worldFromLight, {0, 0, -1});
@@ -140,12 +113,7 @@ TEST(GltfLights, AreMirroredWithTheirNodes) {
 TEST(GltfLights, HaveAProfileOfOurOwn) {
     const auto fileWith = [](const json& light) {
         GltfFile file;
-        file.Node({{"mesh", file.Triangle()}});
-        file.root["extensionsUsed"] = {"KHR_lights_punctual"};
-        file.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {light}}}}};
-        file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
-                   {"translation", {1, 2, 3}},
-                   {"scale", {3, 3, 3}}});
+        file.Light(light, {{"translation", {1, 2, 3}}, {"scale", {3, 3, 3}}});
         return file;
     };
     const json profile = {{"lull", {{"profile", "lamp.exr"}}}};
@@ -175,17 +143,11 @@ TEST(GltfLights, HaveAProfileOfOurOwn) {
 }
 
 TEST(GltfLights, HaveAnAngleOfOurOwn) {
-    GltfFile file;
-    file.Node({{"mesh", file.Triangle()}});
-    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
     const auto parse = [&](double angle) {
-        file.root["extensions"] = {
-            {"KHR_lights_punctual",
-             {{"lights",
-               {{{"type", "directional"}, {"extras", {{"lull", {{"angle", angle}}}}}}}}}}};
+        GltfFile file;
+        file.Light({{"type", "directional"}, {"extras", {{"lull", {{"angle", angle}}}}}});
         return kFolder.Parse(file);
     };
-    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     const Description d = parse(double(kPi) / 180);
     ASSERT_EQ(d.lights.size(), 1u);
     EXPECT_NEAR(d.lights[0].parameters.GetFloat("angle", 0), 1, 1e-6);
@@ -195,15 +157,10 @@ TEST(GltfLights, HaveAnAngleOfOurOwn) {
 
 TEST(GltfLights, AreNamedByTheNodeOrTheLight) {
     GltfFile file;
-    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
-    file.root["extensions"] = {
-        {"KHR_lights_punctual",
-         {{"lights",
-           {{{"type", "point"}, {"name", "bulb"}},
-            {{"type", "point"}, {"name", "ball"}, {"extras", {{"lull", {{"radius", 0.5}}}}}}}}}}};
-    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-    file.Node({{"name", "lamp"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-    file.Node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+    const json bulb = {{"type", "point"}, {"name", "bulb"}};
+    file.Light(bulb);
+    file.Light(bulb, {{"name", "lamp"}});
+    file.Light({{"type", "point"}, {"name", "ball"}, {"extras", {{"lull", {{"radius", 0.5}}}}}});
     const Description d = kFolder.Parse(file);
     ASSERT_EQ(d.lights.size(), 2u);
     EXPECT_EQ(d.lights[0].label, "bulb");

@@ -9,13 +9,11 @@ namespace {
 const GltfFolder kFolder;
 
 TEST(GltfMaterials, HaveFactorsUpToRounding) {
-    GltfFile file;
     const auto material = [&](const json& extensions) {
-        file.root["materials"] = {{{"extensions", extensions}}};
-        file.root["meshes"][0]["primitives"][0]["material"] = 0;
+        GltfFile file;
+        file.Surface({{"extensions", extensions}});
         return kFolder.ErrorOf(file);
     };
-    file.Node({{"mesh", file.Triangle()}});
     const double above = 1.0000001192;  // the float after 1
     EXPECT_EQ(material({{"KHR_materials_sheen", {{"sheenColorFactor", {above, 1, 0}}}}}), "");
     EXPECT_EQ(material({{"KHR_materials_anisotropy", {{"anisotropyStrength", above}}}}), "");
@@ -25,7 +23,7 @@ TEST(GltfMaterials, HaveFactorsUpToRounding) {
 
 TEST(GltfMaterials, MayAddTheInterfaceToTheBase) {
     GltfFile file;
-    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    file.Surface(json::object());
     const auto adds = [&](const nlohmann::json& value) {
         file.root["materials"] = {{{"extras", {{"lull", {{"addedInterface", value}}}}}}};
         return kFolder.Parse(file).materials.at(0).parameters.GetBool("addedinterface", false);
@@ -39,8 +37,7 @@ TEST(GltfMaterials, MayAddTheInterfaceToTheBase) {
 
 TEST(GltfMaterials, MayEmitIntoACone) {
     GltfFile file;
-    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
-    file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};
+    file.Surface({{"emissiveFactor", {1, 1, 1}}});
     json& own = file.root["materials"][0]["extras"]["lull"];
     const auto spread = [&](const json& value) {
         own = {{"spread", value}};
@@ -106,11 +103,9 @@ TEST(GltfMaterials, AreSolidByVolumeOrByWish) {
     for (const double thickness : {0., 0.5})
         for (const bool wish : {false, true}) {
             GltfFile file;
-            file.root["materials"] = {
-                {{"extensions",
-                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                   {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}}};
-            file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+            file.Surface({{"extensions",
+                           {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                            {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}});
             Warnings warnings;
             const Description d = kFolder.Parse(file, {.solidGlass = wish}, &warnings);
             const bool isSolid = thickness > 0 || wish;
@@ -122,14 +117,13 @@ TEST(GltfMaterials, AreSolidByVolumeOrByWish) {
 // A tenth of the light is left after half a unit; blue passes, green does not.
 TEST(GltfMaterials, AbsorbInTheirVolume) {
     GltfFile file;
-    file.root["materials"] = {{{"extensions",
-                                {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                                 {"KHR_materials_volume",
-                                  {{"thicknessFactor", 1},
-                                   {"attenuationDistance", 0.5},
-                                   {"attenuationColor", {0.1, 0, 1}}}}}}}};
+    file.Surface({{"extensions",
+                   {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                    {"KHR_materials_volume",
+                     {{"thicknessFactor", 1},
+                      {"attenuationDistance", 0.5},
+                      {"attenuationColor", {0.1, 0, 1}}}}}}});
     file.root["extensionsRequired"] = {"KHR_materials_volume"};
-    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
     Warnings warnings;
     const Description d = kFolder.Parse(file, {}, &warnings);
     EXPECT_EQ(warnings.Total(), 0);
@@ -225,15 +219,14 @@ TEST(GltfMaterials, WarnOfWhatIsMissing) {
 
 TEST(GltfMaterials, WarnOfNumbersBeyondTheirRange) {
     GltfFile file;
-    file.root["materials"] = {
+    file.Surface(
         {{"emissiveFactor", {2, 0, -0.5}},
          {"pbrMetallicRoughness",
           {{"baseColorFactor", {1.5, 1, 0, 1}}, {"metallicFactor", -1}, {"roughnessFactor", 1}}},
          {"extensions",
           {{"KHR_materials_specular",
             {{"specularFactor", 1.00001}, {"specularColorFactor", {3, 1, 1}}}},
-           {"KHR_materials_emissive_strength", {{"emissiveStrength", -1e-6}}}}}}};
-    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+           {"KHR_materials_emissive_strength", {{"emissiveStrength", -1e-6}}}}}});
     Warnings warnings;
     kFolder.Parse(file, {}, &warnings);
     EXPECT_EQ(warnings.Total(), 3);
@@ -260,13 +253,11 @@ TEST(GltfMaterials, WarnOfUnknownPropertiesOfOurOwn) {
 
 TEST(GltfMaterials, CarryDiffuseTransmission) {
     GltfFile file;
-    file.root["materials"] = {{{"extensions",
-                                {{"KHR_materials_diffuse_transmission",
-                                  {{"diffuseTransmissionFactor", 0.5},
-                                   {"diffuseTransmissionColorFactor", {0.5, 0.25, 1}}}}}}}};
+    file.Surface({{"extensions",
+                   {{"KHR_materials_diffuse_transmission",
+                     {{"diffuseTransmissionFactor", 0.5},
+                      {"diffuseTransmissionColorFactor", {0.5, 0.25, 1}}}}}}});
     file.root["extensionsRequired"] = {"KHR_materials_diffuse_transmission"};
-    const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
-    file.Node({{"mesh", file.Mesh({{"POSITION", p}}, {{"material", 0}})}});
     const Parameters m = kFolder.Parse(file).materials.at(0).parameters;
     EXPECT_EQ(m.GetFloat("diffusetransmissionfactor", 0), 0.5f);
     EXPECT_TRUE(
@@ -318,10 +309,9 @@ TEST(GltfMaterials, KeepEmbeddedImagesEncoded) {
     file.root["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}},
                            {{"uri", "data:image/jpeg;base64," + Base64("\xff\xd8jpeg")}}};
     file.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
-    file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}},
-                               {"emissiveTexture", {{"index", 1}}},
-                               {"normalTexture", {{"index", 0}}}}};
-    file.Node({{"mesh", file.Triangle({{"material", 0}})}});
+    file.Surface({{"emissiveFactor", {1, 1, 1}},
+                  {"emissiveTexture", {{"index", 1}}},
+                  {"normalTexture", {{"index", 0}}}});
     const Description d = kFolder.Parse(file);
     ASSERT_EQ(d.images.size(), 2u);
     EXPECT_EQ(d.images[0].type, "png");

@@ -202,6 +202,12 @@ TEST(GltfMeshes, LeaveOutPointsAndLines) {
     EXPECT_EQ(warnings.Counts().count("points and lines are left out"), 1u);
 }
 
+void AddNormalMap(GltfFile* file) {
+    file->root["images"] = {{{"uri", "normals.png"}}};
+    file->root["textures"] = {{{"source", 0}}};
+    file->root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+}
+
 // Adds a quad in the plane z = 0 whose material has a normal map; u runs along x, or against it.
 Description MappedQuad(bool isMirrored, const std::vector<float>& tangents = {}) {
     GltfFile file;
@@ -209,9 +215,7 @@ Description MappedQuad(bool isMirrored, const std::vector<float>& tangents = {})
     const int n = file.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
     const float a = isMirrored ? 1 : 0;
     const int uv = file.Floats({a, 1, 1 - a, 1, 1 - a, 0, a, 0}, "VEC2");
-    file.root["images"] = {{{"uri", "normals.png"}}};
-    file.root["textures"] = {{{"source", 0}}};
-    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    AddNormalMap(&file);
     json attributes = {{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}};
     if (!tangents.empty()) attributes["TANGENT"] = file.Floats(tangents, "VEC4");
     file.Node({{"mesh", file.Mesh(attributes, {{"indices", file.Indices({0, 1, 2, 0, 2, 3})},
@@ -242,9 +246,7 @@ TEST(GltfMeshes, SplitVerticesWhereTheTextureIsMirrored) {
     const int p = file.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0}, "VEC3");
     const int n = file.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
     const int uv = file.Floats({0, 1, 1, 1, 0, 0, 1, 1}, "VEC2");
-    file.root["images"] = {{{"uri", "normals.png"}}};
-    file.root["textures"] = {{{"source", 0}}};
-    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    AddNormalMap(&file);
     file.Node(
         {{"mesh", file.Mesh({{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}},
                             {{"indices", file.Indices({0, 1, 2, 0, 2, 3})}, {"material", 0}})}});

@@ -65,8 +65,7 @@ TEST(GltfNodes, HideWhatIsBelowInvisibleOnes) {
     lamp["KHR_lights_punctual"] = {{"light", 0}};
     file.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
     file.root["extensionsRequired"] = {"KHR_node_visibility"};
-    file.root["cameras"] = {
-        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.root["cameras"] = json::array({kPerspectiveCamera});
     file.root["nodes"] = {{{"extensions", visibility(false)}, {"children", {1, 2, 3}}},
                           {{"mesh", mesh}, {"extensions", visibility(true)}},
                           {{"extensions", lamp}},

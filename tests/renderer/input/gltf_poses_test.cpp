@@ -159,8 +159,7 @@ TEST(GltfAnimations, MoveWeightsJointsAndCameras) {
                {0, 0, 3, 1, 0, 3, 1, 1, 3});
 
     GltfFile camera = Animated("translation", {0, 0, 0, 4, 0, 8}, "VEC3");
-    camera.root["cameras"] = {
-        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    camera.root["cameras"] = json::array({kPerspectiveCamera});
     camera.root["nodes"][0] = {{"camera", 0}};
     const Description seen = GltfFolder().Parse(camera, {.frame = 2});
     EXPECT_TRUE(TransformPoint(seen.cameraFromWorld, Vec3f(2, 0, 4)).isZero(1e-5f));
@@ -195,8 +194,7 @@ TEST(GltfAnimations, PoseTogether) {
 
 TEST(GltfShutter, BlursNodesAndCamerasThatMove) {
     GltfFile file = Animated("translation", {0, 0, 0, 4, 0, 8}, "VEC3");
-    file.root["cameras"] = {
-        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.root["cameras"] = json::array({kPerspectiveCamera});
     file.root["nodes"][0]["children"] = {1};
     file.root["nodes"].push_back({{"camera", 0}});
     file.Node({{"mesh", file.Triangle()}});

@@ -115,8 +115,7 @@ TEST_F(Pbrt4, UnclosedFileIsRead) {
 
 TEST_F(Pbrt4, Errors) {
     ExpectError("Material \"matte\"",
-                "material \"matte\" is pbrt-v3's, in a scene for pbrt-v4; "
-                "write \"diffuse\"");
+                "Material \"matte\" is pbrt-v3's, in a scene for pbrt-v4; write \"diffuse\"");
     ExpectError("Material \"diffuse\" \"color reflectance\" [1 1 1]",
                 "parameter type \"color\" is pbrt-v3's");
     ExpectError("Texture \"t\" \"color\" \"constant\"", "texture kind \"color\" is unknown");
@@ -148,8 +147,8 @@ TEST_F(Pbrt4, Errors) {
     ExpectError("MakeNamedMaterial \"Water\" \"string type\" \"dielectric\" Material \"Water\"",
                 "\"Water\" is the name of a material; write NamedMaterial");
     EXPECT_TRUE(folder.ErrorOf("Film \"rgb\"\nSampler \"random\"\nWorldBegin")
-                    .starts_with("scene.pbrt:2: Sampler \"random\" is pbrt-v3's; pbrt-v4 has "
-                                 "\"independent\""));
+                    .starts_with("scene.pbrt:2: Sampler \"random\" is pbrt-v3's, in a scene for "
+                                 "pbrt-v4; write \"independent\""));
 }
 
 TEST_F(Pbrt4, PatchesBecomeTriangles) {
@@ -252,7 +251,7 @@ TEST_F(Pbrt4, FilesThatPeopleGetWrong) {
             warnings.ThrowErrors();
         });
     };
-    EXPECT_NE(error("half-converted.pbrt").find("half-converted.pbrt:11: material \"matte\""),
+    EXPECT_NE(error("half-converted.pbrt").find("half-converted.pbrt:11: Material \"matte\""),
               std::string::npos);
     EXPECT_NE(error("reflectance-above-one.pbrt").find(":11: \"rgb reflectance\" has a part"),
               std::string::npos);

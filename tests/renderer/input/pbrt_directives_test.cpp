@@ -41,12 +41,9 @@ TEST_F(Directives, EmptyWorldHasDefaults) {
 
 TEST_F(Directives, OptionsKeepNameParametersAndPlace) {
     const auto d = folder.Parse(
-        "Camera \"orthographic\" \"float fov\" 39\n"
-        "Film \"image\" \"integer xresolution\" [40]\n"
-        "Sampler \"random\"\nPixelFilter \"gaussian\"\n"
-        "Integrator \"path\" \"integer maxdepth\" 3\n"
-        "Accelerator \"kdtree\" \"float emptybonus\" .3\nTransformTimes 0 1\n"
-        "WorldBegin\nWorldEnd",
+        "Camera \"orthographic\" \"float fov\" 39\nFilm \"image\" \"integer xresolution\" [40]\n"
+        "Sampler \"random\"\nPixelFilter \"gaussian\"\nIntegrator \"path\" \"integer maxdepth\" 3\n"
+        "Accelerator \"kdtree\" \"float emptybonus\" .3\nTransformTimes 0 1\nWorldBegin\nWorldEnd",
         &warnings);
     EXPECT_EQ(d.camera.name, "orthographic");
     EXPECT_EQ(d.camera.parameters.GetFloat("fov", 0), 39);
@@ -66,51 +63,43 @@ TEST_F(Directives, LaterOptionCountsWithAWarning) {
     EXPECT_EQ(warnings.Counts().at("Film given again; the later one counts"), 1);
 }
 
-TEST_F(Directives, Translate) {
-    EXPECT_EQ(ShapeTransform("Translate 1 2 3"), Translation(1, 2, 3));
-}
-
-TEST_F(Directives, Scale) {
-    EXPECT_EQ(ShapeTransform("Scale 2 3 -4").diagonal(), Eigen::Vector4d(2, 3, -4, 1));
-}
-
-TEST_F(Directives, RotateByNothingNeedsNoAxis) {
-    EXPECT_EQ(ShapeTransform("Rotate 0 0 0 0"), Mat4d::Identity());
-}
-
-TEST_F(Directives, RotateTurnsCounterclockwise) {
-    const Mat4d m = ShapeTransform("Rotate 90 0 0 2");
-    EXPECT_TRUE(
-        (m * Eigen::Vector4d(1, 0, 0, 1)).isApprox(Eigen::Vector4d(0, 1, 0, 1), kTolerance));
-}
-
-TEST_F(Directives, LaterTransformsApplyFirst) {
-    const Mat4d m = ShapeTransform("Translate 1 0 0 Scale 2 2 2");
-    EXPECT_EQ((m * Eigen::Vector4d(1, 1, 1, 1)).eval(), Eigen::Vector4d(3, 2, 2, 1));
-}
-
-TEST_F(Directives, IdentityForgets) {
-    EXPECT_EQ(ShapeTransform("Translate 1 2 3 Identity"), Mat4d::Identity());
-}
-
-TEST_F(Directives, TransformReplacesAndConcatTransformMultiplies) {
+TEST_F(Directives, ChangeTheTransform) {
     const std::string matrix = "[2 0 0 0  0 3 0 0  0 0 4 0  5 6 7 1]";
-    Mat4d expected = Translation(5, 6, 7);
-    expected.diagonal() = Eigen::Vector4d(2, 3, 4, 1);
-    EXPECT_EQ(ShapeTransform("Translate 1 1 1 Transform " + matrix), expected);
-    EXPECT_EQ(ShapeTransform("Translate 1 1 1 ConcatTransform " + matrix),
-              Translation(1, 1, 1) * expected);
+    Mat4d given = Translation(5, 6, 7);
+    given.diagonal() = Eigen::Vector4d(2, 3, 4, 1);
+    const std::pair<std::string, Mat4d> cases[] = {
+        {"Translate 1 2 3", Translation(1, 2, 3)},
+        {"Scale 2 3 -4", Mat4d(Eigen::Vector4d(2, 3, -4, 1).asDiagonal())},
+        {"Rotate 0 0 0 0", Mat4d::Identity()},
+        {"Translate 1 2 3 Identity", Mat4d::Identity()},
+        {"Translate 1 1 1 Transform " + matrix, given},
+        {"Translate 1 1 1 ConcatTransform " + matrix, Translation(1, 1, 1) * given},
+        {"AttributeBegin Translate 1 2 3 CoordinateSystem \"there\" AttributeEnd "
+         "CoordSysTransform \"there\"",
+         Translation(1, 2, 3)},
+        // Where both ends agree.
+        {"ActiveTransform All Translate 1 2 3", Translation(1, 2, 3)},
+        {"ActiveTransform StartTime Translate 1 2 3 ActiveTransform EndTime Translate 1 2 3 "
+         "ActiveTransform All",
+         Translation(1, 2, 3)}};
+    for (const auto& [directives, expected] : cases)
+        EXPECT_EQ(ShapeTransform(directives), expected) << directives;
 }
 
-TEST_F(Directives, MatricesAreGivenByColumns) {
-    const Mat4d m = ShapeTransform("Transform [0 1 0 0 -1 0 0 0 0 0 1 0 0 0 0 1]");
-    EXPECT_EQ((m * Eigen::Vector4d(1, 0, 0, 1)).eval(), Eigen::Vector4d(0, 1, 0, 1));
+TEST_F(Directives, TransformPoints) {
+    const auto map = [&](const std::string& directives, double x, double y, double z) {
+        return (ShapeTransform(directives) * Eigen::Vector4d(x, y, z, 1)).eval();
+    };
+    EXPECT_TRUE(map("Rotate 90 0 0 2", 1, 0, 0).isApprox(Eigen::Vector4d(0, 1, 0, 1), kTolerance));
+    // The later one applies first; matrices are given by columns.
+    EXPECT_EQ(map("Translate 1 0 0 Scale 2 2 2", 1, 1, 1), Eigen::Vector4d(3, 2, 2, 1));
+    EXPECT_EQ(map("Transform [0 1 0 0 -1 0 0 0 0 0 1 0 0 0 0 1]", 1, 0, 0),
+              Eigen::Vector4d(0, 1, 0, 1));
 }
 
 TEST_F(Directives, LookAtMapsTheViewToZ) {
     const auto d = folder.Parse(
-        "LookAt 1 2 3  1 2 8  0 1 0 Camera \"perspective\" WorldBegin "
-        "Shape \"sphere\" WorldEnd");
+        "LookAt 1 2 3  1 2 8  0 1 0 Camera \"perspective\" WorldBegin Shape \"sphere\" WorldEnd");
     const auto p = [&](double x, double y, double z) {
         return (d.cameraFromWorld * Eigen::Vector4d(x, y, z, 1)).eval();
     };
@@ -129,19 +118,6 @@ TEST_F(Directives, CameraSpaceIsNamed) {
     EXPECT_EQ(d.cameraFromWorld, Translation(0, 0, 5));
     EXPECT_EQ(d.lights[0].worldFromLight, Translation(0, 0, -5));
     EXPECT_EQ(d.lights[1].worldFromLight, Mat4d::Identity());
-}
-
-TEST_F(Directives, CoordinateSystemRemembers) {
-    EXPECT_EQ(ShapeTransform("AttributeBegin Translate 1 2 3 CoordinateSystem \"there\" "
-                             "AttributeEnd CoordSysTransform \"there\""),
-              Translation(1, 2, 3));
-}
-
-TEST_F(Directives, ActiveTransformIsHarmlessWhereBothEndsAgree) {
-    EXPECT_EQ(ShapeTransform("ActiveTransform All Translate 1 2 3"), Translation(1, 2, 3));
-    EXPECT_EQ(ShapeTransform("ActiveTransform StartTime Translate 1 2 3 "
-                             "ActiveTransform EndTime Translate 1 2 3 ActiveTransform All"),
-              Translation(1, 2, 3));
 }
 
 TEST_F(Directives, ShapesThatMoveAreInstancesOfObjectsOfTheirOwn) {
@@ -259,8 +235,7 @@ TEST_F(Directives, ParametersOfShapesReplaceThoseOfTheirMaterial) {
     const auto d = folder.ParseWorld(
         "Texture \"t\" \"spectrum\" \"constant\"\n"
         "MakeNamedMaterial \"a\" \"string type\" \"plastic\" \"rgb Kd\" [1 0 0] "
-        "\"texture Ks\" \"t\" NamedMaterial \"a\"\n"
-        "Shape \"sphere\" \"float radius\" 2\n"
+        "\"texture Ks\" \"t\" NamedMaterial \"a\"\nShape \"sphere\" \"float radius\" 2\n"
         "Shape \"sphere\" \"texture Kd\" \"t\" \"rgb Ks\" [0 1 0] \"float roughness\" .5",
         &warnings);
     const MaterialEntity &own = d.materials.at(size_t(d.shapes.at(1).material)),
@@ -367,8 +342,7 @@ TEST_F(Directives, RedefinedObjectCountsForWhatFollows) {
 
 TEST_F(Directives, AreaLightsInObjectsAreIgnoredWithAWarning) {
     const auto d = folder.ParseWorld(
-        "AreaLightSource \"diffuse\" ObjectBegin \"o\" Shape \"sphere\" Shape \"sphere\" "
-        "ObjectEnd",
+        "AreaLightSource \"diffuse\" ObjectBegin \"o\" Shape \"sphere\" Shape \"sphere\" ObjectEnd",
         &warnings);
     EXPECT_FALSE(d.objects[0].shapes[0].areaLight);
     EXPECT_EQ(warnings.Counts().at("area light ignored in an object definition"), 2);
@@ -378,8 +352,7 @@ TEST_F(Directives, IncludeStartsAtTheScenesFolder) {
     folder.Write("parts/a.pbrt", "# a\nShape \"sphere\"\nInclude \"parts/b.pbrt\"\n");
     folder.Write("parts/b.pbrt", "Shape \"disk\"");
     const auto d = folder.ParseWorld(
-        "Include \"parts/a.pbrt\" Include \"parts/b.pbrt\" "
-        "\"float radius\" 3 Shape \"cone\"");
+        "Include \"parts/a.pbrt\" Include \"parts/b.pbrt\" \"float radius\" 3 Shape \"cone\"");
     ASSERT_EQ(d.shapes.size(), 4u);
     EXPECT_EQ(d.shapes[0].name, "sphere");
     EXPECT_EQ(d.shapes[0].loc.Prefix(), folder.File("parts/a.pbrt") + ":2: ");

@@ -26,8 +26,7 @@ TEST_F(PbrtErrors, Structure) {
     Expect("", "scene.pbrt:1: the file ends without WorldBegin");
     Expect("# nothing\n\n", "scene.pbrt:3: the file ends without WorldBegin");
     Expect("Film \"image\" WorldBegin\n",
-           "scene.pbrt:2: the file ends without WorldEnd for the WorldBegin of "
-           "line 1");
+           "scene.pbrt:2: the file ends without WorldEnd for the WorldBegin of line 1");
     Expect("WorldBegin WorldEnd\nWorldBegin", "scene.pbrt:2: 'WorldBegin' after WorldEnd");
     Expect("\nShape \"sphere\"", "scene.pbrt:2: 'Shape' must come after WorldBegin");
     EXPECT_EQ(folder.ErrorOf("\nworldbegin\nShape \"sphere\""),

@@ -37,9 +37,12 @@ TEST_F(PbrtParameters, SingleValuesWithAndWithoutBrackets) {
 }
 
 TEST_F(PbrtParameters, TheLaterOneCounts) {
-    const auto p = Read("\"float a\" 1 \"integer a\" 2 \"float a\" 3");
+    const auto p =
+        Read("\"float a\" 1 \"integer a\" 2 \"float a\" 3 \"rgb c\" [1 1 1] \"xyz c\" [0 0 0]");
     EXPECT_EQ(p.GetFloat("a", 0), 3);
-    EXPECT_EQ(warnings.Counts().at("parameter given again; the later one counts"), 1);
+    EXPECT_EQ(p.GetSpectrum("c", Rgb::Ones()).x(), 0);
+    EXPECT_EQ(p.All().size(), 3u);
+    EXPECT_EQ(warnings.Counts().at("parameter given again; the later one counts"), 2);
 }
 
 TEST_F(PbrtParameters, BareBooleans) {
@@ -98,17 +101,6 @@ TEST_F(PbrtParameters, StringsMayHoldEscapesAndUtf8) {
               "a\"b\\c\n\t'# [d]");
     EXPECT_EQ(Read("\"string s\" \"\xc3\xa9t\xc3\xa9.png\"").GetString("s", ""),
               "\xc3\xa9t\xc3\xa9.png");
-}
-
-TEST_F(PbrtParameters, ByteOrderMarkIsSkipped) {
-    EXPECT_EQ(folder.ErrorOf("\xef\xbb\xbfWorldBegin WorldEnd"), "");
-}
-
-TEST_F(PbrtParameters, RepeatedParameterCountsAsGivenLast) {
-    const auto p = Read("\"float a\" 1 \"float a\" 2 \"rgb c\" [1 1 1] \"xyz c\" [0 0 0]");
-    EXPECT_EQ(p.GetFloat("a", 0), 2);
-    EXPECT_EQ(p.GetSpectrum("c", Rgb::Ones()).x(), 0);
-    EXPECT_EQ(p.All().size(), 2u);
 }
 
 TEST_F(PbrtParameters, SpectraOfEveryFormAreRgb) {

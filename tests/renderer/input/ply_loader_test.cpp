@@ -77,12 +77,14 @@ class Ply : public testing::Test {
 using Triangle = std::array<uint32_t, 3>;
 
 constexpr char kPositions[] = "property float x\nproperty float y\nproperty float z\n";
+const std::string kNormals = "property float nx\nproperty float ny\nproperty float nz\n";
 constexpr char kFaces[] = "property list uchar int vertex_indices\n";
 
 // Returns a triangle and its vertices, which the error tests then damage.
-std::string Header(const std::string& vertices, const std::string& faces) {
-    return "element vertex " + vertices + "\n" + kPositions + "element face " + faces + "\n" +
-           kFaces;
+std::string Header(const std::string& vertices, const std::string& faces,
+                   const std::string& properties = "") {
+    return "element vertex " + vertices + "\n" + kPositions + properties + "element face " + faces +
+           "\n" + kFaces;
 }
 
 TEST_F(Ply, TrianglesInEveryEncodingPlainAndPacked) {
@@ -105,8 +107,7 @@ TEST_F(Ply, TrianglesInEveryEncodingPlainAndPacked) {
 TEST_F(Ply, PolygonsAreDivided) {
     for (const std::string format : kFormats) {
         PlyWriter ply(format);
-        ply.Header("element vertex 5\n" + std::string(kPositions) + "element face 5\n" + kFaces +
-                   "property int face_indices\n");
+        ply.Header(Header("5", "5") + "property int face_indices\n");
         for (int i = 0; i < 5; ++i) ply.Put<float>({double(i), 0, 0});
         ply.Put<uint8_t>({4}).Put<int>({0, 1, 2, 3, 70});
         ply.Put<uint8_t>({5}).Put<int>({0, 1, 2, 3, 4, 71});
@@ -126,8 +127,7 @@ TEST_F(Ply, PolygonsAreDivided) {
 TEST_F(Ply, ConcavePolygonsAreDividedWithin) {
     const auto areaOf = [&](const std::vector<Vec3f>& corners) {
         PlyWriter ply("ascii");
-        ply.Header(fmt::format("element vertex {}\n{}element face 1\n{}", corners.size(),
-                               kPositions, kFaces));
+        ply.Header(Header(fmt::format("{}", corners.size()), "1"));
         for (const Vec3f& p : corners) ply.Put<float>({p.x(), p.y(), p.z()});
         ply.text += fmt::format("{}", corners.size());
         for (size_t i = 0; i < corners.size(); ++i) ply.text += fmt::format(" {}", i);
@@ -195,8 +195,7 @@ TEST_F(Ply, UnusedVerticesNeedNotBeFinite) {
 TEST_F(Ply, WarnsOfWhatIsLeftOut) {
     const std::string vertices = "0 0 0 9\n1 0 0 9\n0 1 0 9\n";
     PlyWriter ply("ascii");
-    ply.Header("element vertex 3\n" + std::string(kPositions) +
-               "property uchar red\nelement face 1\n" + kFaces);
+    ply.Header(Header("3", "1", "property uchar red\n"));
     for (const char* end : {"", "\n", "\x1a", "\n\x1a", "\n\x1a garbage"})
         Load(ply.text + vertices + "3 0 1 2" + end);
     EXPECT_EQ(warnings.Counts().size(), 1u);
@@ -205,11 +204,9 @@ TEST_F(Ply, WarnsOfWhatIsLeftOut) {
 }
 
 TEST_F(Ply, WarnsOfPropertiesGivenTwice) {
-    const MeshData mesh =
-        Load("ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(kPositions) +
-             "property float x\nelement face 1\n" + kFaces +
-             "element other 1\nproperty int a\nproperty int a\nend_header\n"
-             "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n1 2\n");
+    const MeshData mesh = Load("ply\nformat ascii 1.0\n" + Header("3", "1", "property float x\n") +
+                               "element other 1\nproperty int a\nproperty int a\nend_header\n"
+                               "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n1 2\n");
     EXPECT_EQ(mesh.positions[1], Vec3f(1, 0, 0));
     EXPECT_EQ(warnings.Total(), 1);
     EXPECT_EQ(warnings.Counts().at("PLY property given twice, of which one counts"), 1);
@@ -253,8 +250,7 @@ TEST_F(Ply, EveryNameOfTextureCoordinates) {
                                {"texcoord_u", "texcoord_v"},
                                {"u0", "v0"}}) {
         PlyWriter ply("ascii");
-        ply.Header("element vertex 3\n" + std::string(kPositions) + "property float " + u +
-                   "\nproperty float " + v + "\nelement face 1\n" + kFaces);
+        ply.Header(Header("3", "1", fmt::format("property float {}\nproperty float {}\n", u, v)));
         for (int i = 0; i < 3; ++i) ply.Put<float>({0, 0, 0, .25, .75});
         ply.Put<int>({3, 0, 1, 2});
         EXPECT_EQ(Load(ply.text).uvs.at(2), Vec2f(.25f, .75f)) << u;
@@ -264,8 +260,7 @@ TEST_F(Ply, EveryNameOfTextureCoordinates) {
 TEST_F(Ply, OtherTextureCoordinatesAndColoursAreLeftOutWithAWarning) {
     for (const std::string property : {"list uchar float uv", "float tex0"}) {
         PlyWriter ply("ascii");
-        ply.Header("element vertex 3\n" + std::string(kPositions) + "property " + property +
-                   "\nproperty uchar r\nelement face 1\n" + kFaces);
+        ply.Header(Header("3", "1", "property " + property + "\nproperty uchar r\n"));
         const std::string rest = property.starts_with("list") ? " 1 .5 9\n" : " .5 9\n";
         Load(ply.text + "0 0 0" + rest + "1 0 0" + rest + "0 1 0" + rest + "3 0 1 2\n");
     }
@@ -274,8 +269,7 @@ TEST_F(Ply, OtherTextureCoordinatesAndColoursAreLeftOutWithAWarning) {
 
 TEST_F(Ply, IncompleteNormalsAndUvsAreIgnored) {
     PlyWriter ply("ascii");
-    ply.Header("element vertex 3\n" + std::string(kPositions) +
-               "property float nx\nproperty float ny\nproperty float u\nelement face 1\n" + kFaces);
+    ply.Header(Header("3", "1", "property float nx\nproperty float ny\nproperty float u\n"));
     for (int i = 0; i < 3; ++i) ply.Put<float>({0, 0, 0, 1, 1, 1});
     ply.Put<int>({3, 0, 1, 2});
     const MeshData mesh = Load(ply.text);
@@ -318,10 +312,7 @@ TEST_F(Ply, JoinedGzipMembersAreOneFile) {
 
 TEST_F(Ply, NormalsThatAreNotFiniteBecomeZero) {
     PlyWriter ply("binary_little_endian");
-    ply.Header("element vertex 3\n" + std::string(kPositions) +
-               "property float nx\nproperty float ny\nproperty float nz\nproperty float u\n"
-               "property float v\nelement face 1\n" +
-               kFaces);
+    ply.Header(Header("3", "1", kNormals + "property float u\nproperty float v\n"));
     for (int i = 0; i < 3; ++i) ply.Put<float>({0, 0, 0, 1, 0, i == 1 ? NAN : 0, INFINITY, 0});
     ply.Put<uint8_t>({3}).Put<int>({0, 1, 2});
     const MeshData mesh = Load(ply.text);
@@ -361,8 +352,7 @@ TEST_F(Ply, BadHeaders) {
 TEST_F(Ply, MissingParts) {
     const std::string ascii = "ply\nformat ascii 1.0\n";
     EXPECT_EQ(ErrorOf(ascii + "end_header\n"),
-              "a.ply: the PLY file has no vertices or no "
-              "triangles");
+              "a.ply: the PLY file has no vertices or no triangles");
     EXPECT_EQ(ErrorOf(ascii + Header("0", "0") + "end_header\n"),
               "a.ply: the PLY file has no vertices or no triangles");
     EXPECT_EQ(ErrorOf(ascii + "element vertex 1\nproperty float x\nend_header\n0"),
@@ -438,10 +428,7 @@ TEST_F(Ply, VerticesAreSplitByTheUvsOfFaces) {
     for (const std::string format : kFormats)
         for (const char* name : {"texcoord", "t"}) {
             PlyWriter ply(format);
-            ply.Header("element vertex 4\n" + std::string(kPositions) +
-                       "property float nx\nproperty float ny\nproperty float nz\n"
-                       "element face 2\n" +
-                       kFaces + "property list uchar float " + name + "\n");
+            ply.Header(Header("4", "2", kNormals) + "property list uchar float " + name + "\n");
             for (int i = 0; i < 4; ++i) ply.Put<float>({double(i), 0, 0, 0, 0, double(i)});
             ply.Put<uint8_t>({3}).Put<int>({0, 1, 2});
             ply.Put<uint8_t>({6}).Put<float>({0, 0, 1, 0, 1, 1});

@@ -33,11 +33,7 @@ struct TestFolder : TemporaryDirectory {
 
     template <typename Function>
     std::string MessageOf(const Function& function) const {
-        std::string message = lull::ErrorOf(function);
-        const std::string prefix = path.string() + "/";
-        for (size_t at; (at = message.find(prefix)) != std::string::npos;)
-            message.erase(at, prefix.size());
-        return message;
+        return WithoutPath(lull::ErrorOf(function));
     }
 };
 

@@ -16,11 +16,12 @@ std::string PageOf(const std::string& scene) {
 
 TEST(MakeRenderPage, HoldsAllFilesAndNeedsNoOther) {
     const std::string page = PageOf("x");
-    for (const char* name : {"page.css", "page.js", "viewer.js", "uPlot.iife.min.js"}) {
+    for (const char* name :
+         {"page.css", "page.js", "viewer.js", "render.js", "uPlot.iife.min.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
     }
-    for (const char* name : {"comparison.css", "comparison.js", "error_curves.js", "study.js"}) {
+    for (const char* name : {"comparison.css", "comparison.js", "study.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
         EXPECT_EQ(page.find(EmbeddedFile(name)), std::string::npos)
             << name << " is the laboratory's";

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/renderer/render/synthetic_samples.h"
 

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <random>
 
-#include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
+#include "stopping/base/input_file.h"
 #include "stopping/base/state.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"

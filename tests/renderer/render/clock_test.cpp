@@ -8,7 +8,7 @@
 
 #include "renderer/progress/forecast.h"
 #include "renderer/render/render.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-// Checks the parts of Cryptomattes; cryptomatte.py reads whole files.
+// Checks the parts of Cryptomattes.
 #include "renderer/results/channel_names.h"
 
 #include <fmt/format.h>

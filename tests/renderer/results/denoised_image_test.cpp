@@ -6,7 +6,7 @@
 #include "renderer/base/error.h"
 #include "renderer/denoise/visible_error.h"
 #include "renderer/render/film_picture.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/renderer/render/feature_render.h"
 

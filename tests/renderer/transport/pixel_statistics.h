@@ -1,9 +1,14 @@
-// Measures mean and variance of single samples, pixel by pixel.
+// Measures mean and variance of single samples, pixel by pixel, and reads those of pbrt-v3.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstdlib>
+#include <string>
+#include <variant>
 #include <vector>
 
+#include "renderer/image/image_io.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/base/parallel.h"
 
@@ -43,6 +48,31 @@ inline PixelStatistics MeasurePixels(const Scene& scene, Estimator estimator, Sa
     });
     result.rejected = rejected;
     return result;
+}
+
+// Reads R, G, B, their variances and samplesPerPixel of an EXR.
+inline PixelStatistics ReadStatistics(const std::string& path) {
+    const ExrImage image = ReadExr(path);
+    const ExrAttribute& samples = image.attributes.at("samplesPerPixel");
+    PixelStatistics result{image.width, image.height, 0, {}, {}, 0};
+    result.samples = std::holds_alternative<int>(samples) ? std::get<int>(samples)
+                                                          : int(std::get<float>(samples));
+    const size_t count = size_t(image.width) * image.height;
+    result.mean.resize(count);
+    result.variance.resize(count);
+    const char* names[] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c)
+        for (size_t i = 0; i < count; ++i) {
+            result.mean[i][c] = image.Find(names[c])->values[i];
+            result.variance[i][c] = image.Find(std::string("variance.") + names[c])->values[i];
+        }
+    return result;
+}
+
+// Reads a positive number from the environment, for longer runs than a test run affords.
+inline int FromEnvironment(const char* name, int otherwise) {
+    const char* value = std::getenv(name);
+    return value ? std::max(2, std::atoi(value)) : otherwise;
 }
 
 }  // namespace lull

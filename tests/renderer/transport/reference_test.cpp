@@ -4,47 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
-#include "renderer/image/image_io.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 #include "tests/shared_folder.h"
 
 namespace lull {
 namespace {
-
-// Reads a positive number from the environment, for longer runs than a test run affords.
-int FromEnvironment(const char* name, int otherwise) {
-    const char* value = std::getenv(name);
-    return value ? std::max(2, std::atoi(value)) : otherwise;
-}
-
-struct Reference {
-    int samples = 0;
-    PixelStatistics pixels;
-};
-
-Reference LoadReference(const std::string& path) {
-    const ExrImage image = ReadExr(path);
-    Reference reference;
-    const ExrAttribute& samples = image.attributes.at("samplesPerPixel");
-    reference.samples = std::holds_alternative<int>(samples) ? std::get<int>(samples)
-                                                             : int(std::get<float>(samples));
-    const size_t count = size_t(image.width) * image.height;
-    reference.pixels = {image.width, image.height, reference.samples, {}, {}, 0};
-    reference.pixels.mean.resize(count);
-    reference.pixels.variance.resize(count);
-    const char* names[] = {"R", "G", "B"};
-    for (int c = 0; c < 3; ++c)
-        for (size_t i = 0; i < count; ++i) {
-            reference.pixels.mean[i][c] = image.Find(names[c])->values[i];
-            reference.pixels.variance[i][c] =
-                image.Find(std::string("variance.") + names[c])->values[i];
-        }
-    return reference;
-}
 
 // Returns the two-sided normal quantile z that `tests` independent tests exceed with probability
 // 1 % in all (Sidak), by bisection on erfc.
@@ -160,12 +127,12 @@ TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
     const Estimator estimator = std::get<1>(GetParam());
     LULL_SHARED_FILE(file, "references/" + name + ".exr");
     const auto scene = LoadScene(SharedFolder() / "pbrt-scenes" / name / "scene.pbrt", estimator);
-    const Reference reference = LoadReference(file.string());
+    const PixelStatistics reference = ReadStatistics(file.string());
     const int samples = FromEnvironment("LULL_REFERENCE_SPP", 64);
 
     const PixelStatistics ours = MeasurePixels(*scene, estimator, SamplerKind::Random, samples, 1);
     EXPECT_EQ(ours.rejected, 0);
-    const Comparison c = Compare(ours, reference.pixels);
+    const Comparison c = Compare(ours, reference);
     std::printf(
         "%s", fmt::format("| {} | {} | {:.4f} ({:+.1f}) | {:.2f} % | {:.2f} % | {:.3f} | "
                           "{:.3f} +- {:.3f} |\n",
@@ -183,7 +150,7 @@ TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
     // reference has it can seem too small, but not too large.
     EXPECT_LT(c.varianceMedian, 1.05);
     EXPECT_LT(c.varianceTotal, 1 + 4 * c.varianceTotalSigma);
-    if (estimator == Estimator::PbrtV3 && samples >= reference.pixels.samples) {
+    if (estimator == Estimator::PbrtV3 && samples >= reference.samples) {
         EXPECT_GT(c.varianceMedian, 0.95);
         EXPECT_GT(c.varianceTotal, 1 - 4 * c.varianceTotalSigma);
     }

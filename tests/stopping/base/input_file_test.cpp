@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "tests/stopping/scratch_file.h"
-#include "tests/stopping/what_of.h"
 
 namespace lull {
 namespace {
@@ -68,12 +67,7 @@ TEST(TextLines, EndAsOnAllSystems) {
 }
 
 std::string MessageOf(const std::string& text) {
-    try {
-        LinesOf(text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
+    return WhatOf([&] { LinesOf(text); });
 }
 
 TEST(TextLines, RefuseOtherEncodings) {
@@ -88,6 +82,44 @@ TEST(TextLines, RefuseOtherEncodings) {
 TEST(TextLines, RefuseMarksOfTheEndAmidTheText) {
     for (const std::string& text : {"a\nb\x1a\nc"s, "a\r\nb\0c"s, "a\r\x1a\rc\r"s})
         EXPECT_TRUE(MessageOf(text).starts_with("a.csv:2: Control-Z or NUL")) << MessageOf(text);
+}
+
+std::string Problem(const std::string& text) {
+    const ScratchFile file(".sealed", text);
+    return WhatOf([&] { CheckSeal(file.path); });
+}
+
+std::string Sealed(const std::string& text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    std::vector<std::byte> sealed(bytes.begin(), bytes.end());
+    Seal(&sealed);
+    return {reinterpret_cast<const char*>(sealed.data()), sealed.size()};
+}
+
+TEST(Seal, FindsEveryFlippedBit) {
+    for (const std::string& text : {std::string(), std::string(100, 'x')}) {
+        const std::string good = Sealed(text);
+        EXPECT_EQ(Problem(good), "");
+        const auto content = CheckSeal(std::as_bytes(std::span(good)));
+        EXPECT_EQ(std::string(reinterpret_cast<const char*>(content.data()), content.size()), text);
+        for (size_t bit = 0; bit < 8 * good.size(); ++bit) {
+            std::string bad = good;
+            bad[bit / 8] ^= char(1 << bit % 8);
+            EXPECT_NE(Problem(bad), "") << bit;
+            EXPECT_THROW(CheckSeal(std::as_bytes(std::span(bad))), std::runtime_error) << bit;
+        }
+        for (size_t size = 0; size < good.size(); ++size)
+            EXPECT_NE(Problem(good.substr(0, size)), "") << size;
+        EXPECT_NE(Problem(good + "x"), "");
+    }
+}
+
+TEST(Seal, SaysWhatIsWrong) {
+    std::string bad = Sealed(std::string(100, 'x'));
+    bad[50] = 'y';
+    EXPECT_NE(Problem(bad).find("damaged"), std::string::npos);
+    EXPECT_NE(Problem("something else").find("cut short"), std::string::npos);
+    EXPECT_NE(WhatOf([] { CheckSeal("/nowhere/x.h5"); }).find("No such file"), std::string::npos);
 }
 
 }  // namespace

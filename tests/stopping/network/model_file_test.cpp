@@ -11,13 +11,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "stopping/base/checksum.h"
 #include "stopping/base/hdf5_file.h"
+#include "stopping/base/input_file.h"
 #include "stopping/network/keras_config.h"
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
-#include "tests/stopping/what_of.h"
 
 namespace lull::model_file_test {
 namespace {
@@ -46,20 +45,6 @@ TEST(ModelFile, AgreesWithKeras) {
     RecordProperty("worst", std::to_string(worst * 1e9) + "e-9");
 }
 
-bool Equal(const Network& a, const Network& b) {
-    bool equal = a.lstm.size() == b.lstm.size() && a.dense.size() == b.dense.size();
-    for (size_t i = 0; equal && i < a.lstm.size(); ++i)
-        equal = a.lstm[i].name == b.lstm[i].name && a.lstm[i].kernel == b.lstm[i].kernel &&
-                a.lstm[i].recurrent == b.lstm[i].recurrent && a.lstm[i].bias == b.lstm[i].bias &&
-                a.lstm[i].activation == b.lstm[i].activation &&
-                a.lstm[i].recurrentActivation == b.lstm[i].recurrentActivation;
-    for (size_t i = 0; equal && i < a.dense.size(); ++i)
-        equal = a.dense[i].name == b.dense[i].name && a.dense[i].kernel == b.dense[i].kernel &&
-                a.dense[i].bias == b.dense[i].bias &&
-                a.dense[i].activation == b.dense[i].activation;
-    return equal;
-}
-
 TEST(ModelFile, ReadsWhatItWrites) {
     Network network = RandomNetwork(25, {7, 5}, 1e4f);
     network.lstm[0].activation = Activation::Tanh;
@@ -75,14 +60,8 @@ TEST(ModelFile, ReadsWhatItWrites) {
     const ScratchFile file(".h5");
     WriteModel(file.path, network, settings);
     const Model model = ReadModel(file.path);
-    EXPECT_TRUE(Equal(model.network, network));
-    EXPECT_EQ(model.settings.k, 5);
-    EXPECT_EQ(model.settings.n, 60);
-    EXPECT_EQ(model.settings.m, 25);
-    EXPECT_EQ(model.settings.features, std::vector<Feature>{Feature::H2});
-    EXPECT_FALSE(model.settings.snorm);
-    EXPECT_EQ(model.settings.votes, 2);
-    EXPECT_EQ(model.settings.voteSpacing, 120);
+    EXPECT_TRUE(model.network == network);
+    EXPECT_TRUE(model.settings == settings);
     EXPECT_EQ(model.checksum, FileChecksum(file.path));
     EXPECT_FALSE(std::filesystem::exists(file.path + ".new"));
 }
@@ -94,10 +73,8 @@ TEST(ModelFile, KeepsFeaturesAndRecords) {
     const ScratchFile file(".h5");
     WriteModel(file.path, network, settings, {{"seed", "7"}, {"viewpoints", "a: 0 1\nb: 2"}});
     const Model model = ReadModel(file.path);
-    EXPECT_TRUE(Equal(model.network, network));
-    EXPECT_EQ(model.settings.features, settings.features);
-    EXPECT_TRUE(model.settings.takesMean);
-    EXPECT_EQ(model.settings.k, 3);
+    EXPECT_TRUE(model.network == network);
+    EXPECT_TRUE(model.settings == settings);
     const Hdf5Group record = Hdf5Group::Open(file.path).Group("lull").Group("training");
     EXPECT_EQ(record.String("viewpoints"), "a: 0 1\nb: 2");
 }
@@ -127,14 +104,7 @@ TEST(ModelFile, KeepsHowNoiseIsSeen) {
         .visibility = {.mask = 30, .flare = 0.02, .reference = 5000, .nearness = 0.25},
         .peakLimit = 1.25};
     WriteModel(file.path, RandomNetwork(1, {4}, 1), settings);
-    const ModelSettings read = ReadModel(file.path).settings;
-    EXPECT_EQ(read.spacing, Spacing::Geometric);
-    EXPECT_EQ(read.ratio, 1.4);
-    EXPECT_EQ(read.visibility.mask, 30);
-    EXPECT_EQ(read.visibility.flare, 0.02);
-    EXPECT_EQ(read.visibility.reference, 5000);
-    EXPECT_EQ(read.visibility.nearness, 0.25);
-    EXPECT_EQ(read.peakLimit, 1.25);
+    EXPECT_TRUE(ReadModel(file.path).settings == settings);
 
     // Nothing is said where nothing is meant, so that other models have the bytes they had.
     WriteModel(file.path, RandomNetwork(100, {4}, 1), {});

@@ -14,7 +14,6 @@
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/network/random_network.h"
-#include "tests/stopping/rules/restarts.h"
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
 
@@ -43,10 +42,6 @@ std::vector<Decision> RunPasses(Criterion* criterion, int first, int end, int pa
         if (decisions.back().stop) break;
     }
     return decisions;
-}
-
-std::vector<Decision> RunAfter(Criterion* criterion, int begin, int end) {
-    return RunPasses(criterion, begin + 20, end);
 }
 
 TEST(Learned, StopsFirstAt380SppOnThePapersGrid) {
@@ -132,14 +127,6 @@ TEST(Learned, VotesOnTheWindowOfItsFeatures) {
     }
 }
 
-TEST(Learned, GoesOnAsIfNeverInterrupted) {
-    for (int voteSpacing : {0, 40, 80}) {
-        const ModelSettings settings = {.k = 4, .m = 25, .votes = 1000, .voteSpacing = voteSpacing};
-        const auto model = MakeModel(RandomNetwork(25, {8, 4}, 3), settings);
-        ExpectGoesOn(LearnedRule(model, 20), {20, 100, 140, 260, 420}, 600, RunAfter);
-    }
-}
-
 // Returns settings of a model that looks at the visible noise of `k` states and never stops.
 ModelSettings DropSettings(int k) {
     return {.k = k,
@@ -149,15 +136,6 @@ ModelSettings DropSettings(int k) {
             .voteSpacing = 40,
             .spacing = Spacing::Geometric,
             .ratio = 1.5};
-}
-
-TEST(Learned, GoesOnWithFallsOfEntropies) {
-    const ModelSettings settings = DropSettings(3);
-    const auto model = MakeModel(RandomNetwork(1, {8, 4}, 3), settings);
-    const auto whole = MakeCriterion(LearnedRule(model, 20));
-    EXPECT_EQ(whole->Need(20), ViewNeed::Mean);
-    EXPECT_TRUE(RunPasses(whole.get(), 20, 1000).back().value != 1);
-    ExpectGoesOn(LearnedRule(model, 20), {20, 140, 500}, 1000, RunAfter);
 }
 
 // Returns a network that is undecided where the last input is `limit`.
@@ -224,16 +202,6 @@ TEST(Learned, SaysHowWhatIsFollowedFalls) {
     EXPECT_FALSE(odds.saturates);
 }
 
-TEST(Learned, RefusesOtherState) {
-    const auto model = MakeModel(RandomNetwork(25, {8, 4}, 1), {.m = 25});
-    const auto criterion = MakeCriterion(LearnedRule(model, 20));
-    RunPasses(criterion.get(), 20, 100);
-    const std::vector<std::byte> state = criterion->Save();
-    ExpectRefusesOtherLengths(LearnedRule(model, 20), state, 7);
-    const auto other = MakeModel(RandomNetwork(100, {8, 4}, 1), {});
-    EXPECT_THROW(MakeCriterion(LearnedRule(other, 20))->Restore(state), std::runtime_error);
-}
-
 TEST(Learned, SurvivesAnyBlock) {
     const ModelSettings settings = {.k = 2, .m = 25, .features = ParseFeatures("H,attributes26")};
     const float infinity = std::numeric_limits<float>::infinity();
@@ -287,10 +255,10 @@ TEST(Learned, WantsTheSppToIncrease) {
 
 BlockImage NoisyAt(int spp) { return NoisyBlock(100, 100, 0.2, spp, unsigned(spp)); }
 
-// Runs a rule over blocks whose noise falls, after `begin` spp; returns the decisions up to a stop.
-std::vector<Decision> Decide(Criterion* rule, int begin, int end) {
+// Runs a rule over blocks whose noise falls; returns the decisions up to a stop.
+std::vector<Decision> Decide(Criterion* rule, int end) {
     std::vector<Decision> decisions;
-    for (int spp = begin + 20; spp <= end; spp += 20) {
+    for (int spp = 20; spp <= end; spp += 20) {
         BlockImage block = NoisyAt(spp);
         BlockView view = block.At(spp);
         view.halfMean = {};  // it is not needed
@@ -303,7 +271,7 @@ std::vector<Decision> Decide(Criterion* rule, int begin, int end) {
 
 TEST(EntropyRule, StopsAfterThreeChecksInARow) {
     const auto rule = MakeCriterion(EntropyRule(1.5, {}, 20));
-    const std::vector<Decision> decisions = Decide(rule.get(), 0, 4000);
+    const std::vector<Decision> decisions = Decide(rule.get(), 4000);
     const int stop = 20 * int(decisions.size());
     ASSERT_TRUE(decisions.back().stop);
     EXPECT_EQ((stop - 20) % 40, 0);
@@ -326,7 +294,7 @@ TEST(EntropyRule, NeedsFourTimesTheSamplesForHalfOfTheThreshold) {
     const NoiseVisibility visibility{.reference = 1 << 30};
     const auto spp = [&](double threshold) {
         return 20.0 *
-               double(Decide(MakeCriterion(EntropyRule(threshold, visibility, 20)).get(), 0, 9000)
+               double(Decide(MakeCriterion(EntropyRule(threshold, visibility, 20)).get(), 9000)
                           .size());
     };
     const double once = spp(0.8), half = spp(0.4);
@@ -341,18 +309,6 @@ TEST(EntropyRule, ChecksWhereRecordingsHavePasses) {
     EXPECT_FALSE(EntropyChecks(1).AreDue(2));
     EXPECT_TRUE(EntropyChecks(1).AreDue(41));
     EXPECT_TRUE(EntropyChecks(100).AreDue(200));
-}
-
-TEST(EntropyRule, GoesOnAsIfNeverInterrupted) {
-    ExpectGoesOn(EntropyRule(1.5, {}, 20), {20, 60, 120, 200}, 4000, Decide);
-}
-
-TEST(EntropyRule, RefusesOtherState) {
-    const auto rule = MakeCriterion(EntropyRule(1.5, {}, 20));
-    Decide(rule.get(), 0, 300);
-    const std::vector<std::byte> state = rule->Save();
-    ExpectRefusesOtherLengths(EntropyRule(1.5, {}, 20), state, 97);
-    EXPECT_THROW(MakeCriterion(ParseRule("lnoise:1"))->Restore(state), std::runtime_error);
 }
 
 TEST(EntropyRule, IsARule) {
@@ -373,7 +329,7 @@ TEST(EntropyRule, ComparesWithThePictureAtALargerCap) {
     const auto valueAt = [](int cap) {
         const auto rule =
             MakeCriterion(ParseRule("entropy:0.01", {.cap = cap, .hasHalves = false}));
-        return Decide(rule.get(), 0, 1020).back().value;
+        return Decide(rule.get(), 1020).back().value;
     };
     const double standard = valueAt(0);
     EXPECT_EQ(valueAt(10000), standard);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "stopping/rules/rule_table.h"
-#include "tests/stopping/cut_states.h"
 
 namespace lull {
 namespace {
@@ -28,9 +27,9 @@ Rule OwnRule(const Checks& checks, int votes) {
             .measure = SuppliedMeasure(context, "own")};
 }
 
-std::vector<int> ChecksOf(Criterion* criterion, int begin, int end) {
+std::vector<int> ChecksOf(Criterion* criterion) {
     std::vector<int> checks;
-    for (int spp = begin; spp <= end; spp += 20) {
+    for (int spp = 20; spp <= 2000; spp += 20) {
         const Decision decision = criterion->Observe({.width = 40, .height = 40, .spp = spp});
         if (decision.checked) checks.push_back(spp);
         if (decision.stop) break;
@@ -41,24 +40,9 @@ std::vector<int> ChecksOf(Criterion* criterion, int begin, int end) {
 TEST(RuleCriterion, TakesWhatTheProgramMeasures) {
     const auto first = MakeCriterion(OwnRule({}, 0), {.index = 0}),
                third = MakeCriterion(OwnRule({}, 0), {.index = 2});
-    EXPECT_EQ(ChecksOf(first.get(), 20, 2000).back(), 220);
-    EXPECT_EQ(ChecksOf(third.get(), 20, 2000).back(), 620);
+    EXPECT_EQ(ChecksOf(first.get()).back(), 220);
+    EXPECT_EQ(ChecksOf(third.get()).back(), 620);
     EXPECT_THROW(SuppliedMeasure({}, "own"), std::invalid_argument);
-}
-
-TEST(RuleCriterion, GoesOnWithItsChecksWhereverItIsInterrupted) {
-    const Checks octaves{.first = 40, .growth = 2};
-    const std::vector<int> expected{40, 80, 160, 320, 640, 1280};
-    EXPECT_EQ(ChecksOf(MakeCriterion(OwnRule(octaves, 3)).get(), 20, 10000), expected);
-    for (const int split : {20, 40, 60, 160, 500}) {
-        const auto before = MakeCriterion(OwnRule(octaves, 3)),
-                   after = MakeCriterion(OwnRule(octaves, 3));
-        std::vector<int> checks = ChecksOf(before.get(), 20, split);
-        after->Restore(before->Save());
-        EXPECT_EQ(after->Save(), before->Save());
-        for (const int spp : ChecksOf(after.get(), split + 20, 10000)) checks.push_back(spp);
-        EXPECT_EQ(checks, expected) << split;
-    }
 }
 
 TEST(RuleCriterion, StopsBelowTheThresholdSoManyTimesInARow) {
@@ -122,12 +106,35 @@ TEST(RuleCriterion, DecidesOnSignalsAloneAsOnWhatItMeasures) {
     EXPECT_EQ(measuring.Save(), told.Save());
 }
 
-TEST(RuleCriterion, RefusesStatesThatAreNotItsOwn) {
-    const auto rule = MakeCriterion(OwnRule({.first = 20, .growth = 2}, 3));
-    std::vector<std::byte> state = rule->Save();
-    ExpectRefusesCut(state, 1, [&](auto cut) { rule->Restore(cut); });
-    state[0] ^= std::byte(1);
-    EXPECT_THROW(rule->Restore(state), std::runtime_error);
+// Returns the checks up to `end`, where a picture comes every `step` spp.
+std::vector<int> ChecksUpTo(int end, const Checks& checks, int step = 1) {
+    std::vector<int> due;
+    for (int spp = step; spp <= end; spp += step)
+        if (checks.AreDue(spp, due.empty() ? 0 : due.back())) due.push_back(spp);
+    return due;
+}
+
+TEST(Checks, AreAtEachPictureUnlessTheRuleSaysOtherwise) {
+    EXPECT_EQ(ChecksUpTo(4, {}), (std::vector<int>{1, 2, 3, 4}));
+    EXPECT_EQ(ChecksUpTo(5, {.first = 3}), (std::vector<int>{3, 4, 5}));
+}
+
+TEST(Checks, AreAGridFromTheFirst) {
+    EXPECT_EQ(ChecksUpTo(150, {.first = 20, .every = 40}), (std::vector<int>{20, 60, 100, 140}));
+    // A picture that the grid misses is not checked.
+    EXPECT_EQ(ChecksUpTo(200, {.first = 20, .every = 40}, 30), (std::vector<int>{60, 180}));
+}
+
+TEST(Checks, AreFarEnoughApartWherePicturesComeAtAnySpp) {
+    EXPECT_EQ(ChecksUpTo(200, {.every = 40, .any = true}, 30), (std::vector<int>{30, 90, 150}));
+    EXPECT_EQ(ChecksUpTo(100, {.every = 40, .any = true}), (std::vector<int>{1, 41, 81}));
+}
+
+TEST(Checks, WaitUntilTheSamplesHaveGrown) {
+    EXPECT_EQ(ChecksUpTo(1500, {.first = 40, .growth = 2}, 20),
+              (std::vector<int>{40, 80, 160, 320, 640, 1280}));
+    EXPECT_EQ(ChecksUpTo(60, {.first = 20, .growth = 1.25}, 10),
+              (std::vector<int>{20, 30, 40, 50}));
 }
 
 }  // namespace

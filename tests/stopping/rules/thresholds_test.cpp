@@ -9,7 +9,6 @@
 
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/scratch_file.h"
-#include "tests/stopping/what_of.h"
 
 namespace lull::thresholds_test {
 namespace {

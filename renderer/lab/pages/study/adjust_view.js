@@ -95,13 +95,8 @@ function moveTo(block) {
 }
 
 function adjustKeys(event) {
-  const from = study.blocks[adjustView.block];
-  const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
-  if (step) {
-    event.preventDefault();
-    const x = from.x + (step[0] < 0 ? -1 : step[0] > 0 ? from.width : 0);
-    const y = from.y + (step[1] < 0 ? -1 : step[1] > 0 ? from.height : 0);
-    const to = study.blocks.findIndex(b => x >= b.x && x < b.x + b.width && y >= b.y && y < b.y + b.height);
+  const to = blockByKey(study.blocks, study.blocks[adjustView.block], event);
+  if (to !== null) {
     if (to >= 0) adjustView.cells[to].noisy.cell.focus();
   } else if (event.key === "Backspace") {
     event.preventDefault();

@@ -31,9 +31,7 @@ function drawViewpointOverlay(viewpoint, svg, legend, name) {
     svg.append(make("rect", {...p, class: "shade", style: `fill:${viridis(place)}`}),
       make("text", {x: p.x + p.width / 2, y: p.y + p.height / 2, "font-size": size}, overlay.values[i]));
   });
-  const stops = [...Array(17).keys()].map(i => viridis(i / 16)).join(",");
-  legend.append(make("div", {class: "bar", style: `background:linear-gradient(to right,${stops})`}),
-    make("div", {class: "ends"}, ...overlay.ends.map(e => make("span", {}, e))));
+  legend.append(...makeScale(viridis, overlay.ends));
 }
 
 function makePicture(viewpoint) {
@@ -43,10 +41,10 @@ function makePicture(viewpoint) {
   const picture = make("div", {class: "picture", style: `aspect-ratio:${viewpoint.width}/${viewpoint.height}`},
     ...viewpoint.places.map((p, i) => make("img", {src: viewpoint.references[i], alt: "", style:
       `left:${part(p.x, viewpoint.width)};top:${part(p.y, viewpoint.height)};width:${part(p.width, viewpoint.width)};height:${part(p.height, viewpoint.height)}`})), svg);
-  const select = make("select", {"aria-label": "Over the image", change: () => drawViewpointOverlay(viewpoint, svg, legend, select.value)},
-    ...[["thresholds", "thresholds"], ["disagreement", "where observers disagree"], ["none", "nothing"]].map(([v, text]) => make("option", {value: v}, text)));
+  const choice = makeChoice("Over the image", [["thresholds", "thresholds"], ["disagreement", "where observers disagree"], ["none", "nothing"]],
+    "thresholds", name => drawViewpointOverlay(viewpoint, svg, legend, name));
   drawViewpointOverlay(viewpoint, svg, legend, "thresholds");
-  return make("div", {style: `--width:${Math.max(viewpoint.width, 600)}px`}, make("p", {class: "controls"}, make("label", {}, "Over the image ", select)), picture, legend);
+  return make("div", {style: `--width:${Math.max(viewpoint.width, 600)}px`}, make("p", {class: "controls"}, choice), picture, legend);
 }
 
 function makeViewpoint(viewpoint) {
@@ -67,11 +65,8 @@ function makeObservers() {
   const table = makeTable("", ["observer", "counts", "viewpoint", "checks failed", "asked twice", "deviation of an answer, octaves", "above all, octaves", "time", "gamma", "distance, cm"],
     data.observers.map(o => [o.observer, o.leftOut ? "left out: " + o.leftOut : o.doubts ? "yes, but " + o.doubts : "yes", o.viewpoint, `${o.failed} of ${o.checks}`,
       String(o.repeats), showOctaves(o.repeatOctaves), showOctaves(o.shiftOctaves), showSeconds(o.seconds), show(o.gamma, 3), show(o.distanceCm, 3)]));
-  [...table.querySelectorAll("tbody tr")].forEach((row, i) => {
-    row.classList.toggle("left-out", data.observers[i].leftOut !== "");
-  });
-  wordsIn(table);
-  return make("section", {}, make("h2", {}, "Observers"), make("div", {class: "scroll"}, table));
+  [...table.tBodies[0].rows].forEach((row, i) => row.classList.toggle("left-out", data.observers[i].leftOut !== ""));
+  return make("section", {}, make("h2", {}, "Observers"), make("div", {class: "scroll"}, wordsIn(table)));
 }
 
 byId("subtitle").textContent = `${data.observers.filter(o => !o.leftOut).length} of ${data.observers.length + data.refused.length} files of answers count`;

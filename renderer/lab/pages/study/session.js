@@ -50,12 +50,5 @@ function answersOf(session) {
 
 const fileName = text => text.replace(/[^\p{L}\p{N}._-]+/gu, "_");
 
-function downloadAnswers(session) {
-  const text = JSON.stringify(answersOf(session)) + "\n";
-  const link = make("a", {href: URL.createObjectURL(new Blob([text], {type: "application/json"})),
-    download: `${fileName(study.viewpoint)}.${fileName(session.observer)}.json`});
-  document.body.append(link);
-  link.click();
-  link.remove();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
+const downloadAnswers = session => saveText(`${fileName(study.viewpoint)}.${fileName(session.observer)}.json`, "application/json",
+  JSON.stringify(answersOf(session)) + "\n");

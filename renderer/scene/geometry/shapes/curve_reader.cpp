@@ -1,5 +1,3 @@
-#include "renderer/scene/geometry/shapes/curve_reader.h"
-
 #include <fmt/format.h>
 
 #include "renderer/input/spectrum.h"

@@ -1,6 +1,6 @@
 #include "renderer/scene/geometry/shapes/curves.h"
 
-#include "renderer/scene/geometry/shapes/quadric.h"
+#include "renderer/scene/geometry/animated_transform.h"
 
 namespace lull {
 namespace {
@@ -193,7 +193,7 @@ Bounds3f Curves::WorldBounds(uint32_t primitive) const {
                                                        Lerp(u1, piece.width[0], piece.width[1])));
     bounds.lower -= half;
     bounds.upper += half;
-    return place ? TransformBounds(place->worldFromShape, bounds.lower, bounds.upper) : bounds;
+    return place ? TransformBox(place->worldFromShape, bounds) : bounds;
 }
 
 Bounds3f Curves::WorldBounds() const {

@@ -199,10 +199,7 @@ ShapeSample SampleArea(const EmittingTriangle& triangle, const Vec2f& u) {
 
 std::optional<ShapeSample> Sample(const EmittingTriangle& triangle, const Vec3f& from,
                                   const Vec2f& u) {
-    ShapeSample sample = SampleArea(triangle, u);
-    sample.pdf = SolidAnglePdf(triangle.areaPdf, from, sample.p, triangle.n);
-    if (!(sample.pdf > 0)) return {};
-    return sample;
+    return SeenFrom(from, SampleArea(triangle, u));
 }
 
 }  // namespace lull

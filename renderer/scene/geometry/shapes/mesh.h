@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/scene/geometry/shapes/shape_sample.h"
 #include "renderer/scene/interaction.h"
 
 namespace lull {

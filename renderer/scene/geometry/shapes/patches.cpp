@@ -1,8 +1,7 @@
-#include "renderer/scene/geometry/shapes/patches.h"
-
 #include <fmt/format.h>
 
 #include "renderer/base/math.h"
+#include "renderer/scene/geometry/shapes/shape_factory.h"
 
 namespace lull {
 namespace {

@@ -3,17 +3,9 @@
 #include <tuple>
 
 #include "renderer/base/sampling.h"
+#include "renderer/scene/geometry/animated_transform.h"
 
 namespace lull {
-
-Bounds3f TransformBounds(const Mat4d& m, const Vec3f& lower, const Vec3f& upper) {
-    Bounds3f bounds;
-    for (int corner = 0; corner < 8; ++corner)
-        bounds.Extend(TransformPoint(
-            m, Vec3f(corner & 1 ? upper.x() : lower.x(), corner & 2 ? upper.y() : lower.y(),
-                     corner & 4 ? upper.z() : lower.z())));
-    return bounds;
-}
 
 PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& error) {
     // Propagate the point's own error; the arithmetic is double, so only the rounding of the
@@ -22,6 +14,16 @@ PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& e
     const Vec3f propagated =
         (m.topLeftCorner<3, 3>().cwiseAbs() * error.cast<double>()).cast<float>();
     return {q, propagated + Gamma(3) * q.cwiseAbs()};
+}
+
+ShapeSample SampleAt(const QuadricPlacement& place, const Vec3f& p, const Vec3f& error,
+                     const Vec3f& n, float pdf) {
+    ShapeSample sample;
+    std::tie(sample.p, sample.pError) = TransformWithError(place.worldFromShape, p, error);
+    sample.n = TransformNormal(place.shapeFromWorld, n).normalized();
+    if (place.reverseOrientation) sample.n = -sample.n;
+    sample.pdf = pdf;
+    return sample;
 }
 
 void FinishQuadricHit(const QuadricPlacement& place, const Vec3f& pShape, const Vec3f& errorShape,
@@ -96,8 +98,8 @@ void ComputeTangents(const Sphere& sphere, const Vec3f& p, SurfaceNeeds needs,
 }  // namespace
 
 Bounds3f Sphere::WorldBounds() const {
-    return TransformBounds(place.worldFromShape, Vec3f(-radius, -radius, zMin),
-                           Vec3f(radius, radius, zMax));
+    return TransformBox(place.worldFromShape,
+                        {Vec3f(-radius, -radius, zMin), Vec3f(radius, radius, zMax)});
 }
 
 std::optional<float> Intersect(const Sphere& sphere, const Ray& worldRay) {
@@ -135,39 +137,31 @@ void Interact(const Sphere& sphere, const Ray& worldRay, const Hit& found, Surfa
 }
 
 std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const Vec2f& u) {
-    const Vec3f center = Center(sphere);
-    ShapeSample sample;
-    if (!IsWhole(sphere)) {
-        sample = SampleArea(sphere, u);
-        sample.pdf = SolidAnglePdf(1 / sphere.Area(), from, sample.p, sample.n);
-        if (!(sample.pdf > 0)) return {};
-        return sample;
-    }
+    if (!IsWhole(sphere)) return SeenFrom(from, SampleArea(sphere, u));
     if (IsInside(sphere, from)) {
         const Vec3f p = sphere.radius * SampleUniformSphere(u);
-        std::tie(sample.p, sample.pError) =
-            TransformWithError(sphere.place.worldFromShape, p, Gamma(5) * p.cwiseAbs());
-        sample.n = TransformNormal(sphere.place.shapeFromWorld, p).normalized();
-        sample.pdf = SolidAnglePdf(1 / sphere.Area(), from, sample.p, sample.n);
-    } else {
-        // Sample the cone that the sphere subtends (pbrt 3rd ed., 14.2.2, in 1 - cos, which
-        // keeps its digits for small cones).
-        const float distance = (center - from).norm();
-        const Vec3f axis = (center - from) / distance;
-        Vec3f s, t;
-        CoordinateSystem(axis, &s, &t);
-        const float sinMax = sphere.radius / distance, sin2Max = Sqr(sinMax);
-        const float oneMinusCosMax = OneMinusCosMax(sin2Max);
-        const float x = oneMinusCosMax * u.x();  // 1 - cos(theta)
-        const float sin2 = x * (2 - x);
-        const float cosAlpha = sin2 / sinMax + (1 - x) * SafeSqrt(1 - sin2 / sin2Max);
-        const float sinAlpha = SafeSqrt(1 - Sqr(cosAlpha));
-        const auto [sinPhi, cosPhi] = SineCosineOfTurn(u.y());
-        sample.n = -(sinAlpha * cosPhi * s + sinAlpha * sinPhi * t + cosAlpha * axis);
-        sample.p = center + sphere.radius * sample.n;
-        sample.pError = Gamma(5) * sample.p.cwiseAbs();
-        sample.pdf = 1 / (2 * kPi * oneMinusCosMax);
+        return SeenFrom(from,
+                        SampleAt(sphere.place, p, Gamma(5) * p.cwiseAbs(), p, 1 / sphere.Area()));
     }
+    // Sample the cone that the sphere subtends (pbrt 3rd ed., 14.2.2, in 1 - cos, which keeps its
+    // digits for small cones).
+    const Vec3f center = Center(sphere);
+    const float distance = (center - from).norm();
+    const Vec3f axis = (center - from) / distance;
+    Vec3f s, t;
+    CoordinateSystem(axis, &s, &t);
+    const float sinMax = sphere.radius / distance, sin2Max = Sqr(sinMax);
+    const float oneMinusCosMax = OneMinusCosMax(sin2Max);
+    const float x = oneMinusCosMax * u.x();  // 1 - cos(theta)
+    const float sin2 = x * (2 - x);
+    const float cosAlpha = sin2 / sinMax + (1 - x) * SafeSqrt(1 - sin2 / sin2Max);
+    const float sinAlpha = SafeSqrt(1 - Sqr(cosAlpha));
+    const auto [sinPhi, cosPhi] = SineCosineOfTurn(u.y());
+    ShapeSample sample;
+    sample.n = -(sinAlpha * cosPhi * s + sinAlpha * sinPhi * t + cosAlpha * axis);
+    sample.p = center + sphere.radius * sample.n;
+    sample.pError = Gamma(5) * sample.p.cwiseAbs();
+    sample.pdf = 1 / (2 * kPi * oneMinusCosMax);
     if (sphere.place.reverseOrientation) sample.n = -sample.n;
     if (!(sample.pdf > 0) || !std::isfinite(sample.pdf)) return {};
     return sample;
@@ -177,13 +171,7 @@ ShapeSample SampleArea(const Sphere& sphere, const Vec2f& u) {
     const float z = Lerp(u.x(), sphere.zMin, sphere.zMax), phi = u.y() * sphere.phiMax;
     const float r = SafeSqrt(Sqr(sphere.radius) - Sqr(z));
     const Vec3f p(r * std::cos(phi), r * std::sin(phi), z);
-    ShapeSample sample;
-    std::tie(sample.p, sample.pError) =
-        TransformWithError(sphere.place.worldFromShape, p, Gamma(5) * p.cwiseAbs());
-    sample.n = TransformNormal(sphere.place.shapeFromWorld, p).normalized();
-    if (sphere.place.reverseOrientation) sample.n = -sample.n;
-    sample.pdf = 1 / sphere.Area();
-    return sample;
+    return SampleAt(sphere.place, p, Gamma(5) * p.cwiseAbs(), p, 1 / sphere.Area());
 }
 
 float Pdf(const Sphere& sphere, const Vec3f& from, const Vec3f& p, const Vec3f& n) {
@@ -194,18 +182,9 @@ float Pdf(const Sphere& sphere, const Vec3f& from, const Vec3f& p, const Vec3f& 
     return std::isfinite(pdf) ? pdf : 0;
 }
 
-namespace {
-
-Vec3f SampledNormal(const Disk& disk) {
-    const Vec3f n = TransformNormal(disk.place.shapeFromWorld, Vec3f(0, 0, 1)).normalized();
-    return disk.place.reverseOrientation ? Vec3f(-n) : n;
-}
-
-}  // namespace
-
 Bounds3f Disk::WorldBounds() const {
-    return TransformBounds(place.worldFromShape, Vec3f(-radius, -radius, height),
-                           Vec3f(radius, radius, height));
+    return TransformBox(place.worldFromShape,
+                        {Vec3f(-radius, -radius, height), Vec3f(radius, radius, height)});
 }
 
 std::optional<float> Intersect(const Disk& disk, const Ray& worldRay) {
@@ -236,24 +215,17 @@ void Interact(const Disk& disk, const Ray& worldRay, const Hit& found, SurfaceNe
 
 // Under a transform that mirrors, rays find the normal on the other side than samples.
 NormalBounds Disk::Normals() const {
-    return {SampledNormal(*this), 1, place.reverseOrientation != place.flipNormals};
+    return {SampleArea(*this, Vec2f::Zero()).n, 1, place.reverseOrientation != place.flipNormals};
 }
 
 ShapeSample SampleArea(const Disk& disk, const Vec2f& u) {
     const Vec2f d = disk.radius * SampleConcentricDisk(u);
-    ShapeSample sample;
-    std::tie(sample.p, sample.pError) = TransformWithError(
-        disk.place.worldFromShape, Vec3f(d.x(), d.y(), disk.height), Vec3f::Zero());
-    sample.n = SampledNormal(disk);
-    sample.pdf = 1 / disk.Area();
-    return sample;
+    return SampleAt(disk.place, Vec3f(d.x(), d.y(), disk.height), Vec3f::Zero(), Vec3f(0, 0, 1),
+                    1 / disk.Area());
 }
 
 std::optional<ShapeSample> Sample(const Disk& disk, const Vec3f& from, const Vec2f& u) {
-    ShapeSample sample = SampleArea(disk, u);
-    sample.pdf = SolidAnglePdf(1 / disk.Area(), from, sample.p, sample.n);
-    if (!(sample.pdf > 0)) return {};
-    return sample;
+    return SeenFrom(from, SampleArea(disk, u));
 }
 
 float Pdf(const Disk& disk, const Vec3f& from, const Vec3f& p, const Vec3f& n) {

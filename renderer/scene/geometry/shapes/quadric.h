@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "renderer/scene/geometry/shapes/shape_sample.h"
 #include "renderer/scene/interaction.h"
 
 namespace lull {
@@ -56,14 +55,16 @@ ShapeSample SampleArea(const Disk&, const Vec2f& u);
 float Pdf(const Sphere&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
 float Pdf(const Disk&, const Vec3f& from, const Vec3f& p, const Vec3f& n);
 
-// Shared code of quadric.cpp and quadric.cpp.
+// Shared code of shapes in their own space.
 
 using PointWithError = std::pair<Vec3f, Vec3f>;
 
-Bounds3f TransformBounds(const Mat4d& m, const Vec3f& lower, const Vec3f& upper);
-
 // Transforms a point with absolute error bounds, and bounds the error of the result.
 PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& error);
+
+// Makes the sample of a point in shape space, with its error bounds, the normal there, and `pdf`.
+ShapeSample SampleAt(const QuadricPlacement&, const Vec3f& p, const Vec3f& error, const Vec3f& n,
+                     float pdf);
 
 // Transforms the point, the normal and, where needed, hit->dpdu ... dndv from shape space to world
 // space.

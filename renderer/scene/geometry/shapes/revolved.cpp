@@ -1,8 +1,6 @@
 #include "renderer/scene/geometry/shapes/revolved.h"
 
-#include <tuple>
-
-#include "renderer/scene/geometry/shapes/quadric.h"
+#include "renderer/scene/geometry/animated_transform.h"
 
 namespace lull {
 namespace {
@@ -146,8 +144,8 @@ bool HasArea(const Revolved& shape) {
 
 Bounds3f Revolved::WorldBounds() const {
     const auto r = float(std::sqrt(LargestRadius2(*this)));
-    return TransformBounds(place.worldFromShape, Vec3f(-r, -r, float(zMin)),
-                           Vec3f(r, r, float(zMax)));
+    return TransformBox(place.worldFromShape,
+                        {Vec3f(-r, -r, float(zMin)), Vec3f(r, r, float(zMax))});
 }
 
 float Revolved::Area() const {
@@ -221,20 +219,12 @@ ShapeSample SampleArea(const Revolved& shape, const Vec2f& u) {
     const auto z = float((1 - u.x()) * shape.zMin + u.x() * shape.zMax);
     const float phi = u.y() * shape.phiMax, radius = float(shape.start.x());
     const Vec3f p(radius * std::cos(phi), radius * std::sin(phi), z);
-    ShapeSample sample;
-    std::tie(sample.p, sample.pError) =
-        TransformWithError(shape.place.worldFromShape, p, Gamma(5) * p.cwiseAbs());
-    sample.n = TransformNormal(shape.place.shapeFromWorld, Vec3f(p.x(), p.y(), 0)).normalized();
-    if (shape.place.reverseOrientation) sample.n = -sample.n;
-    sample.pdf = 1 / shape.Area();
-    return sample;
+    return SampleAt(shape.place, p, Gamma(5) * p.cwiseAbs(), Vec3f(p.x(), p.y(), 0),
+                    1 / shape.Area());
 }
 
 std::optional<ShapeSample> Sample(const Revolved& shape, const Vec3f& from, const Vec2f& u) {
-    ShapeSample sample = SampleArea(shape, u);
-    sample.pdf = SolidAnglePdf(1 / shape.Area(), from, sample.p, sample.n);
-    if (!(sample.pdf > 0)) return {};
-    return sample;
+    return SeenFrom(from, SampleArea(shape, u));
 }
 
 float Pdf(const Revolved& shape, const Vec3f& from, const Vec3f& p, const Vec3f& n) {

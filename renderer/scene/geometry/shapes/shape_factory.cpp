@@ -6,8 +6,6 @@
 #include "renderer/input/loop_subdivision.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/input/spectrum.h"
-#include "renderer/scene/geometry/shapes/curve_reader.h"
-#include "renderer/scene/geometry/shapes/patches.h"
 #include "renderer/scene/kinds.h"
 #include "stopping/base/input_file.h"
 

@@ -3,6 +3,7 @@
 
 #include "renderer/input/description.h"
 #include "renderer/scene/geometry/shape.h"
+#include "renderer/scene/geometry/shapes/curves.h"
 #include "renderer/scene/geometry/shapes/quadric.h"
 
 namespace lull {
@@ -10,6 +11,23 @@ namespace lull {
 // Makes a shape with its material and alpha textures; its lights come later. Throws Error with
 // file and line. An empty mesh substitutes an unknown kind and a mesh that cannot be read.
 Shape MakeShape(const Description&, const ShapeEntity&, const TextureTable&, Warnings&);
+
+// Reads Shape "curve" and its further strands: Bezier curves and uniform B-splines of degree 2 and
+// 3, of type flat, cylinder or ribbon. Curves without length are skipped with a counted warning.
+// Throws Error with file and line if counts of points or normals do not fit, a number is not
+// finite, a width is negative, a name is unknown, or the curve should emit light.
+Curves ReadCurves(const ShapeEntity&, Warnings&);
+
+// Makes meshes of parametric surfaces.
+
+// Spans "nu" by "nv" heights "Pz" over the unit square, two triangles per cell. Throws Error with
+// file and line if the counts do not agree or a height is not finite.
+MeshData HeightfieldMesh(const ShapeEntity&);
+
+// Evaluates a rational B-spline surface (Piegl and Tiller 1997) at 30x30 points between "u0", "u1",
+// "v0" and "v1", as pbrt-v3 does, and joins them by triangles with the surface's normals. Throws
+// Error with file and line for orders below 2, and counts, knots or ranges that do not agree.
+MeshData NurbsMesh(const ShapeEntity&);
 
 // Places shapes that are intersected in their own space.
 

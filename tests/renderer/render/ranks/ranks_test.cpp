@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "renderer/render/ranks/rank.h"
-#include "stopping/rules/lnoise.h"
+#include "stopping/rules/baselines.h"
 #include "tests/renderer/render/ranks/shared_render.h"
 
 namespace lull::ranks_test {

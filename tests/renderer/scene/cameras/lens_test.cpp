@@ -11,7 +11,7 @@
 namespace lull {
 namespace {
 
-// Two achromats about a stop, as in tests/plugins/make.py; the focal length is about 42 mm.
+// Two achromats about a stop, as in tests/plugins/scenes/lens.dat; the focal length is about 42 mm.
 constexpr const char* kLens =
     "# radius, thickness, index, diameter\n48 5 1.52 24\n-60 1.5 1.62 24\n-170 4 1 24\n0 4 0 18\n"
     "170 1.5 1.62 22\n60 5 1.52 22\n-48 30 1 22\n";

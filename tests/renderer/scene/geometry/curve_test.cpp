@@ -4,7 +4,7 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/compile.h"
-#include "renderer/scene/geometry/shapes/curve_reader.h"
+#include "renderer/scene/geometry/shapes/shape_factory.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"

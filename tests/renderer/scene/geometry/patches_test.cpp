@@ -1,4 +1,4 @@
-#include "renderer/scene/geometry/shapes/patches.h"
+#include "renderer/scene/geometry/shapes/shape_factory.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

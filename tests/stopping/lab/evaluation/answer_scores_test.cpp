@@ -8,9 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tests/stopping/lab/recordings/channel_recordings.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/scratch_file.h"
-#include "tests/stopping/what_of.h"
 
 namespace lull::single_answers_test {
 namespace {
@@ -74,12 +73,8 @@ TEST(SingleAnswers, SayWhereAndWhatIsWrong) {
 TEST(SingleAnswers, AreToBlocksThatThereAre) {
     const auto answers = Read("block,spp,noise_seen\n15,20,1\n16,20,1\n");
     EXPECT_NO_THROW(CheckBlocks(answers, 17, "a.csv"));
-    try {
-        CheckBlocks(answers, 16, "a.csv");
-        FAIL();
-    } catch (const std::runtime_error& error) {
-        EXPECT_TRUE(std::string(error.what()).starts_with("a.csv:3: block 16")) << error.what();
-    }
+    EXPECT_TRUE(
+        WhatOf([&] { CheckBlocks(answers, 16, "a.csv"); }).starts_with("a.csv:3: block 16"));
 }
 
 }  // namespace

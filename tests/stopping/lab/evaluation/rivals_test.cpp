@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tests/stopping/lab/recordings/channel_recordings.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 
 namespace lull::rivals_test {
 namespace {
@@ -34,24 +34,23 @@ struct Blocks {
             blocks.push_back({.viewpoint = std::string(1, char('a' + i / 3)),
                               .block = i % 3,
                               .human = int(std::pow((5 + 4 * i) / 0.5, 2)),
-                              .cap = 10000,
                               .passSpp = 20,
                               .recording = &recordings[size_t(i)]});
     }
 };
 
-const Rival& Find(const std::vector<Rival>& rivals, const std::string& rule) {
-    return *std::ranges::find(rivals, rule, &Rival::rule);
+const EvaluatedRule& Find(const std::vector<EvaluatedRule>& rivals, const std::string& rule) {
+    return *std::ranges::find(rivals, rule, &EvaluatedRule::name);
 }
 
 TEST(Rivals, FindTheBestSetting) {
     const Blocks blocks;
     for (const ChooseBy chooseBy : {ChooseBy::AbsoluteError, ChooseBy::CriticalError}) {
-        const std::vector<Rival> rivals = EvaluateRivals(blocks.blocks, chooseBy, 40);
+        const std::vector<EvaluatedRule> rivals = EvaluateRivals(blocks.blocks, chooseBy, 40);
         ASSERT_EQ(rivals.size(), 5u);
-        const Rival& noise = Find(rivals, "lnoise");
+        const EvaluatedRule& noise = Find(rivals, "lnoise");
         // Three votes take 80 spp more than people, so that the best is a little above 0.5.
-        EXPECT_NEAR(std::stod(noise.bestOfAll), 0.51, 0.02);
+        EXPECT_NEAR(std::stod(noise.setting), 0.51, 0.02);
         ASSERT_EQ(noise.viewpoints.size(), 3u);
         const Scores best = Score(noise.viewpoints, {.grid = 40, .margins = {2}});
         EXPECT_EQ(best.blocks, 9);
@@ -73,18 +72,19 @@ TEST(Rivals, ChooseOnOtherViewpoints) {
     for (size_t i = 6; i < 9; ++i) blocks.blocks[i].human = 200;
     const auto after = EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40);
     for (const char* rule : {"dammertz", "luxtile", "lnoise"}) {
-        const Rival &x = Find(before, rule), &y = Find(after, rule);
+        const EvaluatedRule &x = Find(before, rule), &y = Find(after, rule);
         EXPECT_EQ(x.viewpoints[2].setting, y.viewpoints[2].setting) << rule;
-        EXPECT_NE(x.bestOfAll, y.bestOfAll) << rule;
-        EXPECT_LT(std::stod(x.bestOfAll), std::stod(y.bestOfAll)) << rule;
+        EXPECT_NE(x.setting, y.setting) << rule;
+        EXPECT_LT(std::stod(x.setting), std::stod(y.setting)) << rule;
     }
 }
 
 TEST(Rivals, TakeTheCheaperOfEqualSettings) {
     const Blocks blocks;
     // Both settings of cycles are wrong by half; the coarser comes first.
-    const Rival cycles = Find(EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40), "cycles");
-    EXPECT_EQ(std::stod(cycles.bestOfAll), kCyclesThresholds[2]);
+    const EvaluatedRule cycles =
+        Find(EvaluateRivals(blocks.blocks, ChooseBy::AbsoluteError, 40), "cycles");
+    EXPECT_EQ(std::stod(cycles.setting), kCyclesThresholds[2]);
     EXPECT_EQ(cycles.viewpoints[0].setting, "0.16");
     EXPECT_EQ(cycles.viewpoints[0].blocks[1].outcome.stop, blocks.blocks[1].human / 2);
 }

@@ -8,7 +8,7 @@
 
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule_table.h"
-#include "tests/stopping/lab/recordings/channel_recordings.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"
 #include "tests/stopping/signals/block_images.h"
@@ -17,12 +17,8 @@ namespace lull {
 namespace {
 
 LabelledBlock MakeBlock(const BlockRecording& recording, int human = 500) {
-    return {.viewpoint = "kitchen",
-            .block = 1,
-            .human = human,
-            .cap = 10000,
-            .passSpp = 20,
-            .recording = &recording};
+    return {
+        .viewpoint = "kitchen", .block = 1, .human = human, .passSpp = 20, .recording = &recording};
 }
 
 // Returns a model that takes a block for noiseless when the mean of its inputs is low.
@@ -229,14 +225,48 @@ TEST(Simulation, GroupsBlocksByViewpoint) {
     std::vector<LabelledBlock> blocks(3, MakeBlock(recording));
     blocks[0].viewpoint = "crown";
     blocks[2].human = 700;
-    const auto viewpoints = Simulate(blocks, MakeSimulator("fixed:90"), "90");
+    const auto viewpoints = Simulate(blocks, MakeSimulator("fixed:90"));
     ASSERT_EQ(viewpoints.size(), 2u);
     EXPECT_EQ(viewpoints[0].name, "crown");
-    EXPECT_EQ(viewpoints[0].setting, "90");
     EXPECT_EQ(viewpoints[0].blocks.size(), 1u);
     ASSERT_EQ(viewpoints[1].blocks.size(), 2u);
     EXPECT_EQ(viewpoints[1].blocks[1].human, 700);
     EXPECT_EQ(viewpoints[1].blocks[1].outcome.stop, 100);
+}
+
+EvaluatedRule Stopping(std::vector<RuleOutcome> outcomes) {
+    EvaluatedRule rule{.name = "rule", .viewpoints = {{.name = "attic"}}};
+    for (RuleOutcome& outcome : outcomes)
+        rule.viewpoints[0].blocks.push_back({.human = 300, .outcome = std::move(outcome)});
+    return rule;
+}
+
+TEST(TwoFigures, AreGivenWhereARecordingEndsTooEarly) {
+    const BlockRecording part = EmptyRecording(500), whole = EmptyRecording(kMostShownSpp);
+    const std::vector<LabelledBlock> blocks = {MakeBlock(part), MakeBlock(part), MakeBlock(whole)};
+    std::vector<EvaluatedRule> rules;
+    AddTwoFigures(
+        blocks, Stopping({{.stop = 500, .open = true}, {.stop = 400}, {.stop = 9000}}),
+        [] {
+            return Stopping({{.stop = 800}, {.stop = 400}, {.stop = 9000}});
+        },
+        &rules);
+    ASSERT_EQ(rules.size(), 2u);
+    EXPECT_EQ(LabelOf(rules[0]), "rule, at least");
+    EXPECT_EQ(LabelOf(rules[1]), "rule, extended");
+    for (const EvaluatedRule& rule : rules) EXPECT_EQ(Score(rule.viewpoints, {}).open, 1);
+    EXPECT_EQ(rules[0].viewpoints[0].blocks[0].outcome.stop, 500);
+    EXPECT_EQ(rules[1].viewpoints[0].blocks[0].outcome.stop, 800);
+    EXPECT_TRUE(rules[1].viewpoints[0].blocks[0].outcome.open);
+}
+
+TEST(TwoFigures, AreOneWhereAllBlocksStop) {
+    const BlockRecording part = EmptyRecording(500);
+    const std::vector<LabelledBlock> blocks = {MakeBlock(part)};
+    std::vector<EvaluatedRule> rules;
+    AddTwoFigures(blocks, Stopping({{.stop = 500}}), {}, &rules);
+    ASSERT_EQ(rules.size(), 1u);
+    EXPECT_EQ(LabelOf(rules[0]), "rule");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "stopping/lab/evaluation/simulation.h"
-#include "tests/stopping/lab/recordings/channel_recordings.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 
 namespace lull::extension_test {
 namespace {
@@ -25,12 +25,7 @@ BlockRecording CutAt(const BlockRecording& recording, int end) {
 }
 
 LabelledBlock BlockOf(const BlockRecording& recording) {
-    return {.viewpoint = "room",
-            .block = 0,
-            .human = 1000,
-            .cap = 10000,
-            .passSpp = 20,
-            .recording = &recording};
+    return {.viewpoint = "room", .block = 0, .human = 1000, .passSpp = 20, .recording = &recording};
 }
 
 TEST(Extension, GoesOnByTheLawsOfTheNumbers) {

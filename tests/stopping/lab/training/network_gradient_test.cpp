@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "stopping/base/parallel.h"
-#include "stopping/lab/training/network_weights.h"
 
 namespace lull {
 namespace {
@@ -23,8 +22,13 @@ NetworkWeights<Scalar> Cast(const NetworkWeights<float>& weights) {
     return cast;
 }
 
+struct Shape {
+    int inputs, steps;
+    std::vector<int> lstm;
+};
+
 template <typename Scalar>
-SampleBatch<Scalar> MakeBatch(const NetworkShape& shape, int count, bool drops, unsigned seed) {
+SampleBatch<Scalar> MakeBatch(const Shape& shape, int count, bool drops, unsigned seed) {
     std::mt19937 generator(seed);
     std::uniform_real_distribution<Scalar> uniform(0, 1);
     auto random = [&] { return uniform(generator); };
@@ -49,8 +53,8 @@ SampleBatch<Scalar> MakeBatch(const NetworkShape& shape, int count, bool drops, 
     return batch;
 }
 
-void CheckGradient(const NetworkShape& shape, bool drops) {
-    NetworkWeights<double> weights = Cast<double>(InitialWeights(shape, 7));
+void CheckGradient(const Shape& shape, bool drops) {
+    NetworkWeights<double> weights = Cast<double>(InitialWeights(shape.inputs, shape.lstm, 7));
     // Larger weights saturate some of the gates, whose derivative is then zero.
     for (LstmWeights<double>& l : weights.lstm) l.kernel *= 4, l.recurrent *= 4;
     const SampleBatch<double> batch = MakeBatch<double>(shape, 5, drops, 3);
@@ -82,8 +86,7 @@ TEST(NetworkGradient, AgreesWithFiniteDifferences) {
 }
 
 TEST(NetworkGradient, RunsTheNetworkAsRulesDo) {
-    const NetworkWeights<float> weights =
-        InitialWeights({.inputs = 9, .steps = 4, .lstm = {7, 5}}, 5);
+    const NetworkWeights<float> weights = InitialWeights(9, std::vector{7, 5}, 5);
     const SampleBatch<float> batch =
         MakeBatch<float>({.inputs = 9, .steps = 4, .lstm = {7, 5}}, 6, false, 2);
     const BatchResult<float> result = AddGradient<float>(weights, batch, nullptr);
@@ -102,8 +105,8 @@ TEST(NetworkGradient, RunsTheNetworkAsRulesDo) {
 
 // Large enough that products are split among threads.
 TEST(NetworkGradient, IsTheSameOnAnyNumberOfThreads) {
-    const NetworkShape shape{.inputs = 200, .steps = 2, .lstm = {256, 64}};
-    const NetworkWeights<float> weights = InitialWeights(shape, 5);
+    const Shape shape{.inputs = 200, .steps = 2, .lstm = {256, 64}};
+    const NetworkWeights<float> weights = InitialWeights(shape.inputs, shape.lstm, 5);
     const SampleBatch<float> batch = MakeBatch<float>(shape, 64, true, 2);
     std::vector<NetworkWeights<float>> gradients(3, ZerosLike(weights));
     for (int i = 0; i < 3; ++i)
@@ -116,8 +119,8 @@ TEST(NetworkGradient, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(InitialWeights, AreKeras) {
-    const NetworkWeights<float> weights =
-        InitialWeights({.inputs = 20, .steps = 3, .lstm = {40, 8}}, 1);
+    const std::vector<int> lstm = {40, 8};
+    const NetworkWeights<float> weights = InitialWeights(20, lstm, 1);
     const LstmWeights<float>& l = weights.lstm[0];
     EXPECT_EQ(l.kernel.rows(), 160);
     EXPECT_EQ(l.kernel.cols(), 20);
@@ -129,14 +132,11 @@ TEST(InitialWeights, AreKeras) {
     EXPECT_EQ(l.bias.sum(), 40);
     EXPECT_EQ(weights.dense[0].kernel.cols(), 8);
 
-    const NetworkShape shape{.inputs = 20, .steps = 3, .lstm = {40, 8}};
-    EXPECT_EQ(InitialWeights(shape, 1).lstm[1].kernel, weights.lstm[1].kernel);
-    EXPECT_NE(InitialWeights(shape, 2).lstm[1].kernel, weights.lstm[1].kernel);
+    EXPECT_EQ(InitialWeights(20, lstm, 1).lstm[1].kernel, weights.lstm[1].kernel);
+    EXPECT_NE(InitialWeights(20, lstm, 2).lstm[1].kernel, weights.lstm[1].kernel);
     for (const std::vector<int>& units : {std::vector<int>{0}, {}})
-        EXPECT_THROW(InitialWeights({.inputs = 20, .steps = 3, .lstm = units}, 1),
-                     std::invalid_argument);
-    EXPECT_THROW(InitialWeights({.inputs = 20, .steps = 3, .lstm = {16000, 16000}}, 1),
-                 std::invalid_argument);
+        EXPECT_THROW(InitialWeights(20, units, 1), std::invalid_argument);
+    EXPECT_THROW(InitialWeights(20, std::vector{16000, 16000}, 1), std::invalid_argument);
 }
 
 TEST(RmsProp, FollowsItsEquations) {

@@ -14,20 +14,9 @@ namespace {
 
 // Compares the settings in the file of a model with a preset.
 void ExpectTrainedBy(const TrainingPreset& preset, const Model& model) {
-    const ModelSettings &a = preset.settings, &b = model.settings;
-    EXPECT_EQ(a.k, b.k);
-    EXPECT_EQ(a.n, b.n);
-    EXPECT_EQ(a.m, b.m);
-    EXPECT_EQ(a.features, b.features);
-    EXPECT_EQ(a.takesMean, b.takesMean);
-    EXPECT_EQ(a.snorm, b.snorm);
-    EXPECT_EQ(a.votes, b.votes);
-    EXPECT_EQ(a.spacing, b.spacing);
-    EXPECT_EQ(a.ratio, b.ratio);
-    EXPECT_EQ(a.visibility.mask, b.visibility.mask);
-    EXPECT_EQ(a.visibility.flare, b.visibility.flare);
-    EXPECT_EQ(a.visibility.nearness, b.visibility.nearness);
-    EXPECT_EQ(a.peakLimit, b.peakLimit);
+    ModelSettings settings = model.settings;
+    settings.voteSpacing = preset.settings.voteSpacing;  // which a training sets to n
+    EXPECT_TRUE(settings == preset.settings);
 }
 
 TEST(TrainingPreset, IsThatOfTheModelThatShips) {
@@ -87,22 +76,21 @@ TEST(TrainingPlan, LeavesOutByNameOrByAFile) {
 }
 
 TEST(TrainingPlan, NeedsTheRecordingsPasses) {
-    CheckSpacing({.n = 60, .voteSpacing = 40}, 20);
-    EXPECT_THROW(CheckSpacing({.n = 30, .voteSpacing = 40}, 20), std::runtime_error);
-    EXPECT_THROW(CheckSpacing({.n = 40, .voteSpacing = 50}, 20), std::runtime_error);
+    CheckSpacing({.n = 60}, 20);
+    EXPECT_THROW(CheckSpacing({.n = 30}, 20), std::runtime_error);
 }
 
 TEST(TrainingPlan, IsRecorded) {
     const LearningData data;
     const TrainingPlan plan = data.Plan();
     const BlockSplit split = MakeSplits(plan, data.Blocks()).at(0);
-    const auto record = MakeRecord(plan, split);
+    const auto record = MakeRecord(plan, split, {}, {});
     EXPECT_EQ(record.at("version"), "test");
     EXPECT_EQ(record.at("training_blocks"), "attic: 0 1 2 3\nbarn: 0 1 2");
     EXPECT_EQ(record.at("test_blocks"), "none");
     EXPECT_EQ(record.at("learning_rate"), "0.001");
     EXPECT_NE(record.at("human").find(".csv crc32:"), std::string::npos);
-    EXPECT_EQ(MakeRecord(plan, split), record);
+    EXPECT_EQ(MakeRecord(plan, split, {}, {}), record);
 }
 
 }  // namespace

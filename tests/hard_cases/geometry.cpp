@@ -1,5 +1,5 @@
 // Scenes that are tiny, huge or far from the origin: nothing may leak, and no surface may shade
-// itself.
+// itself; and geometry that has no business to be there, but is.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ std::unique_ptr<const Scene> Box(const Placement& place) {
 // Rays from anywhere inside a closed box, a quarter of them at its edges.
 HardCaseResult WatertightBox(const HardCaseOptions& options) {
     Failures escapes;
-    const int64_t rays = options.isLong ? 100'000'000 : 1'500'000;
+    const int64_t rays = options.isLong ? 100'000'000 : 500'000;
     for (const Placement& place : kPlacements) {
         const auto scene = Box(place);
         test::Random random(options.seed + 1000 * (&place - kPlacements));
@@ -65,7 +65,7 @@ HardCaseResult WatertightBox(const HardCaseOptions& options) {
 // in its edges and corners.
 HardCaseResult WatertightPaths(const HardCaseOptions& options) {
     Failures escapes;
-    const int64_t rays = options.isLong ? 100'000'000 : 1'500'000;
+    const int64_t rays = options.isLong ? 100'000'000 : 500'000;
     for (const Placement& place : kPlacements) {
         const auto scene = Box(place);
         test::Random random(options.seed + 1000 * (&place - kPlacements));
@@ -145,16 +145,103 @@ HardCaseResult NoAcne(const HardCaseOptions& options) {
     return Worst(results);
 }
 
+constexpr const char* kHalf = "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n";
+constexpr const char* kFromAbove = "0 0 -3  0 0 0  0 1 0";
+
+// A floor cut in 2,000 slivers, each of them 1e5 times as long as wide, which fills the image.
+HardCaseResult Slivers(const HardCaseOptions& options) {
+    constexpr int kCount = 1000;
+    constexpr double kWidth = 0.2, kHalfLength = 10;
+    std::string points, indices;
+    for (int i = 0; i <= kCount; ++i) {
+        const double x = kWidth * (double(i) / kCount - 0.5);
+        points += fmt::format("{0:.9g} {1} 0 {0:.9g} {2} 0 ", x, -kHalfLength, kHalfLength);
+        if (i < kCount)
+            indices +=
+                fmt::format("{0} {1} {3} {0} {3} {2} ", 2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 3);
+    }
+    const auto scene = MakeScene({.world = kSky + std::string(kHalf) + MeshText(indices, points),
+                                  .camera = kFromAbove,
+                                  .fov = 2});
+    return CompareRadiance(*scene, 0.5, 1e-3, options.isLong ? 100'000 : 2000, options);
+}
+
+// The same floor three times, with points and lines for triangles in between.
+HardCaseResult Duplicates(const HardCaseOptions& options) {
+    const auto scene =
+        MakeScene({.world = kSky + std::string(kHalf) + FloorText(5) + FloorText(5) + FloorText(5) +
+                            MeshText("0 1 1  0 0 0  0 1 2  0 1 3", "-5 0 0  5 0 0  2 0 0  0 5 0"),
+                   .camera = kFromAbove,
+                   .fov = 20});
+    return CompareRadiance(*scene, 0.5, 1e-3, options.isLong ? 100'000 : 2000, options);
+}
+
+// A lamp in the very plane of the floor shines on nothing of it: only the sky does.
+HardCaseResult CoplanarLight(const HardCaseOptions& options) {
+    const auto scene =
+        MakeScene({.world = kSky + std::string(kHalf) + FloorText(5) +
+                            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1e6 1e6 1e6] "
+                            "\"bool twosided\" \"true\"\n" +
+                            MeshText("0 3 2 0 2 1", "2 2 0  3 2 0  3 3 0  2 3 0") + "AttributeEnd",
+                   .camera = kFromAbove,
+                   .fov = 20});
+    return CompareRadiance(*scene, 0.5, 1e-3, options.isLong ? 100'000 : 2000, options);
+}
+
+// A camera in the floor that looks up sees the sky, whichever way it is turned.
+HardCaseResult CameraOnSurface(const HardCaseOptions& options) {
+    std::vector<HardCaseResult> results;
+    for (const char* camera : {"0 0 0  0 0 -1  0 1 0", "1 1 0  0.5 0 -1  0 1 0"}) {
+        const auto scene = MakeScene(
+            {.world = kSky + std::string(kHalf) + FloorText(5), .camera = camera, .fov = 30});
+        results.push_back(CompareRadiance(*scene, 1, 0, options.isLong ? 10'000 : 100, options));
+    }
+    return Worst(results);
+}
+
+// Radiance within glass is index^2 of that outside. From the centre all rays meet it upright.
+HardCaseResult CameraInGlass(const HardCaseOptions& options) {
+    const auto scene = MakeScene(
+        {.world = kSky + std::string("Material \"glass\" \"float eta\" [1.5]\nShape \"sphere\""),
+         .camera = "0 0 0  0.2 0.3 1  0 1 0",
+         .fov = 60,
+         .integrator = "\"integer maxdepth\" [100]"});
+    return CompareRadiance(*scene, 2.25, 1e-5, options.isLong ? 10'000 : 200, options);
+}
+
+// A mesh of nothing but triangles without area, beside a floor.
+HardCaseResult NothingButDegenerate(const HardCaseOptions& options) {
+    const auto scene =
+        MakeScene({.world = kSky + std::string(kHalf) + FloorText(5) +
+                            "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\n" +
+                            MeshText("0 1 1  0 0 0  0 1 2", "-5 0 -1  5 0 -1  2 0 -1"),
+                   .camera = kFromAbove,
+                   .fov = 20});
+    return CompareRadiance(*scene, 0.5, 1e-3, options.isLong ? 100'000 : 2000, options);
+}
+
 }  // namespace
 
-std::vector<HardCase> ScaleCases() {
+std::vector<HardCase> GeometryCases() {
     return {{"scale", "closed box, scales 1e-4 to 1e6, offsets to 1e5",
              "rays slip through between two triangles", WatertightBox},
             {"scale", "paths inside the same boxes",
              "rays that start in an edge leave through the other wall", WatertightPaths},
             {"scale", "closed room under a sky of 1e6", "light leaks along edges", NoLeaks},
             {"scale", "matte ball of triangles under an even sky",
-             "acne: offsets that are right at one scale only", NoAcne}};
+             "acne: offsets that are right at one scale only", NoAcne},
+            {"degenerate", "floor of slivers 1e5 times as long as wide",
+             "normals and offsets of slivers are noise", Slivers},
+            {"degenerate", "the same floor three times, points and lines as triangles",
+             "surfaces at one place shade each other; NaN normals", Duplicates},
+            {"degenerate", "lamp of 1e6 in the plane of the floor", "0/0 where the cosine is zero",
+             CoplanarLight},
+            {"degenerate", "lamp all of whose triangles have no area",
+             "infinite densities; a light that cannot be sampled", NothingButDegenerate},
+            {"degenerate", "camera exactly on a surface",
+             "the first ray hits the surface it starts on", CameraOnSurface},
+            {"degenerate", "camera in the centre of a glass ball",
+             "which side is inside is guessed from the camera", CameraInGlass}};
 }
 
 }  // namespace lull

@@ -1,5 +1,3 @@
-#include "stopping/base/hdf5_heaps.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -59,6 +57,12 @@ TEST(GlobalHeaps, HaveObjectsThatEnd) {
         std::ofstream(file.path, std::ios::binary) << good.substr(0, size);
         EXPECT_NE(TextIn(file.path), "thirteen more");
     }
+}
+
+TEST(Hdf5Group, SaysWhyAFileCannotBeOpened) {
+    EXPECT_EQ(TextIn("/nowhere/x.h5"), "cannot open it: No such file or directory");
+    const ScratchFile text(".h5", "this is no HDF5 file");
+    EXPECT_EQ(TextIn(text.path), "cannot open it as HDF5");
 }
 
 }  // namespace
