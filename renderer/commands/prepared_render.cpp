@@ -49,7 +49,7 @@ void PrepareRule(PreparedRender* p) {
         throw UsageError(fmt::format(
             "--graded-by: {} does not judge the image; choose a rule that does", p->rule.text));
     schedule.smallestSide = p->rule.smallestSide;
-    p->blocks = MakeBlocks(p->input.region, schedule);
+    p->blocks = MakeBlocks(p->region, schedule);
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
 }
 
@@ -152,12 +152,12 @@ int64_t BytesBeside(const RenderRequest& request) {
 
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks) {
     auto p = std::make_unique<PreparedRender>(request, StartClock(request), ranks);
-    const PixelRect& region = p->input.region;
+    const PixelRect& region = p->region;
     PrepareRule(p.get());
-    CheckBlocks(p->blocks, p->settings.schedule.smallestSide, p->input.warnings);
+    CheckBlocks(p->blocks, p->settings.schedule.smallestSide, p->warnings);
     p->film = FilmOf(*p);
     CheckFilmFits(region, p->film, BytesBeside(request));
-    p->files = NameFilesOf(request, p->input.film);
+    p->files = NameFilesOf(request, p->filmSettings);
     std::vector<NamedFile> inputs;
     AddFileOfRule(p->rule.text, &inputs);
     p->CheckFiles(OutputsOf(p->files), std::move(inputs));
@@ -165,7 +165,7 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     p->display = MakeDisplay(request, std::filesystem::path(p->files.exr).filename(), region,
                              ranks->Count());
     p->Compile();
-    p->film.layers.groups = ChooseLightGroups(request.lightGroups, p->input.description, *p->scene);
+    p->film.layers.groups = ChooseLightGroups(request.lightGroups, p->description, *p->scene);
     CheckFilmFits(region, FilmFor(*p->scene, p->film), BytesBeside(request));
     SetProvenance(*p, &p->provenance);
     p->histories.resize(p->blocks.size());

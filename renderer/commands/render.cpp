@@ -48,12 +48,12 @@ void AddListeners(const PreparedRender& p, RenderEvents* events) {
     const Messages messages = MessagesOf(p.settings);
     if (p.clock)
         events->onProgress =
-            WarnOfFirstSamples(p.input.region.Area(), messages, std::move(events->onProgress));
+            WarnOfFirstSamples(p.region.Area(), messages, std::move(events->onProgress));
     const RenderRequest& request = p.request;
     const bool isDefault = !p.clock && !request.denoise && !request.stop && !request.spp;
     if (isDefault && !p.settings.quiet)
         events->onProgress =
-            AdviseDenoising(p.input.region.Area(), messages, std::move(events->onProgress));
+            AdviseDenoising(p.region.Area(), messages, std::move(events->onProgress));
     if (messages.isJson) events->onStop = StopEvents(p.rule.trend.kind);
 }
 
@@ -145,7 +145,7 @@ struct DenoiserResults {
 // Denoises each eye of a pair by itself, so that neither sees the other at the seam.
 DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const ProgressStyle& style,
                           const DenoiserOptions& how) {
-    const PixelRect& region = p.input.region;
+    const PixelRect& region = p.region;
     const Vec2i across(region.Width() / 2, 0);
     const PixelRect left{region.min, region.max - across};
     const size_t count = p.blocks.size() / 2;
@@ -164,7 +164,7 @@ DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const Progr
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
     const RenderSettings& settings = p.settings;
-    const PixelRect& region = p.input.region;
+    const PixelRect& region = p.region;
     Film& film = session->GetFilm();
     DenoiserResults made;
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
@@ -175,7 +175,7 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     const auto start = std::chrono::steady_clock::now();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
     if (p.request.denoise)
-        made.image = p.input.film.isPair                   ? DenoisePair(p, film, style, how)
+        made.image = p.filmSettings.isPair                 ? DenoisePair(p, film, style, how)
                      : film.layers.Find<LightGroupLayer>() ? denoise(TakeGroups(&film))
                                                            : denoise(TakePicture(&film));
     film.layers.ForgetFeatures();  // what follows needs the memory
@@ -202,8 +202,8 @@ ResultFiles WriteFiles(PreparedRender& p, const Film& film, const RenderResult& 
     const RenderFiles& files = p.files;
     const PictureOrigin origin{*p.scene, p.provenance};
     const Provenance& provenance = p.provenance;
-    const Description& description = p.input.description;
-    Warnings& warnings = p.input.warnings;
+    const Description& description = p.description;
+    Warnings& warnings = p.warnings;
     const DenoisedImage* denoised = made.image ? &*made.image : nullptr;
     LayerChannels layers =
         ChannelsOf({film, denoised, p.request.pictures.isTransparent,
@@ -264,8 +264,7 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
 ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();
-    PrintPath(*request.pixel, request.sample, render.settings, render.input.description,
-              *render.scene);
+    PrintPath(*request.pixel, request.sample, render.settings, render.description, *render.scene);
     return kDone;
 }
 
@@ -276,7 +275,7 @@ ExitCode RunImage(const RenderRequest& request, MpiJob* ranks, const std::string
     if (request.frameNumber > 0 && checkpoint.resume && !IsThere(checkpoint.file) && IsFinished(*p))
         return kDone;
     if (!note.empty()) MessagesOf(request.render).Note(note);
-    Session session(*p->scene, p->input.region, MakeOptions(p.get()));
+    Session session(*p->scene, p->region, MakeOptions(p.get()));
     const RenderResult result = RenderPrepared(p.get(), &session);
     ranks->End();
     return p->Leads() ? Write(*p, result, &session) : kDone;

@@ -70,9 +70,13 @@ extern "C" void OnSignal(int signal) {
 RenderJob::RenderJob(const RenderSettings& given, MpiJob* ranks, bool withHalf)
     : settings(given),
       ranks(ranks),
-      input(settings.scene, {.grid = GridOf(settings.schedule), .withHalf = withHalf},
-            MessagesOf(settings)) {
-    if (input.film.isPair) settings.schedule.eyeWidth = input.film.Size().x();
+      warnings(MakePrintedWarnings(settings.scene, MessagesOf(settings))),
+      description(LoadDescription(settings.scene, warnings)) {
+    Warnings unheard;  // those of the film come when the scene is compiled
+    filmSettings = MakeFilmSettings(description, settings.scene.compile.film, unheard);
+    region = filmSettings.Region();
+    CheckFilmFits(region, {.grid = GridOf(settings.schedule), .withHalf = withHalf});
+    if (filmSettings.isPair) settings.schedule.eyeWidth = filmSettings.Size().x();
 }
 
 bool RenderJob::Leads() const { return !ranks || ranks->Rank() == 0; }
@@ -83,7 +87,7 @@ void RenderJob::CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile
     outputs.push_back({checkpoint.isImplied ? "the checkpoint" : "--checkpoint", checkpoint.file});
     inputs.push_back({"the scene", settings.scene.file});
     inputs.push_back({"--environment", settings.scene.environment});
-    for (const std::string& file : FilesOf(input.description))
+    for (const std::string& file : FilesOf(description))
         inputs.push_back({"a file of the scene", file});
     CheckOutputs(outputs, inputs);
     if (checkpoint.file.empty()) return;
@@ -100,7 +104,7 @@ void RenderJob::LockResults(const std::string& output) {
 }
 
 void RenderJob::DenoiseBlocks() {
-    denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(input.region, settings.schedule));
+    denoiser = std::make_shared<BlockDenoiser>(MakeBlocks(region, settings.schedule));
 }
 
 void RenderJob::CheckSampler() const {
@@ -120,7 +124,7 @@ Rule RenderJob::ReadRule(const std::string& option, const std::string& rule,
             ": needs --denoise of lull render; lull compare --denoise adds a denoised image");
     const ScheduleOptions& schedule = settings.schedule;
     return ParseRule(rule, {.passSpp = schedule.passLength,
-                            .blockCount = int(MakeBlocks(input.region, schedule).size()),
+                            .blockCount = int(MakeBlocks(region, schedule).size()),
                             .cap = schedule.cap,
                             .sceneName = SceneName(settings.scene.file),
                             .models = ModelFolder(),
@@ -134,8 +138,8 @@ void RenderJob::Compile() {
     CompileOptions options = settings.scene.compile;
     // Lights are chosen by pbrt-v3's tables, however many there are.
     options.lightsAsPbrtV3 = settings.estimator == Estimator::PbrtV3;
-    scene = lull::Compile(input.description, options, input.warnings);
-    input.warnings.Summarize();
+    scene = lull::Compile(description, options, warnings);
+    warnings.Summarize();
     MoveIntoLargePages();
     const bool isChosen = !settings.scene.integrator.empty();
     if (isChosen && TracesFromLights(scene->integrator) && settings.estimator == Estimator::PbrtV3)
@@ -157,12 +161,12 @@ void RenderJob::Compile() {
                                     : NameOf(scene->integrator, scene->isVolumetric),
                   .threads = settings.scene.compile.threads,
                   .substitute = settings.scene.substitute,
-                  .resolution = input.film.resolution,
-                  .crop = input.region};
+                  .resolution = filmSettings.resolution,
+                  .crop = region};
 }
 
 RenderIdentity RenderJob::Identity() const {
-    return IdentityOf(provenance, SceneHash(input.description));
+    return IdentityOf(provenance, SceneHash(description));
 }
 
 SessionOptions RenderJob::MakeSessionOptions(bool adaptive, bool isShared) const {

@@ -4,7 +4,7 @@
 //     RenderJob render(settings, ranks);
 //     render.CheckFiles({{"-o", output}});
 //     render.Compile();
-//     Session session(*render.scene, render.input.region, render.MakeSessionOptions(false));
+//     Session session(*render.scene, render.region, render.MakeSessionOptions(false));
 //     const RenderResult result = render.Run(&session);
 //     if (const auto code = render.End(result.cancelled)) return *code;
 //     ...  // writes the results
@@ -65,7 +65,11 @@ class RenderJob {
 
     RenderSettings settings;
     MpiJob* const ranks;
-    SceneInput input;
+    // The scene as it was read, its film as the options change it, and the crop of that.
+    Warnings warnings;  // printed as they occur
+    Description description;
+    FilmSettings filmSettings;
+    PixelRect region;
     std::unique_ptr<const Scene> scene;  // null before Compile()
     Provenance provenance;
     std::shared_ptr<BlockDenoiser> denoiser;  // null: blocks are not denoised

@@ -64,12 +64,6 @@ bool ParseStereo(const std::string& text, std::vector<float>* stereo) {
     return true;
 }
 
-// The film's warnings come when the scene is compiled.
-FilmSettings SilentFilmSettings(const Description& description, const SceneOptions& options) {
-    Warnings unheard;
-    return MakeFilmSettings(description, options.compile.film, unheard);
-}
-
 void AddGltfOptions(CLI::App& app, GltfOptions* view) {
     auto* camera = AddOption(app, "Scene", "--camera", &view->camera,
                              "glTF: choose the camera, by name or number from 0 [0]", "NAME|N");
@@ -172,15 +166,6 @@ std::string DefaultOutput(const std::string& filename, const std::string& scene)
     const std::filesystem::path given = filename;
     if (!given.stem().empty() && given.stem() != "scene") return filename;
     return std::filesystem::path(given).replace_filename(SceneName(scene) + ".exr").string();
-}
-
-SceneInput::SceneInput(const SceneOptions& options, const FilmOptions& filmOptions,
-                       const Messages& messages)
-    : warnings(MakePrintedWarnings(options, messages)),
-      description(LoadDescription(options, warnings)),
-      film(SilentFilmSettings(description, options)),
-      region(film.Region()) {
-    CheckFilmFits(region, filmOptions);
 }
 
 SamplerKind DefaultSampler(Estimator estimator, const Scene& scene) {

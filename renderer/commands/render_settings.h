@@ -42,18 +42,6 @@ Description LoadDescription(const SceneOptions&, Warnings&);
 // the scene if that is empty or "scene", as of many scenes.
 std::string DefaultOutput(const std::string& filename, const std::string& scene);
 
-// A scene that has been read, and its film as the options change it, before it is compiled,
-// which will give the film's warnings.
-struct SceneInput {
-    // Throws Error, also if the memory cannot hold such a film.
-    explicit SceneInput(const SceneOptions&, const FilmOptions& = {}, const Messages& = {});
-
-    Warnings warnings;  // printed as they occur
-    Description description;
-    FilmSettings film;
-    PixelRect region;  // the film's crop
-};
-
 // Returns the sampler where neither user nor command name one: that of least noise with independent
 // halves, from which noise is estimated; with pbrt-v3's noise, the scene's.
 SamplerKind DefaultSampler(Estimator, const Scene&);

@@ -47,3 +47,79 @@ function startPage(kind, sentence, facts, parts) {
   if (data.blocks.length && layers.length) chooseBlock(hardestBlock(data));
   dispatchEvent(new Event("resize"));  // now that the page has its height, and so its width
 }
+
+// The figures and curves of a block, and the tables.
+
+const blockEnds = {stopped: "clean: stopped by the rule", cap: "at the cap, still noisy", interrupted: "interrupted", time: "out of time"};
+
+function showBlock(data, i) {
+  const block = data.blocks[i];
+  byId("block").hidden = false;
+  byId("block-title").textContent = `Block ${i} (${block.width}\u00d7${block.height} pixels at ${block.x}, ${block.y})`;
+  byId("curves-title").textContent = `Curves of block ${i}`;
+  const images = data.images.filter(m => m.blocks && m.blocks[i]);
+  const rows = [];
+  const add = (label, has, text) => { if (images.some(m => has(m.blocks[i]))) rows.push([label, ...images.map(m => has(m.blocks[i]) ? text(m.blocks[i]) : "\u2013")]); };
+  add("samples per pixel", b => isNumber(b.spp), b => showCount(b.spp));
+  add("CPU time", b => b.seconds > 0, b => (b.estimated ? "~" : "") + showSeconds(b.seconds));
+  add("CPU time of the rule", b => b.ruleSeconds > 0, b => showSeconds(b.ruleSeconds));
+  if (page.blockRows) page.blockRows(i, images, add, rows);
+  if (block.end) rows.push(["end", blockEnds[block.end]]);
+  if (isNumber(block.visibleNoise)) rows.push(["masked noise, L*", block.visibleNoise.toFixed(2)]);
+  const error = block.visibleDifference;
+  if (error) rows.push(["visible difference, denoised", `${error.estimate.toFixed(1)}, upper bound ${error.upper.toFixed(1)}`]);
+  if (error && error.worstPixels) rows.push(["worst pixels, not in it", `${showCount(error.worstPixels)}, by up to ${error.worst.toFixed(0)} in L*`]);
+  if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["estimated stop", `${showCount(block.neededSpp)} spp`]);
+  if (isNumber(block.neededSeconds)) rows.push(["missing CPU time (estimate)", `~${showSeconds(block.neededSeconds)}`]);
+  byId("block-facts").replaceChildren(makeTable("", images.length > 1 ? ["", ...images.map(m => m.name)] : null, rows));
+
+  const lines = data.images.filter(m => m.blocks && m.blocks[i] && m.name !== data.reference && isNumber(m.blocks[i].spp))
+    .map((m, k) => ({x: m.blocks[i].spp, label: m.name, colour: palette[k === 0 ? 1 : 2]}));
+  const parent = byId("block-charts");
+  parent.replaceChildren();
+  const rule = (data.provenance || {}).criterion || "";
+  if (block.decisions && !/^(fixed|thresholds)/.test(rule)) {  // those only count
+    const d = block.decisions, learned = /^learned/.test(rule);
+    drawChart(parent, [
+      {label: learned ? "P(noisy)" : "value", x: d.spp, y: d.value, colour: palette[0], mark: 0},
+      {label: "threshold", x: d.spp, y: d.spp.map(() => d.threshold), dash: [2, 4]}
+    ], {title: learned ? "Probability that an observer sees noise" : `Value of the stopping rule (${rule})`,
+        xLabel: "samples per pixel", yLabel: learned ? "probability" : "value", logY: !learned, yRange: learned ? [0, 1] : null, lines});
+  }
+  if (block.curves && block.curves.spp.length) {
+    const c = block.curves;
+    drawChart(parent, [{label: "noise", x: c.spp, y: c.noise, colour: palette[1], mark: 1}],
+      {title: "Masked noise, L*", xLabel: "samples per pixel", yLabel: "noise, L*", logY: true, lines});
+    const low = Math.min(...c.entropy), high = Math.max(...c.entropy), room = Math.max(0.002, 0.1 * (high - low));
+    drawChart(parent, [{label: "entropy", x: c.spp, y: c.entropy, colour: palette[2], mark: 2}],
+      {title: "SVD-entropy, mean of 100 sub-blocks", xLabel: "samples per pixel", yLabel: "entropy", yRange: [low - room, high + room], lines});
+  }
+  byId("curves").hidden = !parent.children.length;
+}
+
+function showBlocksTable(data) {
+  const images = data.images.filter(i => i.blocks && i.blocks.length && i.name !== data.reference);
+  if (!data.blocks.length || !images.length) return;
+  byId("blocks").hidden = false;
+  const head = ["block"], cells = [];
+  for (const image of images) {
+    head.push(page.sppHead(image));
+    cells.push(i => showCount(image.blocks[i].spp));
+    if (image.blocks[0].seconds > 0) { head.push("CPU time, s"); cells.push(i => (image.blocks[i].estimated ? "~" : "") + show(image.blocks[i].seconds, 3)); }
+    if (page.blockColumns) page.blockColumns(image, head, cells);
+  }
+  if (page.lastColumns) page.lastColumns(head, cells);
+  if (data.blocks[0].end) { head.push("end"); cells.push(i => blockEnds[data.blocks[i].end].split(/[:,]/)[0]); }
+  const table = makeTable("", head, data.blocks.map((b, i) => [String(i), ...cells.map(c => c(i))]));
+  [...table.tBodies[0].rows].forEach((row, i) => row.addEventListener("click", () => chooseBlock(i)));
+  byId("blocks-table").append(withCsv(table, "blocks"));
+}
+
+function showProvenance(data) {
+  byId("notes").append(...(data.notes || []).map(n => make("li", {}, n)),
+    ...Object.entries(data.warnings || {}).map(([kind, count]) => make("li", {}, `Warning, ${count} times: ${kind}`)));
+  const rows = Object.entries(data.provenance || {}).filter(([, v]) => v !== "").map(([k, v]) =>
+    [k, v && typeof v === "object" ? Object.entries(v).map(([a, b]) => Array.isArray(v) ? b : `${a} ${b}`).join(", ") : String(v)]);
+  if (rows.length) byId("provenance-table").replaceChildren(makeTable("", null, rows).querySelector("tbody"));
+  byId("provenance").hidden = !rows.length && !byId("notes").children.length;
+}

@@ -102,7 +102,9 @@ void Session::Preview(double seconds, std::function<void(const RenderResult&)> s
 RenderResult Session::Run(const RenderFunction& render) {
     const RenderEvents& events = options.render.events;
     Display* display = options.render.display;
-    SetSource();
+    PathOptions paths = options.estimator;
+    paths.throughSpecular = options.film.layers.ThroughSpecular();
+    context.source = SamplesOf(scene, paths, lightRounds.get());
     SetClock();
     KeepCheckpoints();
     const Peers* peers = options.render.peers;
@@ -126,30 +128,22 @@ void Session::SetClock() {
     context.secondsLeft = [clock = options.clock, reserve] { return clock() - reserve; };
 }
 
-void Session::SetSource() {
-    PathOptions paths = options.estimator;
-    paths.throughSpecular = options.film.layers.ThroughSpecular();
-    context.source = SamplesOf(scene, paths, lightRounds.get());
-}
-
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the
-// render.
+// render. The same warning is not repeated: a disk stays full for more than one attempt.
 void Session::KeepCheckpoints() {
     if (options.checkpoint.file.empty()) return;
-    context.checkpoints = {[this, said = std::string()](const RenderState& state) mutable {
-                               said = TryToWrite(state, said);
-                           },
-                           options.checkpoint.interval, options.checkpoint.isKept};
-}
-
-// Warns of a checkpoint that could not be written, and returns the warning; "" if it was. The
-// warning `said` is not repeated: a disk stays full for more than one attempt.
-std::string Session::TryToWrite(const RenderState& state, const std::string& said) try {
-    WriteCheckpoint(options.checkpoint.file, options.identity, state, film);
-    return "";
-} catch (const Error& e) {
-    if (e.what() != said) Tell(options.render.events.onWarning, "no checkpoint: {}", e.what());
-    return e.what();
+    const auto write = [this, said = std::string()](const RenderState& state) mutable {
+        std::string problem;
+        try {
+            WriteCheckpoint(options.checkpoint.file, options.identity, state, film);
+        } catch (const Error& e) {
+            problem = e.what();
+            if (problem != said)
+                Tell(options.render.events.onWarning, "no checkpoint: {}", problem);
+        }
+        said = problem;
+    };
+    context.checkpoints = {write, options.checkpoint.interval, options.checkpoint.isKept};
 }
 
 }  // namespace lull

@@ -73,10 +73,8 @@ class Session {
     const RenderOptions& Options() const { return options.render; }
 
   private:
-    void SetSource();
     void SetClock();
     void KeepCheckpoints();
-    std::string TryToWrite(const RenderState&, const std::string& said);
 
     const Scene& scene;
     const PixelRect region;

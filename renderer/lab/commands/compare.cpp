@@ -114,7 +114,7 @@ void AddOtherRules(Compared* compared) {
         compared->humanChecksum = human.checksum;
     }
     if (!options.denoise) return;
-    CheckFilmFits(compared->render.input.region, {.layers = {.features = true}});
+    CheckFilmFits(compared->render.region, {.layers = {.features = true}});
     compared->render.DenoiseBlocks();
     compared->rules.push_back(
         MakeRule("denoised", compared->render.ReadRule("--denoise", kDenoisedRuleName)));
@@ -131,7 +131,7 @@ void AddCurveRules(Compared* compared) {
 std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) {
     auto compared = std::make_unique<Compared>(options, ranks);
     RenderJob& render = compared->render;
-    const PixelRect& region = render.input.region;
+    const PixelRect& region = render.region;
     const Rule automatic = render.ReadRule("--stop", options.rule);
     compared->rules.push_back(MakeRule("automatic", automatic));
     AddOtherRules(compared.get());
@@ -160,7 +160,7 @@ SessionOptions MakeOptions(Compared* compared) {
     const bool hasPage = !options.report.empty();
     SessionOptions how = compared->render.MakeSessionOptions(!options.snapshots);
     how.render.makeCriterion = MakeMonitors(
-        compared->rules, compared->render.input.region, options.render.schedule,
+        compared->rules, compared->render.region, options.render.schedule,
         {.snapshots = true, .noise = true, .curves = hasPage, .goesOn = options.snapshots},
         &compared->report.histories);
     how.film.layers.features = options.denoise;
@@ -180,7 +180,7 @@ Verification Verify(const Compared& compared, int threads, const ComparedImage& 
     how.render.threads = threads;
     how.render.makeCriterion = compared.rules.front().make;
     if (!render.settings.quiet) MessagesOf(render.settings).Note("the automatic image by itself");
-    Session session(*render.scene, render.input.region, how);
+    Session session(*render.scene, render.region, how);
     const RenderResult result = session.Run();
     return VerificationOf(result, session.GetFilm(), expected);
 }
@@ -250,7 +250,7 @@ void WriteResults(const RenderResult& result, Compared* compared) {
     ComparisonReport& report = compared->report;
     report.provenance = render.provenance;
     report.decisions = result.blocks;
-    report.warnings = render.input.warnings.Counts();
+    report.warnings = render.warnings.Counts();
     report.title = SceneName(render.settings.scene.file);
     if (options.snapshots)
         report.notes.push_back(
@@ -271,7 +271,7 @@ ExitCode CompareRenders(CompareOptions options, MpiJob* ranks) {
     options.output = BeginningOfNames(options.output, SceneName(settings.scene.file));
     const std::unique_ptr<Compared> compared = Prepare(options, ranks);
     const RenderJob& render = compared->render;
-    Session session(*render.scene, render.input.region, MakeOptions(compared.get()));
+    Session session(*render.scene, render.region, MakeOptions(compared.get()));
     const RenderResult result = render.Run(&session);
     if (const auto code = render.End(result.cancelled)) return *code;
 

@@ -152,7 +152,7 @@ ExitCode Run(Options options, MpiJob* ranks) {
                                checkpoint.interval);
     RenderJob render(options.render, ranks);
     const ScheduleOptions& schedule = render.settings.schedule;
-    const std::vector<Block> blocks = MakeBlocks(render.input.region, schedule);
+    const std::vector<Block> blocks = MakeBlocks(render.region, schedule);
     render.CheckFiles({{"-o", options.output}}, {{"--human", options.human}});
     CheckRecordable(blocks, schedule);
     std::vector<ViewpointRecording> dataset = ReadDatasetIfThere(options.output);
@@ -170,7 +170,7 @@ ExitCode Run(Options options, MpiJob* ranks) {
     ViewpointRecording viewpoint =
         MakeViewpoint(options.name, schedule, how.identity, blocks.size());
     AddToDataset(viewpoint, &dataset);  // says now whether it does not fit
-    Session session(*render.scene, render.input.region, how);
+    Session session(*render.scene, render.region, how);
     const RenderResult result = render.Run(
         &session, [&](const auto&... how) { return RecordBlocks(how..., limits, &viewpoint); });
     if (const auto code = render.End(result.cancelled)) return *code;

@@ -190,7 +190,7 @@ ExitCode MakeStudyOfScene(Options options) {
         ResumeIfThere(options.output + ".checkpoint", settings.checkpoint.interval);
     RenderJob render(settings, nullptr);
     const ScheduleOptions& schedule = settings.schedule;
-    const PixelRect& region = render.input.region;
+    const PixelRect& region = render.region;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
     const std::vector<int> levels = LevelsOf(options, schedule, region);
     render.CheckFiles({{"-o", options.output}, {"--record", options.record}});
