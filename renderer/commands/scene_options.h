@@ -7,7 +7,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 
 namespace lull {
 

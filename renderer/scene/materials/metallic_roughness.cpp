@@ -1,7 +1,7 @@
 #include "renderer/scene/materials/metallic_roughness.h"
 
 #include "renderer/base/math.h"
-#include "renderer/bsdf/directional_albedo.h"
+#include "renderer/bsdf/layered_lobes.h"
 #include "renderer/scene/materials/basic.h"
 
 namespace lull {
