@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "renderer/scene/materials/fourier.h"
+#include "renderer/scene/materials/basic.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
