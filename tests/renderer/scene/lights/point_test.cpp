@@ -12,6 +12,8 @@
 namespace lull::emission_profile_test {
 namespace {
 
+using test::Random;
+
 double FalloffAt(const Spread& spread, double theta) {
     const Vec3f w(float(std::sin(theta)), 0, float(std::cos(theta)));
     return double(Falloff(spread, Vec3f::UnitZ(), w));
@@ -62,14 +64,6 @@ TEST(EmissionProfile, RefusesOtherAngles) {
         EXPECT_TRUE(Contains(error, "above 0 and at most 180 degrees")) << bad << error;
     }
 }
-
-}  // namespace
-}  // namespace lull::emission_profile_test
-
-namespace lull {
-namespace {
-
-using test::Random;
 
 // From afar a small sphere shines as the spot light at its centre does.
 TEST(Lights, SpotsWithARadiusShineAsSpots) {
@@ -210,4 +204,4 @@ TEST(ImageLights, RefuseWhatTheyCannotRead) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::emission_profile_test
