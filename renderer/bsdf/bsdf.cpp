@@ -31,7 +31,37 @@ bool KeepsSide(bool reflects, bool sameHemisphere) {
         return IsTwoSided<L>() || reflects != L::kTransmits;
 }
 
+template <typename L>
+void Scale(L* lobe, const Rgb& s) {
+    if constexpr (requires { lobe->scale; }) {
+        lobe->scale *= s;
+    } else {
+        if constexpr (requires { lobe->r; }) lobe->r *= s;
+        if constexpr (requires { lobe->t; }) lobe->t *= s;
+    }
+}
+void Scale(std::monostate*, const Rgb&) {}
+
 }  // namespace
+
+Lobe Scaled(const Lobe& lobe, const Rgb& scale) {
+    Lobe scaled = lobe;
+    Visit(scaled, [&](auto& l) { Scale(&l, scale); });
+    return scaled;
+}
+
+float EstimatedAlbedo(const Lobe& lobe, const Vec3f& wo) {
+    return VisitLobe(lobe, LobeAlbedo<float>(wo));
+}
+
+void ChoosePartsByShare(const Vec3f& wo, float least, Lobe* lobe) {
+    FresnelBlend* blend = std::get_if<FresnelBlend>(lobe);
+    if (!blend) return;
+    const LobeAlbedo<float> albedo(wo);
+    const float diffuse = albedo.OfDiffuse(*blend), glossy = albedo.OfGlossy(*blend);
+    const float share = glossy / (diffuse + glossy);
+    if (share >= 0) blend->glossyShare = std::clamp(share, least, 1 - least);
+}
 
 bool Bsdf::Transmits() const {
     for (int i = 0; i < lobeCount; ++i)
@@ -244,7 +274,7 @@ Rgb AlbedoOf(const Bsdf& bsdf, const Vec3f& woWorld) {
     Rgb sum = Rgb::Zero();
     if (wo.z() == 0) return sum;
     for (int i = 0; i < bsdf.LobeCount(LobeSet::All); ++i)
-        sum += VisitLobe(bsdf.At(i), [&](const auto& lobe) { return Albedo(lobe, wo, ToColor{}); });
+        sum += VisitLobe(bsdf.At(i), LobeAlbedo<Rgb>(wo));
     for (float& c : sum) c = c > 0 ? std::min(c, 1.f) : 0;
     return sum;
 }

@@ -141,8 +141,6 @@ class Bsdf {
     };
 };
 
-// Computes the colour of a surface, whatever the light.
-
 // Estimates the share of uniform light that is scattered to wo (world, unit), per channel in [0,
 // 1]: as EstimatedAlbedo() does, for all lobes together. Denoisers use it as albedo.
 Rgb AlbedoOf(const Bsdf& bsdf, const Vec3f& wo);

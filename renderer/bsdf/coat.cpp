@@ -29,103 +29,13 @@ Vec3f LatticePoint(int i) {
             fraction(0.5 + 0.5497004779019703 * i)};
 }
 
-}  // namespace
-
-float CoatRow::Through(float cosine) const {
-    if (isSmooth)
-        return (1 - FresnelDielectric(cosine, eta)) *
-               std::exp(-thickness / CosineInside(cosine, eta));
-    const float first = CosineAt(1);
-    if (cosine < first) return through[0] + cosine / first * (through[1] - through[0]);
-    const float x = std::min(cosine * (kCosines - 1) + 0.5f, float(kCosines - 1));
-    const int i = std::min(int(x), kCosines - 2);
-    const float t = x - float(i);
-    return (1 - t) * through[size_t(i)] + t * through[size_t(i) + 1];
+float Attenuation(float thickness, const Vec3f& w) {
+    return thickness > 0 ? std::exp(-thickness / std::max(std::abs(w.z()), 1e-6f)) : 1;
 }
-
-CoatRow MakeCoatRow(float alpha, float eta, float thickness) {
-    constexpr int kDirections = 4096, kNormals = 1024;
-    CoatRow row{.eta = eta, .thickness = thickness, .isSmooth = alpha == 0};
-    const TrowbridgeReitz distribution(alpha, alpha);
-    const auto attenuation = [&](const Vec3f& w) {
-        return std::exp(-thickness / std::max(std::abs(w.z()), 1e-6f));
-    };
-    if (!row.isSmooth)
-        for (int i = 0; i < CoatRow::kCosines; ++i) {
-            const float cosine = CoatRow::CosineAt(i);
-            const Vec3f wo(std::sqrt(1 - Sqr(cosine)), 0, cosine);
-            double sum = 0;
-            for (int k = 0; k < kNormals; ++k) {
-                const Vec3f h = distribution.SampleVisibleNormal(wo, LatticePoint(k).head<2>());
-                Vec3f wi;
-                if (!Refract(wo, h, 1 / eta, &wi) || !(wi.z() < 0)) continue;
-                sum += double((1 - FresnelDielectric(wo.dot(h), eta)) *
-                              MaskingOfSecond(distribution, wo, wi) * attenuation(wi));
-            }
-            row.through[size_t(i)] = float(sum / kNormals);
-        }
-    double returned = 0, escaping = 0;
-    for (int k = 0; k < kDirections; ++k) {
-        const Vec3f u = LatticePoint(k);
-        // Down to the coat from the base, as seen from the coat.
-        const float cosine = std::sqrt(std::max(u.x(), 1e-6f));
-        const Vec3f w(std::sqrt(1 - Sqr(cosine)), 0, cosine);
-        if (row.isSmooth) {
-            returned += double(FresnelDielectric(cosine, 1 / eta) * Sqr(attenuation(w)));
-            continue;
-        }
-        const Vec3f h = distribution.SampleVisibleNormal(w, u.tail<2>());
-        const Vec3f o = (2 * w.dot(h)) * h - w;
-        if (!(o.z() > 0)) continue;
-        returned += double(FresnelDielectric(w.dot(h), 1 / eta) *
-                           MaskingOfSecond(distribution, w, o) * attenuation(w) * attenuation(o));
-    }
-    row.returned = float(returned / kDirections);
-    // By reciprocity, the transmittance to a diffuse light.
-    constexpr int kSteps = 256;
-    for (int i = 0; i < kSteps; ++i) {
-        const float cosine = (float(i) + 0.5f) / kSteps;
-        escaping += double(2 * cosine * row.Through(cosine)) / kSteps;
-    }
-    row.escaping = float(escaping) / Sqr(eta);
-    return row;
-}
-
-namespace {
 
 constexpr int kRows = 33;  // of rough coats
 
 float AlphaOfRow(int i) { return std::max(1e-3f, Sqr(float(i) / (kRows - 1))); }
-
-}  // namespace
-
-CoatTable::CoatTable(float alpha, float eta, float thickness) : isConstant(true) {
-    rows.push_back(MakeCoatRow(alpha, eta, thickness));
-}
-
-CoatTable::CoatTable(float eta, float thickness) : isConstant(false) {
-    rows.push_back(MakeCoatRow(0, eta, thickness));
-    for (int i = 0; i < kRows; ++i) rows.push_back(MakeCoatRow(AlphaOfRow(i), eta, thickness));
-}
-
-const CoatRow* CoatTable::RowOf(float alpha, float* blend) const {
-    *blend = 0;
-    if (isConstant || alpha == 0) return rows.data();
-    const float x = std::min(std::sqrt(alpha), 1.f) * (kRows - 1);
-    const int i = std::min(int(x), kRows - 2);
-    *blend = x - float(i);
-    return &rows[size_t(i) + 1];
-}
-
-Rgb CoatedConductorInterface::operator()(float cosine) const {
-    const float mu = std::abs(cosine), inside = CosineInside(mu, eta);
-    const float f = FresnelDielectric(mu, eta), q = std::exp(-2 * thickness / inside);
-    const ConductorInterface conductor{Rgb(n), Rgb(k)};
-    const Rgb base = conductor(inside) * q, again = base * f;
-    return f + Sqr(1 - f) * base * (1 + again * (1 + again * (1 + again * (1 + again))));
-}
-
-namespace {
 
 // Random numbers that two directions determine.
 class WalkNumbers {
@@ -152,6 +62,13 @@ class WalkNumbers {
     uint64_t state = 0x2545f4914f6cdd1dull;
 };
 
+// Read the roughness that a coated conductor stores of an interface.
+float AlphaOf(uint16_t stored) { return float(stored) / CoatedConductorLobe::kAlphaUnits; }
+TrowbridgeReitz DistributionOf(const uint16_t (&alpha)[2]) {
+    return {AlphaOf(alpha[0]), AlphaOf(alpha[1])};
+}
+bool IsSmooth(const uint16_t (&alpha)[2]) { return alpha[0] == 0 && alpha[1] == 0; }
+
 // Both interfaces of a coated conductor. Directions are above the base, but those that say so.
 class ConductorWalk {
   public:
@@ -159,10 +76,10 @@ class ConductorWalk {
         : eta(lobe.eta),
           thickness(lobe.thickness),
           conductor(Rgb(lobe.n), Rgb(lobe.k)),
-          coat(Alpha(lobe.coatAlpha[0]), Alpha(lobe.coatAlpha[1])),
-          base(Alpha(lobe.baseAlpha[0]), Alpha(lobe.baseAlpha[1])),
-          isCoatSmooth(lobe.coatAlpha[0] == 0 && lobe.coatAlpha[1] == 0),
-          isBaseSmooth(lobe.baseAlpha[0] == 0 && lobe.baseAlpha[1] == 0) {}
+          coat(DistributionOf(lobe.coatAlpha)),
+          base(DistributionOf(lobe.baseAlpha)),
+          isCoatSmooth(IsSmooth(lobe.coatAlpha)),
+          isBaseSmooth(IsSmooth(lobe.baseAlpha)) {}
 
     // Returns an estimate of f by light that reaches the base, from wi to wo.
     Rgb Estimate(const Vec3f& wo, const Vec3f& wi, WalkNumbers& numbers) const {
@@ -225,11 +142,8 @@ class ConductorWalk {
         float pdf;
     };
 
-    static float Alpha(uint16_t stored) { return float(stored) / CoatedConductorLobe::kAlphaUnits; }
     static float Power(float a, float b) { return a > 0 ? Sqr(a) / (Sqr(a) + Sqr(b)) : 0; }
-    float Attenuation(const Vec3f& w) const {
-        return thickness > 0 ? std::exp(-thickness / std::max(std::abs(w.z()), 1e-6f)) : 1;
-    }
+    float Attenuation(const Vec3f& w) const { return lull::Attenuation(thickness, w); }
 
     // Lets light from above through the coat.
     std::optional<Crossing> Enter(const Vec3f& w, WalkNumbers& numbers) const {
@@ -322,28 +236,105 @@ struct Shares {
     float coat, base, rest;
 };
 Shares SharesOf(const CoatedConductorLobe& lobe, float cosine) {
-    const bool isCoatSmooth = lobe.coatAlpha[0] == 0 && lobe.coatAlpha[1] == 0;
     const float f = FresnelDielectric(cosine, lobe.eta);
-    const float coat = isCoatSmooth ? 0 : std::clamp(f, 0.05f, 0.8f);
+    const float coat = IsSmooth(lobe.coatAlpha) ? 0 : std::clamp(f, 0.05f, 0.8f);
     return {coat, 0.9f * (1 - coat), 0.1f * (1 - coat)};
 }
 
 // The view multiplies slopes of the base by the index, slopes of the coat by its distance from 1.
 TrowbridgeReitz SeenBase(const CoatedConductorLobe& lobe) {
     const auto along = [&](int i) {
-        const float coat = float(lobe.coatAlpha[i]) / CoatedConductorLobe::kAlphaUnits;
-        const float base = float(lobe.baseAlpha[i]) / CoatedConductorLobe::kAlphaUnits;
+        const float coat = AlphaOf(lobe.coatAlpha[i]), base = AlphaOf(lobe.baseAlpha[i]);
         return std::sqrt(Sqr(lobe.eta * base) + 2 * Sqr((lobe.eta - 1) * coat));
     };
     return {along(0), along(1)};
 }
 
-TrowbridgeReitz CoatOf(const CoatedConductorLobe& lobe) {
-    return {float(lobe.coatAlpha[0]) / CoatedConductorLobe::kAlphaUnits,
-            float(lobe.coatAlpha[1]) / CoatedConductorLobe::kAlphaUnits};
+}  // namespace
+
+float CoatRow::Through(float cosine) const {
+    if (isSmooth)
+        return (1 - FresnelDielectric(cosine, eta)) *
+               std::exp(-thickness / CosineInside(cosine, eta));
+    const float first = CosineAt(1);
+    if (cosine < first) return through[0] + cosine / first * (through[1] - through[0]);
+    const float x = std::min(cosine * (kCosines - 1) + 0.5f, float(kCosines - 1));
+    const int i = std::min(int(x), kCosines - 2);
+    const float t = x - float(i);
+    return (1 - t) * through[size_t(i)] + t * through[size_t(i) + 1];
 }
 
-}  // namespace
+CoatRow MakeCoatRow(float alpha, float eta, float thickness) {
+    constexpr int kDirections = 4096, kNormals = 1024;
+    CoatRow row{.eta = eta, .thickness = thickness, .isSmooth = alpha == 0};
+    const TrowbridgeReitz distribution(alpha, alpha);
+    const auto attenuation = [&](const Vec3f& w) { return Attenuation(thickness, w); };
+    if (!row.isSmooth)
+        for (int i = 0; i < CoatRow::kCosines; ++i) {
+            const float cosine = CoatRow::CosineAt(i);
+            const Vec3f wo(std::sqrt(1 - Sqr(cosine)), 0, cosine);
+            double sum = 0;
+            for (int k = 0; k < kNormals; ++k) {
+                const Vec3f h = distribution.SampleVisibleNormal(wo, LatticePoint(k).head<2>());
+                Vec3f wi;
+                if (!Refract(wo, h, 1 / eta, &wi) || !(wi.z() < 0)) continue;
+                sum += double((1 - FresnelDielectric(wo.dot(h), eta)) *
+                              MaskingOfSecond(distribution, wo, wi) * attenuation(wi));
+            }
+            row.through[size_t(i)] = float(sum / kNormals);
+        }
+    double returned = 0, escaping = 0;
+    for (int k = 0; k < kDirections; ++k) {
+        const Vec3f u = LatticePoint(k);
+        // Down to the coat from the base, as seen from the coat.
+        const float cosine = std::sqrt(std::max(u.x(), 1e-6f));
+        const Vec3f w(std::sqrt(1 - Sqr(cosine)), 0, cosine);
+        if (row.isSmooth) {
+            returned += double(FresnelDielectric(cosine, 1 / eta) * Sqr(attenuation(w)));
+            continue;
+        }
+        const Vec3f h = distribution.SampleVisibleNormal(w, u.tail<2>());
+        const Vec3f o = (2 * w.dot(h)) * h - w;
+        if (!(o.z() > 0)) continue;
+        returned += double(FresnelDielectric(w.dot(h), 1 / eta) *
+                           MaskingOfSecond(distribution, w, o) * attenuation(w) * attenuation(o));
+    }
+    row.returned = float(returned / kDirections);
+    // By reciprocity, the transmittance to a diffuse light.
+    constexpr int kSteps = 256;
+    for (int i = 0; i < kSteps; ++i) {
+        const float cosine = (float(i) + 0.5f) / kSteps;
+        escaping += double(2 * cosine * row.Through(cosine)) / kSteps;
+    }
+    row.escaping = float(escaping) / Sqr(eta);
+    return row;
+}
+
+CoatTable::CoatTable(float alpha, float eta, float thickness) : isConstant(true) {
+    rows.push_back(MakeCoatRow(alpha, eta, thickness));
+}
+
+CoatTable::CoatTable(float eta, float thickness) : isConstant(false) {
+    rows.push_back(MakeCoatRow(0, eta, thickness));
+    for (int i = 0; i < kRows; ++i) rows.push_back(MakeCoatRow(AlphaOfRow(i), eta, thickness));
+}
+
+const CoatRow* CoatTable::RowOf(float alpha, float* blend) const {
+    *blend = 0;
+    if (isConstant || alpha == 0) return rows.data();
+    const float x = std::min(std::sqrt(alpha), 1.f) * (kRows - 1);
+    const int i = std::min(int(x), kRows - 2);
+    *blend = x - float(i);
+    return &rows[size_t(i) + 1];
+}
+
+Rgb CoatedConductorInterface::operator()(float cosine) const {
+    const float mu = std::abs(cosine), inside = CosineInside(mu, eta);
+    const float f = FresnelDielectric(mu, eta), q = std::exp(-2 * thickness / inside);
+    const ConductorInterface conductor{Rgb(n), Rgb(k)};
+    const Rgb base = conductor(inside) * q, again = base * f;
+    return f + Sqr(1 - f) * base * (1 + again * (1 + again * (1 + again * (1 + again))));
+}
 
 uint16_t CoatedConductorLobe::StoreAlpha(float alpha) {
     return uint16_t(std::clamp(alpha * kAlphaUnits + 0.5f, 0.f, 65535.f));
@@ -370,7 +361,7 @@ BsdfValue CoatedConductorLobe::Evaluate(const Vec3f& woGiven, const Vec3f& wiGiv
             return 0.5f * d.D(h, h2) / (wo.z() + d.Stretch(wo));
         };
         value.pdf += shares.base * pdf(SeenBase(*this));
-        if (shares.coat > 0) value.pdf += shares.coat * pdf(CoatOf(*this));
+        if (shares.coat > 0) value.pdf += shares.coat * pdf(DistributionOf(coatAlpha));
     }
     return value;
 }
@@ -385,7 +376,7 @@ bool CoatedConductorLobe::Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) con
     x -= shares.rest;
     const bool ofBase = x < shares.base;
     x = ofBase ? x / shares.base : (x - shares.base) / shares.coat;
-    const TrowbridgeReitz distribution = ofBase ? SeenBase(*this) : CoatOf(*this);
+    const TrowbridgeReitz distribution = ofBase ? SeenBase(*this) : DistributionOf(coatAlpha);
     const Vec3f h = distribution.SampleVisibleNormal(wo, {std::min(x, kOneMinusEpsilon), u.y()});
     *wi = (2 * wo.dot(h)) * h - wo;
     return SameHemisphere(wo, *wi);

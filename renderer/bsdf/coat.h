@@ -4,8 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "renderer/bsdf/microfacet.h"
@@ -47,23 +45,6 @@ class CoatTable {
     bool isConstant;
 };
 
-// A pointer to a row that needs no larger alignment than numbers, which would make all lobes
-// larger.
-class StoredRow {
-  public:
-    StoredRow(const CoatRow* row) { std::memcpy(bytes, &row, sizeof(row)); }
-    const CoatRow* operator->() const { return Get(); }
-    const CoatRow& operator[](int i) const { return Get()[i]; }
-
-  private:
-    const CoatRow* Get() const {
-        const CoatRow* row;
-        std::memcpy(&row, bytes, sizeof(row));
-        return row;
-    }
-    uint32_t bytes[sizeof(CoatRow*) / sizeof(uint32_t)];
-};
-
 // A dielectric interface that is the same from both sides.
 struct CoatInterface {
     float eta;
@@ -77,8 +58,8 @@ struct CoatedDiffuseLobe {
     static constexpr bool kIsSpecular = false, kTransmits = false;
     StoredRgb base;  // albedo, in [0, 1]
     TrowbridgeReitz distribution;
-    StoredRow row;  // of a table that outlives the lobe
-    float blend;    // share of row[1]
+    StoredPointer<CoatRow> row;  // of a table that outlives the lobe
+    float blend;                 // share of row[1]
     StoredRgb scale = Rgb(1, 1, 1);
 
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const {

@@ -1,4 +1,4 @@
-#include "renderer/bsdf/directional_albedo.h"
+#include "renderer/bsdf/layered_lobes.h"
 
 #include "renderer/base/math.h"
 
@@ -182,25 +182,6 @@ Place PlaceOf(float x2, int nodes) {
     return {i, x - float(i)};
 }
 
-}  // namespace
-
-GgxAlbedo DirectionalAlbedo(float cosine, float alpha) {
-    const Place c = PlaceOf(cosine, kCosines), r = PlaceOf(alpha, kRoughnesses);
-    const auto at = [&](const Table& table) {
-        const float *row = table[r.i] + c.i, *next = table[r.i + 1] + c.i;
-        return Lerp(r.t, Lerp(c.t, row[0], row[1]), Lerp(c.t, next[0], next[1]));
-    };
-    return {at(kOfF0), at(kOfF90)};
-}
-
-GgxAlbedo MeanAlbedo(float alpha) {
-    const Place r = PlaceOf(alpha, kRoughnesses);
-    return {Lerp(r.t, kMeanOfF0[r.i], kMeanOfF0[r.i + 1]),
-            Lerp(r.t, kMeanOfF90[r.i], kMeanOfF90[r.i + 1])};
-}
-
-namespace {
-
 constexpr int kSheenCosines = 24, kSheenRoughnesses = 16;
 constexpr float kLeastRoughness = 0.1f;  // the root of CharlieSheen::kLeastAlpha
 
@@ -258,6 +239,21 @@ constexpr float kSheenAlbedos[kSheenRoughnesses][kSheenCosines] = {
 };
 
 }  // namespace
+
+GgxAlbedo DirectionalAlbedo(float cosine, float alpha) {
+    const Place c = PlaceOf(cosine, kCosines), r = PlaceOf(alpha, kRoughnesses);
+    const auto at = [&](const Table& table) {
+        const float *row = table[r.i] + c.i, *next = table[r.i + 1] + c.i;
+        return Lerp(r.t, Lerp(c.t, row[0], row[1]), Lerp(c.t, next[0], next[1]));
+    };
+    return {at(kOfF0), at(kOfF90)};
+}
+
+GgxAlbedo MeanAlbedo(float alpha) {
+    const Place r = PlaceOf(alpha, kRoughnesses);
+    return {Lerp(r.t, kMeanOfF0[r.i], kMeanOfF0[r.i + 1]),
+            Lerp(r.t, kMeanOfF90[r.i], kMeanOfF90[r.i + 1])};
+}
 
 float SheenAlbedo(float cosine, float alpha) {
     const float roughness = std::sqrt(alpha);

@@ -2,7 +2,6 @@
 // azimuth between the directions (Jakob et al. 2014). See lobes.h for the interface.
 #pragma once
 
-#include <bit>
 #include <vector>
 
 #include "renderer/bsdf/microfacet.h"
@@ -32,22 +31,11 @@ struct FourierTable {
     }
 };
 
-// Stores a pointer with the alignment of a float: with its own it would make every lobe longer.
-class StoredTable {
-  public:
-    StoredTable(const FourierTable* table) : bits(std::bit_cast<Bits>(table)) {}
-    const FourierTable& operator*() const { return *std::bit_cast<const FourierTable*>(bits); }
-
-  private:
-    using Bits = std::array<uint32_t, sizeof(void*) / sizeof(uint32_t)>;
-    Bits bits;
-};
-
 struct FourierLobe {
     static constexpr bool kIsSpecular = false, kTransmits = false, kIsTwoSided = true;
     static constexpr bool kTellsSides = true;
-    StoredRgb r;         // scales f
-    StoredTable stored;  // outlives the lobe
+    StoredRgb r;                         // scales f
+    StoredPointer<FourierTable> stored;  // outlives the lobe
 
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi) const;
     bool Sample(const Vec3f& wo, const Vec2f& u, Vec3f* wi) const;

@@ -65,6 +65,19 @@ struct StoredRgb {
     StoredRgb& operator*=(const Rgb& s) { return *this = StoredRgb(Rgb(*this) * s); }
 };
 
+// Stores a pointer with the alignment of a float: with its own it would make every lobe longer.
+template <typename T>
+class StoredPointer {
+  public:
+    StoredPointer(const T* pointer) : bits(std::bit_cast<Bits>(pointer)) {}
+    operator const T*() const { return std::bit_cast<const T*>(bits); }
+    const T* operator->() const { return *this; }
+
+  private:
+    using Bits = std::array<uint32_t, sizeof(void*) / sizeof(uint32_t)>;
+    Bits bits;
+};
+
 // The interfaces that a reflecting lobe may have; each maps the cosine to a reflectance.
 struct DielectricInterface {
     float eta;  // index beyond the surface over the index on the normal's side
@@ -100,8 +113,6 @@ inline bool Refract(const Vec3f& w, const Vec3f& n, float etaRatio, Vec3f* refra
     *refracted = (etaRatio * cosI - std::sqrt(1 - sin2T)) * n - etaRatio * w;
     return true;
 }
-
-// Integrates the reflectance of a smooth dielectric over the hemisphere.
 
 // Return the integral over cosines from 0 to 1 of F cos and F cos^2, F for light that comes from
 // the inside of a dielectric of index `eta` (below 1: from the outside of one of 1 / eta):

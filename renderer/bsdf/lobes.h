@@ -22,7 +22,6 @@
 #include "renderer/bsdf/hair_lobe.h"
 #include "renderer/bsdf/layered_lobes.h"
 #include "renderer/bsdf/microfacet.h"
-#include "renderer/bsdf/sheen_lobe.h"
 #include "renderer/bsdf/subsurface.h"
 
 namespace lull {

@@ -57,8 +57,6 @@ class TrowbridgeReitz {
     float alphaX, alphaY;
 };
 
-// Shared code of lobes: their values, and comparison and sampling of directions.
-
 struct BsdfValue {
     Rgb f = Rgb::Zero();  // 1/sr
     float pdf = 0;        // 1/sr
@@ -83,8 +81,6 @@ inline Vec3f SampleCosine(const Vec3f& wo, const Vec2f& u, bool otherSide) {
 // Below this squared length a half vector is rounding error: wo and wi are opposite. Below this
 // cosine a direction lies in the surface. Together they keep all quotients within float.
 inline constexpr float kMinHalf2 = 1e-14f, kMinCosine = 1e-12f;
-
-// The lobes of rough interfaces. See lobes.h for the interface.
 
 // Compute the share of microfacets that two directions both see: G(v, w) = 2 |cos v cos w| /
 // Divisor, in terms of their cosines and TrowbridgeReitz::Stretch. Correlated: Smith's masking with

@@ -2,7 +2,6 @@
 
 #include "renderer/base/sampling.h"
 #include "renderer/bsdf/fresnel.h"
-#include "renderer/bsdf/phase.h"
 
 namespace lull {
 namespace {
@@ -66,37 +65,6 @@ void Integrate(std::span<const float> x, std::span<const float> f, std::span<flo
     }
 }
 
-}  // namespace
-
-DiffusionTable::DiffusionTable(float g, float eta)
-    : profile(kAlbedos * kRadii), cdf(kAlbedos * kRadii) {
-    radius[0] = 0;
-    radius[1] = 2.5e-3f;
-    for (int i = 2; i < kRadii; ++i) radius[i] = 1.2f * radius[i - 1];
-    for (int i = 0; i < kAlbedos; ++i) {
-        const double a = (1 - std::exp(-8. * i / (kAlbedos - 1))) / (1 - std::exp(-8.));
-        albedo[i] = float(a);
-        float* const row = &profile[size_t(i) * kRadii];
-        for (int j = 0; j < kRadii; ++j) {
-            const double r = radius[j];
-            row[j] =
-                float(2 * std::numbers::pi * r *
-                      (SingleScattering(a, g, eta, r) + MultipleScattering(a, 1 - a, g, eta, r)));
-        }
-        const std::span<float> integral(&cdf[size_t(i) * kRadii], kRadii);
-        Integrate(radius, {row, kRadii}, integral);
-        effectiveAlbedo[i] = integral.back();
-    }
-}
-
-DiffusionProfile::DiffusionProfile(const DiffusionTable& table, const Rgb& sigmaA,
-                                   const Rgb& sigmaS)
-    : table(&table), sigmaT(sigmaA + sigmaS) {
-    for (int c = 0; c < 3; ++c) albedo[c] = sigmaT[c] > 0 ? sigmaS[c] / sigmaT[c] : 0;
-}
-
-namespace {
-
 // Interpolates the table's profile, without its factor 2 pi r, at the row's weights.
 float ValueAt(const DiffusionTable& table, const SplineWeights& row, float radius) {
     const auto column = WeightsAt(table.radius, radius);
@@ -114,88 +82,8 @@ float ValueAt(const DiffusionTable& table, const SplineWeights& row, float radiu
     return radius > 0 ? sum / (2 * kPi * radius) : sum;
 }
 
-}  // namespace
-
-Rgb DiffusionProfile::operator()(float r) const {
-    Rgb value = Rgb::Zero();
-    for (int c = 0; c < 3; ++c)
-        if (const auto row = WeightsAt(table->albedo, albedo[c]))
-            value[c] = ValueAt(*table, *row, r * sigmaT[c]);
-    return (value * sigmaT.square()).max(0.f);
-}
-
-std::optional<float> DiffusionProfile::Sample(int channel, float u) const {
-    const auto row = WeightsAt(table->albedo, albedo[channel]);
-    if (!row || !(albedo[channel] > 0)) return {};
-    const auto entry = [&](const std::vector<float>& values) {
-        return [&values, &row](int i) {
-            return BetweenRows(
-                *row, [&](int a, int k) { return values[size_t(a) * DiffusionTable::kRadii + k]; },
-                i);
-        };
-    };
-    return SampleSpline(table->radius, entry(table->profile), entry(table->cdf), u) /
-           sigmaT[channel];
-}
-
-float DiffusionProfile::Pdf(int channel, float r) const {
-    const auto row = WeightsAt(table->albedo, albedo[channel]);
-    if (!row || !(albedo[channel] > 0)) return 0;
-    float effective = 0;
-    for (int b = 0; b < 4; ++b)
-        if (row->w[b] != 0) effective += row->w[b] * table->effectiveAlbedo[row->first + b];
-    const float pdf = ValueAt(*table, *row, r * sigmaT[channel]) * Sqr(sigmaT[channel]) / effective;
-    return pdf > 0 && pdf < kInfinity ? pdf : 0;
-}
-
-namespace {
-
 // The profile has a pole at 0, which is left out.
 constexpr float kLeastRadius = 1e-6f;
-
-}  // namespace
-
-Rgb BurleyProfile::operator()(float r) const {
-    r = std::max(r, kLeastRadius);
-    const Rgb x = -r / distance;
-    const Rgb value = albedo * (x.exp() + (x / 3).exp()) / (8 * kPi * r * distance);
-    return (distance > 0).select(value, 0.f);
-}
-
-// A quarter of the integral is the first exponential's.
-std::optional<float> BurleyProfile::Sample(int channel, float u) const {
-    if (!(distance[channel] > 0)) return {};
-    const bool isFirst = u < 0.25f;
-    const float v = std::min(isFirst ? 4 * u : (u - 0.25f) / 0.75f, kOneMinusEpsilon);
-    return -(isFirst ? 1 : 3) * distance[channel] * std::log(1 - v);
-}
-
-float BurleyProfile::Pdf(int channel, float r) const {
-    r = std::max(r, kLeastRadius);
-    const float d = distance[channel];
-    if (!(d > 0)) return 0;
-    return (std::exp(-r / d) + std::exp(-r / (3 * d))) / (8 * kPi * d * r);
-}
-
-float AlbedoOfScattering(const DiffusionTable& table, float effective) {
-    const auto& albedos = table.albedo;
-    if (!(effective > table.effectiveAlbedo.front())) return albedos.front();
-    if (!(effective < table.effectiveAlbedo.back())) return albedos.back();
-    // The spline goes up, so halving finds where it passes.
-    const int interval = IntervalOf(table.effectiveAlbedo, effective);
-    float low = albedos[interval], high = albedos[interval + 1];
-    for (int i = 0; i < 20; ++i) {
-        const float middle = 0.5f * (low + high);
-        const SplineWeights w = *WeightsAt(albedos, middle);
-        float value = 0;
-        for (int b = 0; b < 4; ++b)
-            if (w.w[b] != 0) value += w.w[b] * table.effectiveAlbedo[w.first + b];
-        (value < effective ? low : high) = middle;
-    }
-    return 0.5f * (low + high);
-}
-
-namespace {
 
 struct Preset {
     const char* name;
@@ -259,6 +147,105 @@ constexpr Preset kPresets[] = {
 };
 
 }  // namespace
+
+DiffusionTable::DiffusionTable(float g, float eta)
+    : profile(kAlbedos * kRadii), cdf(kAlbedos * kRadii) {
+    radius[0] = 0;
+    radius[1] = 2.5e-3f;
+    for (int i = 2; i < kRadii; ++i) radius[i] = 1.2f * radius[i - 1];
+    for (int i = 0; i < kAlbedos; ++i) {
+        const double a = (1 - std::exp(-8. * i / (kAlbedos - 1))) / (1 - std::exp(-8.));
+        albedo[i] = float(a);
+        float* const row = &profile[size_t(i) * kRadii];
+        for (int j = 0; j < kRadii; ++j) {
+            const double r = radius[j];
+            row[j] =
+                float(2 * std::numbers::pi * r *
+                      (SingleScattering(a, g, eta, r) + MultipleScattering(a, 1 - a, g, eta, r)));
+        }
+        const std::span<float> integral(&cdf[size_t(i) * kRadii], kRadii);
+        Integrate(radius, {row, kRadii}, integral);
+        effectiveAlbedo[i] = integral.back();
+    }
+}
+
+DiffusionProfile::DiffusionProfile(const DiffusionTable& table, const Rgb& sigmaA,
+                                   const Rgb& sigmaS)
+    : table(&table), sigmaT(sigmaA + sigmaS) {
+    for (int c = 0; c < 3; ++c) albedo[c] = sigmaT[c] > 0 ? sigmaS[c] / sigmaT[c] : 0;
+}
+
+Rgb DiffusionProfile::operator()(float r) const {
+    Rgb value = Rgb::Zero();
+    for (int c = 0; c < 3; ++c)
+        if (const auto row = WeightsAt(table->albedo, albedo[c]))
+            value[c] = ValueAt(*table, *row, r * sigmaT[c]);
+    return (value * sigmaT.square()).max(0.f);
+}
+
+std::optional<float> DiffusionProfile::Sample(int channel, float u) const {
+    const auto row = WeightsAt(table->albedo, albedo[channel]);
+    if (!row || !(albedo[channel] > 0)) return {};
+    const auto entry = [&](const std::vector<float>& values) {
+        return [&values, &row](int i) {
+            return BetweenRows(
+                *row, [&](int a, int k) { return values[size_t(a) * DiffusionTable::kRadii + k]; },
+                i);
+        };
+    };
+    return SampleSpline(table->radius, entry(table->profile), entry(table->cdf), u) /
+           sigmaT[channel];
+}
+
+float DiffusionProfile::Pdf(int channel, float r) const {
+    const auto row = WeightsAt(table->albedo, albedo[channel]);
+    if (!row || !(albedo[channel] > 0)) return 0;
+    float effective = 0;
+    for (int b = 0; b < 4; ++b)
+        if (row->w[b] != 0) effective += row->w[b] * table->effectiveAlbedo[row->first + b];
+    const float pdf = ValueAt(*table, *row, r * sigmaT[channel]) * Sqr(sigmaT[channel]) / effective;
+    return pdf > 0 && pdf < kInfinity ? pdf : 0;
+}
+
+Rgb BurleyProfile::operator()(float r) const {
+    r = std::max(r, kLeastRadius);
+    const Rgb x = -r / distance;
+    const Rgb value = albedo * (x.exp() + (x / 3).exp()) / (8 * kPi * r * distance);
+    return (distance > 0).select(value, 0.f);
+}
+
+// A quarter of the integral is the first exponential's.
+std::optional<float> BurleyProfile::Sample(int channel, float u) const {
+    if (!(distance[channel] > 0)) return {};
+    const bool isFirst = u < 0.25f;
+    const float v = std::min(isFirst ? 4 * u : (u - 0.25f) / 0.75f, kOneMinusEpsilon);
+    return -(isFirst ? 1 : 3) * distance[channel] * std::log(1 - v);
+}
+
+float BurleyProfile::Pdf(int channel, float r) const {
+    r = std::max(r, kLeastRadius);
+    const float d = distance[channel];
+    if (!(d > 0)) return 0;
+    return (std::exp(-r / d) + std::exp(-r / (3 * d))) / (8 * kPi * d * r);
+}
+
+float AlbedoOfScattering(const DiffusionTable& table, float effective) {
+    const auto& albedos = table.albedo;
+    if (!(effective > table.effectiveAlbedo.front())) return albedos.front();
+    if (!(effective < table.effectiveAlbedo.back())) return albedos.back();
+    // The spline goes up, so halving finds where it passes.
+    const int interval = IntervalOf(table.effectiveAlbedo, effective);
+    float low = albedos[interval], high = albedos[interval + 1];
+    for (int i = 0; i < 20; ++i) {
+        const float middle = 0.5f * (low + high);
+        const SplineWeights w = *WeightsAt(albedos, middle);
+        float value = 0;
+        for (int b = 0; b < 4; ++b)
+            if (w.w[b] != 0) value += w.w[b] * table.effectiveAlbedo[w.first + b];
+        (value < effective ? low : high) = middle;
+    }
+    return 0.5f * (low + high);
+}
 
 bool FindMediumPreset(const std::string& name, Rgb* sigmaA, Rgb* sigmaS) {
     for (const Preset& preset : kPresets) {

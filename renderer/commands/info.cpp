@@ -11,8 +11,8 @@
 #include "renderer/files/file_io.h"
 #include "renderer/progress/progress.h"
 #include "renderer/results/report.h"
-#include "renderer/scene/compile.h"
 #include "renderer/scene/light_groups.h"
+#include "renderer/scene/scene.h"
 
 namespace lull::info {
 

@@ -1,5 +1,5 @@
 // Describes a scene as its file does: plain entities with parameters, each with the place it came
-// from. Loaders fill a Description; compile (renderer/scene/compile.h) makes a Scene of it.
+// from. Loaders fill a Description; compile (renderer/scene/scene.h) makes a Scene of it.
 #pragma once
 
 #include <array>

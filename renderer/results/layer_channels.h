@@ -3,7 +3,7 @@
 
 #include "renderer/film/film.h"
 #include "renderer/results/denoised_image.h"
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 
 namespace lull {
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 
 #include <fmt/format.h>
 
@@ -54,8 +54,9 @@ void ReadView(const Description& description, const CompileOptions& options, Sce
 
 // Returns whether a material is none, so that shadow rays of volpath pass through its surfaces.
 bool HasInterfaces(const Description& description) {
-    return std::any_of(description.materials.begin(), description.materials.end(),
-                       [](const MaterialEntity& m) { return m.name.empty() || m.name == "none"; });
+    return std::ranges::any_of(description.materials, [](const MaterialEntity& m) {
+        return m.name.empty() || m.name == "none";
+    });
 }
 
 void ReadMedia(const Description& description, Scene* scene, Warnings& warnings) {
@@ -83,14 +84,14 @@ const char* WhyNotBdpt(const Description& description, const CompileOptions& opt
 }
 
 bool HasPanes(const Scene& scene) {
-    return std::any_of(scene.shapes.shapes.begin(), scene.shapes.shapes.end(), [&](const Shape& s) {
+    return std::ranges::any_of(scene.shapes.shapes, [&](const Shape& s) {
         return s.material >= 0 && (scene.materials.Needs(s.material) & kLetsThrough);
     });
 }
 
 bool HidesShapes(const Scene& scene) {
-    return std::any_of(scene.shapes.shapes.begin(), scene.shapes.shapes.end(),
-                       [](const Shape& s) { return (s.hiddenFrom & kCameraRay) != 0; });
+    return std::ranges::any_of(scene.shapes.shapes,
+                               [](const Shape& s) { return (s.hiddenFrom & kCameraRay) != 0; });
 }
 
 // Returns the share of the picture in which the camera looks through single-sided shapes from
@@ -98,7 +99,7 @@ bool HidesShapes(const Scene& scene) {
 double ShareOpenBehind(const Scene& scene) {
     const auto isSingleSided = [](const Shape& s) { return s.coverage && s.coverage->singleSided; };
     const std::vector<Shape>& shapes = scene.shapes.shapes;
-    if (std::none_of(shapes.begin(), shapes.end(), isSingleSided)) return 0;
+    if (std::ranges::none_of(shapes, isSingleSided)) return 0;
     constexpr int kSide = 64;
     int count = 0;
     for (int i = 0; i < kSide * kSide; ++i) {
@@ -184,10 +185,8 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     scene->acceleratorSeconds =
         Timed([&] { scene->accelerator = Accelerator(scene->shapes, scene->textures); });
 
-    const auto isVolume = [](const MediumTable::Sides& sides) {
-        return sides.outside == ShapeEntity::kSurrounding;
-    };
-    if (std::any_of(scene->media.ofShapes.begin(), scene->media.ofShapes.end(), isVolume))
+    if (std::ranges::count(scene->media.ofShapes, ShapeEntity::kSurrounding,
+                           &MediumTable::Sides::outside) > 0)
         scene->media.ofCamera = VolumesAbout(
             *scene, scene->camera.GenerateRay({scene->film.resolution.cast<float>() / 2}).o);
     if (const double share = ShareOpenBehind(*scene); share > 0) {
@@ -212,37 +211,12 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     return scene;
 }
 
-}  // namespace
-
-std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
-                                     Warnings& warnings) {
-    std::unique_ptr<const Scene> scene;
-    RunWithThreads(options.threads, [&] { scene = MakeScene(description, options, warnings); });
-    return scene;
-}
-
-namespace {
-
 constexpr double kLeastRatio = 20;
 // Of the volume that half the area and the thickness make: sides and bevels are area, too.
 constexpr double kLeastFilled = 0.75;
 
 using Vec3d = Eigen::Vector3d;
 using Triangles = std::vector<std::array<uint32_t, 3>>;
-
-// Sets of numbers that grow together.
-class Sets {
-  public:
-    explicit Sets(size_t count) : parents(count) { std::iota(parents.begin(), parents.end(), 0u); }
-    uint32_t Of(uint32_t i) {
-        while (parents[i] != i) i = parents[i] = parents[parents[i]];
-        return i;
-    }
-    void Join(uint32_t a, uint32_t b) { parents[Of(a)] = Of(b); }
-
-  private:
-    std::vector<uint32_t> parents;
-};
 
 // Returns the mesh's triangles with the first vertex at each place.
 Triangles Welded(const Mesh& mesh) {
@@ -263,7 +237,7 @@ bool IsClosed(const Triangles& triangles) {
             const uint32_t a = t[k], b = t[(k + 1) % 3];
             ++edges[std::minmax(a, b)];
         }
-    return std::all_of(edges.begin(), edges.end(), [](const auto& e) { return e.second == 2; });
+    return std::ranges::all_of(edges, [](const auto& e) { return e.second == 2; });
 }
 
 bool IsSlab(const Mesh& mesh, const Triangles& part) {
@@ -305,17 +279,28 @@ bool IsSlab(const Mesh& mesh, const Triangles& part) {
 
 }  // namespace
 
+std::unique_ptr<const Scene> Compile(const Description& description, const CompileOptions& options,
+                                     Warnings& warnings) {
+    std::unique_ptr<const Scene> scene;
+    RunWithThreads(options.threads, [&] { scene = MakeScene(description, options, warnings); });
+    return scene;
+}
+
 int CountSlabs(const Mesh& mesh) {
     const Triangles all = Welded(mesh);
-    Sets sets(mesh.p.size());
-    for (const auto& t : all) {
-        sets.Join(t[0], t[1]);
-        sets.Join(t[1], t[2]);
-    }
+    // Vertices of the same part have the same root.
+    std::vector<uint32_t> parents(mesh.p.size());
+    std::iota(parents.begin(), parents.end(), 0u);
+    const auto rootOf = [&](uint32_t i) {
+        while (parents[i] != i) i = parents[i] = parents[parents[i]];
+        return i;
+    };
+    for (const auto& t : all)
+        for (int k = 1; k < 3; ++k) parents[rootOf(t[k - 1])] = rootOf(t[k]);
     std::map<uint32_t, Triangles> parts;
-    for (const auto& t : all) parts[sets.Of(t[0])].push_back(t);
-    return int(std::count_if(parts.begin(), parts.end(),
-                             [&](const auto& part) { return IsSlab(mesh, part.second); }));
+    for (const auto& t : all) parts[rootOf(t[0])].push_back(t);
+    return int(
+        std::ranges::count_if(parts, [&](const auto& part) { return IsSlab(mesh, part.second); }));
 }
 
 }  // namespace lull

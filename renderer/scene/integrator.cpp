@@ -12,11 +12,6 @@ namespace {
 // Between mirrors that reflect all light, and in closed white rooms, Russian roulette ends no path.
 constexpr int kMostBounces = 100'000;
 
-std::string TextOfDepth(int maxDepth, float rrThreshold) {
-    return fmt::format("up to {} bounce{}; Russian roulette below a throughput of {:g}", maxDepth,
-                       maxDepth == 1 ? "" : "s", rrThreshold);
-}
-
 // Reads the parameters that all kinds have.
 template <typename Kind>
 Kind ReadDepth(const Entity& entity, int maxDepth) {
@@ -40,9 +35,6 @@ bool AsksForBdpt(const std::string& name) {
 
 }  // namespace
 
-std::string PathIntegrator::Text() const { return TextOfDepth(maxDepth, rrThreshold); }
-std::string BdptIntegrator::Text() const { return TextOfDepth(maxDepth, rrThreshold); }
-
 std::vector<std::string> IntegratorNames() { return NamesOfKinds(Integrator()); }
 
 std::string NameOf(const Integrator& integrator, bool isVolumetric) {
@@ -50,7 +42,10 @@ std::string NameOf(const Integrator& integrator, bool isVolumetric) {
 }
 
 std::string TextOf(const Integrator& integrator) {
-    return std::visit([](const auto& kind) { return kind.Text(); }, integrator);
+    const int depth = MaxDepth(integrator);
+    return fmt::format("up to {} bounce{}; Russian roulette below a throughput of {:g}", depth,
+                       depth == 1 ? "" : "s",
+                       std::visit([](const auto& kind) { return kind.rrThreshold; }, integrator));
 }
 
 int MaxDepth(const Integrator& integrator) {

@@ -18,7 +18,6 @@ struct PathIntegrator {
     float rrThreshold = 1;  // Russian roulette ends paths of a throughput below
 
     static const char* Name(bool isVolumetric) { return isVolumetric ? "volpath" : "path"; }
-    std::string Text() const;
 };
 
 // Paths from the camera and from lights, connected in all ways: pbrt-v3's "bdpt".
@@ -31,7 +30,6 @@ struct BdptIntegrator {
     float rrThreshold = 1;
 
     static const char* Name(bool) { return "bdpt"; }
-    std::string Text() const;
 };
 
 // All kinds.

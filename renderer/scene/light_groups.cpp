@@ -24,15 +24,8 @@ using Names = std::vector<std::string>;
 
 // Suns are of one kind, whatever their size.
 const char* KindOf(const Light& light) {
-    if (std::holds_alternative<SunLight>(light)) return "delta";
-    switch (TypeOf(light)) {
-        case LightType::Infinite:
-            return "environment";
-        case LightType::Area:
-            return kArea;
-        default:
-            return "delta";
-    }
+    if (std::holds_alternative<InfiniteLight>(light)) return "environment";
+    return std::holds_alternative<AreaLight>(light) ? kArea : "delta";
 }
 
 bool Has(const Names& names, const std::string& name) {
@@ -115,6 +108,17 @@ Names FirstNamesOf(const std::vector<NamedLights>& lights) {
     return names;
 }
 
+// Returns where an entity is, for those without a name.
+std::string Place(const FileLoc& loc) {
+    std::string prefix = loc.Prefix();
+    if (prefix.ends_with(": ")) prefix.resize(prefix.size() - 2);
+    return prefix;
+}
+
+std::string Joined(const std::string& what, const std::string& place) {
+    return place.empty() ? what : what + ", " + place;
+}
+
 }  // namespace
 
 LightGroups MakeLightGroups(const std::vector<std::string>& wanted, const Description& description,
@@ -152,21 +156,6 @@ std::string TextOf(const LightGroups& groups) {
     const uLong sum = crc32_z(crc32_z(0, nullptr, 0), groups.ofLight.data(), groups.ofLight.size());
     return fmt::format("{} of lights crc32:{:08x}", NameOf(groups), uint32_t(sum));
 }
-
-namespace {
-
-// Returns where an entity is, for those without a name.
-std::string Place(const FileLoc& loc) {
-    std::string prefix = loc.Prefix();
-    if (prefix.ends_with(": ")) prefix.resize(prefix.size() - 2);
-    return prefix;
-}
-
-std::string Joined(const std::string& what, const std::string& place) {
-    return place.empty() ? what : what + ", " + place;
-}
-
-}  // namespace
 
 std::string GivenName(const ShapeEntity& shape) {
     if (!shape.label.empty()) return shape.label;

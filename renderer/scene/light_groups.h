@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "renderer/input/description.h"
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 
 namespace lull {
 
@@ -35,8 +35,6 @@ LightGroups MakeLightGroups(const std::vector<std::string>& wanted, const Descri
 std::string NameOf(const LightGroups&);
 // Returns the same with a checksum of the lights in them, for checkpoints.
 std::string TextOf(const LightGroups&);
-
-// Readable names of the objects and materials of a scene.
 
 // Return the name of an object or a material by its number (FirstHit), not 0: as the scene has it,
 // else kind, file and line. Numbers that the scene does not have, as of a checkpoint that somebody

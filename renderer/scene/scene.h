@@ -5,7 +5,6 @@
 
 #include "renderer/base/sampler.h"
 #include "renderer/scene/cameras/camera.h"
-#include "renderer/scene/cameras/camera_view.h"
 #include "renderer/scene/cameras/film_settings.h"
 #include "renderer/scene/geometry/accelerator.h"
 #include "renderer/scene/geometry/shape_table.h"
@@ -50,5 +49,22 @@ struct Scene {
     // Seconds that the parts of compilation took, for reports.
     double textureSeconds = 0, shapeSeconds = 0, acceleratorSeconds = 0;
 };
+
+struct CompileOptions {
+    FilmOverrides film;
+    int maxDepth = -1;  // -1: as the scene says
+    // Choose and sample lights as pbrt-v3 does, for its estimator: by tables, however many there
+    // are, and environment maps by their whole brightness.
+    bool lightsAsPbrtV3 = false;
+    int threads = 0;  // for all that is made in parallel; 0: one per core
+};
+
+// Compiles a description. Throws Error, with file and line, for anything wrong or unsupported, and
+// the errors that parsing left in `warnings`: for all of it, as Warnings::ThrowErrors() has it.
+std::unique_ptr<const Scene> Compile(const Description&, const CompileOptions&, Warnings&);
+
+// Returns the number of closed parts of a mesh, such as window panes, that are flat, and at least
+// 20 times as wide, in both directions, as they are thick. Vertices at the same place are the same.
+int CountSlabs(const Mesh&);
 
 }  // namespace lull

@@ -1,7 +1,7 @@
 #include "renderer/transport/bdpt.h"
 
 #include "renderer/base/color.h"
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/camera.h"
 #include "renderer/transport/bdpt_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_media.h"

@@ -1,5 +1,5 @@
 #include "renderer/base/color.h"
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/camera.h"
 #include "renderer/transport/bdpt_internal.h"
 #include "renderer/transport/integrator_internal.h"
 

@@ -3,7 +3,7 @@
 
 #include "renderer/base/math.h"
 #include "renderer/base/sampling.h"
-#include "renderer/bsdf/phase.h"
+#include "renderer/bsdf/subsurface.h"
 #include "renderer/scene/scene.h"
 #include "renderer/transport/integrator.h"
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/camera.h"
 #include "renderer/transport/direct_light.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/recorders_internal.h"

@@ -13,7 +13,7 @@
 #include "renderer/render/checkpoint.h"
 #include "renderer/scene/cameras/lens_system.h"
 #include "renderer/scene/geometry/shape_table.h"
-#include "renderer/scene/materials/fourier.h"
+#include "renderer/scene/materials/basic.h"
 #include "renderer/scene/media/medium_table.h"
 #include "renderer/vision/display_model.h"
 #include "stopping/base/input_file.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 
 namespace lull {
 

@@ -6,7 +6,7 @@
 
 #include "renderer/base/math.h"
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 #include "tests/renderer/files/test_files.h"
 
 namespace lull {

@@ -68,22 +68,19 @@ Ray Camera::GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const {
     return {position + rotation * origin, rotation * direction, kInfinity};
 }
 
-Ray Camera::Move(const Ray& ray, float time) const {
-    const Mat4d m = motion->At(time);
-    return {TransformPoint(m, ray.o), TransformVector(m, ray.d), ray.tMax};
-}
-
-Ray Camera::GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const {
-    const Ray ray = lenses->Generate(film.cwiseProduct(perPixel), lens, weight);
-    return {position + rotation * ray.o, rotation * ray.d, kInfinity};
-}
-
 Ray Camera::GenerateRareRay(const CameraSample& sample, float* weight) const {
     const auto& [film, lens, time, isRight] = sample;
-    const Ray ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
-                    : lenses                              ? GenerateRealisticRay(film, lens, weight)
-                                                          : GenerateOtherRay(film, lens);
-    return motion ? Move(ray, time) : ray;
+    Ray ray;
+    if (lenses) {
+        ray = lenses->Generate(film.cwiseProduct(perPixel), lens, weight);
+        ray = {position + rotation * ray.o, rotation * ray.d, kInfinity};
+    } else {
+        ray = projection == Projection::Perspective ? GeneratePerspectiveRay(film, lens)
+                                                    : GenerateOtherRay(film, lens);
+    }
+    if (!motion) return ray;
+    const Mat4d m = motion->At(time);
+    return {TransformPoint(m, ray.o), TransformVector(m, ray.d), ray.tMax};
 }
 
 std::optional<Ray> Camera::NextRay(const Ray& ray, CameraSample sample, int axis) const {
@@ -312,9 +309,8 @@ Camera CameraOfEye(const Camera& middle, const Stereo& stereo, Eye eye) {
     Camera camera = middle;
     const float x = (eye == Eye::Left ? -0.5f : 0.5f) * stereo.distance;
     camera.position += camera.rotation * Vec3f(x, 0, 0);
-    camera.worldFromCamera(0, 3) += double(x) * middle.worldFromCamera(0, 0);
-    camera.worldFromCamera(1, 3) += double(x) * middle.worldFromCamera(1, 0);
-    camera.worldFromCamera(2, 3) += double(x) * middle.worldFromCamera(2, 0);
+    for (int i = 0; i < 3; ++i)
+        camera.worldFromCamera(i, 3) += double(x) * middle.worldFromCamera(i, 0);
     if (stereo.convergence > 0) camera.planeOrigin.x() -= x / stereo.convergence;
     return camera;
 }

@@ -7,6 +7,7 @@
 #include "renderer/scene/cameras/film_settings.h"
 #include "renderer/scene/cameras/lens_system.h"
 #include "renderer/scene/geometry/animated_transform.h"
+#include "renderer/scene/interaction.h"
 
 namespace lull {
 
@@ -68,14 +69,12 @@ struct Camera {
     std::optional<Ray> NextRay(const Ray& ray, CameraSample, int axis) const;
 
   private:
-    Ray GenerateRealisticRay(const Vec2f& film, const Vec2f& lens, float* weight) const;
     Ray GeneratePerspectiveRay(const Vec2f& film, const Vec2f& lens) const;
     Ray GenerateOtherRay(const Vec2f& film, const Vec2f& lens) const;
     // Returns a ray of camera space in the world, from where it begins to where it ends to see.
     Ray Clip(const Vec3f& origin, const Vec3f& direction) const;
     // Of all but perspective cameras at rest: apart, so that these do not pay for it.
     Ray GenerateRareRay(const CameraSample&, float* weight) const;
-    Ray Move(const Ray& ray, float time) const;
 };
 
 // Pairs of pictures for two eyes, apart along the camera's x.
@@ -118,5 +117,30 @@ double Farthest(const Camera&, const FilmSettings&);
 // is nothing if no matrix projects as the camera does.
 Mat4d WorldToCamera(const Camera&);
 std::optional<Mat4d> WorldToNdc(const Camera&, const FilmSettings&);
+
+// How a point is seen.
+struct CameraView {
+    Vec2f film;           // pixels, of the whole image and beyond
+    Vec3f lens;           // the point on the lens
+    float perSolidAngle;  // pixels per sr about the direction to the point, as seen from there
+};
+
+// Returns whether a camera's view of points can be computed: perspective cameras, with thin lenses
+// or none, that move or not, and see what is near and far.
+inline bool SeesPoints(const Camera& camera) {
+    return camera.projection == Projection::Perspective && !camera.Clips();
+}
+
+// Returns how such a camera sees the point p, `lens` and `time` as in CameraSample; nothing if it
+// is behind.
+std::optional<CameraView> ViewOf(const Camera&, const Vec3f& p, const Vec2f& lens, float time);
+
+// Returns the pixels per sr about the direction d of a ray of such a camera.
+float PixelsPerSolidAngle(const Camera&, const Vec3f& d, float time);
+
+// Fills in dpdx, dpdy, duvdx and duvdy of a hit of the sample's camera ray, from where the rays one
+// pixel to the right and below meet the tangent plane (Igehy 1999; pbrt 3rd ed., 10.1). Samples lie
+// Camera::sampleSpacing apart.
+void ComputeFootprint(const Camera&, const CameraSample&, SurfaceInteraction* hit);
 
 }  // namespace lull

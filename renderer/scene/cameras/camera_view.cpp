@@ -1,4 +1,4 @@
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/camera.h"
 
 #include "renderer/base/sampling.h"
 
@@ -16,6 +16,19 @@ float Density(const Camera& camera, const Vec3f& d, const Eigen::Matrix3d& m) {
     const double length = (m * d.cast<double>()).norm();
     const double stretch = length * length * length / std::abs(m.determinant());
     return float(stretch / (double(pixel) * double(d.z()) * double(d.z()) * double(d.z())));
+}
+
+// Solves d = u dpdu + v dpdv for d in the tangent plane, by its two coordinates along which the
+// normal is shortest; 0 where the derivatives are parallel there.
+Vec2f ParametersOf(const Vec3f& d, const SurfaceInteraction& hit) {
+    int longest;
+    hit.n.cwiseAbs().maxCoeff(&longest);
+    const int i = longest == 0 ? 1 : 0, j = longest == 2 ? 1 : 2;
+    const Vec3f &a = hit.surfaceDpdu, &b = hit.surfaceDpdv;
+    const float determinant = a[i] * b[j] - a[j] * b[i];
+    const Vec2f uv((d[i] * b[j] - d[j] * b[i]) / determinant,
+                   (a[i] * d[j] - a[j] * d[i]) / determinant);
+    return uv.allFinite() ? uv : Vec2f(Vec2f::Zero());
 }
 
 }  // namespace
@@ -50,23 +63,6 @@ float PixelsPerSolidAngle(const Camera& camera, const Vec3f& d, float time) {
     const Vec3f local = (linear.inverse() * d.cast<double>()).cast<float>().normalized();
     return Density(camera, local, linear);
 }
-
-namespace {
-
-// Solves d = u dpdu + v dpdv for d in the tangent plane, by its two coordinates along which the
-// normal is shortest; 0 where the derivatives are parallel there.
-Vec2f ParametersOf(const Vec3f& d, const SurfaceInteraction& hit) {
-    int longest;
-    hit.n.cwiseAbs().maxCoeff(&longest);
-    const int i = longest == 0 ? 1 : 0, j = longest == 2 ? 1 : 2;
-    const Vec3f &a = hit.surfaceDpdu, &b = hit.surfaceDpdv;
-    const float determinant = a[i] * b[j] - a[j] * b[i];
-    const Vec2f uv((d[i] * b[j] - d[j] * b[i]) / determinant,
-                   (a[i] * d[j] - a[j] * d[i]) / determinant);
-    return uv.allFinite() ? uv : Vec2f(Vec2f::Zero());
-}
-
-}  // namespace
 
 void ComputeFootprint(const Camera& camera, const CameraSample& sample, SurfaceInteraction* hit) {
     const float spacing = camera.sampleSpacing;

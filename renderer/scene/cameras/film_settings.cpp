@@ -43,48 +43,6 @@ void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings*
                             film->resolution.y()));
 }
 
-}  // namespace
-
-FilmSettings MakeFilmSettings(const Description& description, const FilmOverrides& overrides,
-                              Warnings& warnings) {
-    const Entity& entity = description.film;
-    if (entity.name != "image")
-        throw Error(entity.loc, fmt::format("Film \"{}\" is not supported; only \"image\" is",
-                                            Printable(entity.name)));
-    const Parameters& params = entity.parameters;
-    FilmSettings film;
-    film.resolution = {params.GetInt("xresolution", 1280), params.GetInt("yresolution", 720)};
-    if (overrides.resolution) film.resolution = *overrides.resolution;
-    constexpr int64_t kMaxPixels = int64_t(1) << 28;
-    if (film.resolution.minCoeff() < 1 ||
-        int64_t(film.resolution.x()) * film.resolution.y() > kMaxPixels)
-        throw Error(entity.loc, fmt::format("the resolution is {}x{}; each side has to be at least "
-                                            "1 and the image at most {} pixels",
-                                            film.resolution.x(), film.resolution.y(), kMaxPixels));
-
-    SetCrop(entity, overrides, &film);
-    film.filename = params.GetString("filename", film.filename);
-    film.exposure = params.GetFloat("exposure", 0);
-    film.scale = params.GetFloat("scale", 1) * std::exp2(film.exposure);
-    film.maxSampleLuminance = params.GetFloat("maxsampleluminance", kInfinity);
-    film.maxComponent = params.GetFloat("maxcomponentvalue", kInfinity);
-    if (const auto m = params.GetFloats(ParameterType::Float, "colormatrix"); m.size() == 9)
-        film.colorMatrix = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(m.data());
-    if (!(film.scale > 0) || !std::isfinite(film.scale) || !(film.maxSampleLuminance > 0) ||
-        !(film.maxComponent > 0))
-        throw Error(entity.loc,
-                    "\"scale\", \"maxsampleluminance\" and \"maxcomponentvalue\" have to be "
-                    "positive");
-    film.diagonal = params.GetFloat("diagonal", 35) * 0.001f;  // millimetres
-    if (!(film.diagonal > 0) || !std::isfinite(film.diagonal))
-        throw Error(entity.loc, "\"diagonal\" has to be positive");
-    params.ReportUnused("Film \"image\"", warnings);
-    film.isPair = ReadStereo(description.camera).IsPair();
-    return film;
-}
-
-namespace {
-
 // Evaluates the Mitchell-Netravali filter (1988) at x in [-1, 1], which is two units wide.
 float Mitchell(float x, float b, float c) {
     x = std::abs(2 * x);
@@ -128,6 +86,44 @@ AxisFunction MakeAxisFunction(const Entity& entity) {
 }
 
 }  // namespace
+
+FilmSettings MakeFilmSettings(const Description& description, const FilmOverrides& overrides,
+                              Warnings& warnings) {
+    const Entity& entity = description.film;
+    if (entity.name != "image")
+        throw Error(entity.loc, fmt::format("Film \"{}\" is not supported; only \"image\" is",
+                                            Printable(entity.name)));
+    const Parameters& params = entity.parameters;
+    FilmSettings film;
+    film.resolution = {params.GetInt("xresolution", 1280), params.GetInt("yresolution", 720)};
+    if (overrides.resolution) film.resolution = *overrides.resolution;
+    constexpr int64_t kMaxPixels = int64_t(1) << 28;
+    if (film.resolution.minCoeff() < 1 ||
+        int64_t(film.resolution.x()) * film.resolution.y() > kMaxPixels)
+        throw Error(entity.loc, fmt::format("the resolution is {}x{}; each side has to be at least "
+                                            "1 and the image at most {} pixels",
+                                            film.resolution.x(), film.resolution.y(), kMaxPixels));
+
+    SetCrop(entity, overrides, &film);
+    film.filename = params.GetString("filename", film.filename);
+    film.exposure = params.GetFloat("exposure", 0);
+    film.scale = params.GetFloat("scale", 1) * std::exp2(film.exposure);
+    film.maxSampleLuminance = params.GetFloat("maxsampleluminance", kInfinity);
+    film.maxComponent = params.GetFloat("maxcomponentvalue", kInfinity);
+    if (const auto m = params.GetFloats(ParameterType::Float, "colormatrix"); m.size() == 9)
+        film.colorMatrix = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(m.data());
+    if (!(film.scale > 0) || !std::isfinite(film.scale) || !(film.maxSampleLuminance > 0) ||
+        !(film.maxComponent > 0))
+        throw Error(entity.loc,
+                    "\"scale\", \"maxsampleluminance\" and \"maxcomponentvalue\" have to be "
+                    "positive");
+    film.diagonal = params.GetFloat("diagonal", 35) * 0.001f;  // millimetres
+    if (!(film.diagonal > 0) || !std::isfinite(film.diagonal))
+        throw Error(entity.loc, "\"diagonal\" has to be positive");
+    params.ReportUnused("Film \"image\"", warnings);
+    film.isPair = ReadStereo(description.camera).IsPair();
+    return film;
+}
 
 Filter::Filter(const Description& description, Warnings& warnings) {
     const Entity& entity = description.filter;

@@ -87,8 +87,6 @@ struct LensBundle {
     void TraceFromFilm(std::span<const LensInterface>);
 };
 
-// Reads descriptions of lenses.
-
 // Reads the lens file of pbrt-v3: for each interface, from the scene to the film, radius of
 // curvature (0: the stop), thickness, index of refraction and diameter, lengths in millimetres.
 // Throws Error, beginning with the file, if a row is cut short, there are none or too many, or a

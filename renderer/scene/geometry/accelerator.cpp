@@ -52,30 +52,6 @@ void ReportEmbreeError(void*, RTCError, const char* message) {
                             message ? message : "unknown error"));
 }
 
-}  // namespace
-
-// Mixes by Stafford 2011, variant 13.
-float NumberOf(const RTCRay& ray, const RTCHit& hit) {
-    uint64_t state = 0;
-    const auto mix = [&](uint64_t bits) {
-        state = (state ^ bits) + 0x9e3779b97f4a7c15ull;
-        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ull;
-        state = (state ^ (state >> 27)) * 0x94d049bb133111ebull;
-        state ^= state >> 31;
-    };
-    const auto pair = [](float a, float b) {
-        return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
-    };
-    mix(pair(ray.org_x, ray.org_y));
-    mix(pair(ray.org_z, ray.dir_x));
-    mix(pair(ray.dir_y, ray.dir_z));
-    mix(uint64_t(hit.geomID) << 32 | hit.primID);
-    mix(hit.instID[0]);
-    return float(state >> 40) * 0x1p-24f;
-}
-
-namespace {
-
 // Returns whether a ray meets the side of a mesh that its vertices' order turns away.
 bool IsFromBehind(const Shape& shape, const RTCRay& ray, const RTCHit& hit) {
     const Vec3f front = std::get_if<Mesh>(&shape.geometry)->EmitterAt(hit.primID).n;
@@ -96,7 +72,9 @@ bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     return share <= 0 || (share < 1 && NumberOf(ray, hit) >= share);
 }
 
-bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit, bool isShadow) {
+// Returns whether alpha cuts out the place of a hit.
+template <bool isShadow>
+bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     const Shape& shape = user.shapes->shapes[user.shape];
     const TextureContext context{
         {ray.org_x + ray.tfar * ray.dir_x, ray.org_y + ray.tfar * ray.dir_y,
@@ -108,146 +86,23 @@ bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit, bool 
     return isZero(shape.alpha) || (isShadow && isZero(shape.shadowAlpha));
 }
 
-// Filters of Embree, which reject hits that alpha cuts out, and of rays that a shape is hidden
-// from. Like the callbacks they are called with one ray at a time, as rays are traced.
-void FilterByAlpha(const RTCFilterFunctionNArguments* args, bool isShadow) {
-    if (IsCutOut(*static_cast<const ShapeUser*>(args->geometryUserPtr),
-                 *reinterpret_cast<const RTCRay*>(args->ray),
-                 *reinterpret_cast<const RTCHit*>(args->hit), isShadow))
+bool IsBehindSingleSided(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
+    return (ray.id & kCameraRay) && IsFromBehind(user.shapes->shapes[user.shape], ray, hit);
+}
+
+// A filter of Embree, which rejects hits. Like the callbacks it is called with one ray at a time,
+// as rays are traced.
+template <auto Rejects>
+void FilterBy(const RTCFilterFunctionNArguments* args) {
+    if (Rejects(*static_cast<const ShapeUser*>(args->geometryUserPtr),
+                *reinterpret_cast<const RTCRay*>(args->ray),
+                *reinterpret_cast<const RTCHit*>(args->hit)))
         args->valid[0] = 0;
-}
-
-void FilterNearestByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, false); }
-void FilterOcclusionByAlpha(const RTCFilterFunctionNArguments* args) { FilterByAlpha(args, true); }
-
-void FilterByCoverage(const RTCFilterFunctionNArguments* args) {
-    if (IsUncovered(*static_cast<const ShapeUser*>(args->geometryUserPtr),
-                    *reinterpret_cast<const RTCRay*>(args->ray),
-                    *reinterpret_cast<const RTCHit*>(args->hit)))
-        args->valid[0] = 0;
-}
-
-void FilterSingleSided(const RTCFilterFunctionNArguments* args) {
-    const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
-    if (!(ray.id & kCameraRay)) return;
-    const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
-    if (IsFromBehind(user.shapes->shapes[user.shape], ray,
-                     *reinterpret_cast<const RTCHit*>(args->hit)))
-        args->valid[0] = 0;
-}
-
-}  // namespace
-
-EmbreeScene Accelerator::Implementation::NewScene() {
-    EmbreeScene scene(rtcNewScene(device.get()));
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-    return scene;
-}
-
-void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shapes, int index) {
-    const Shape& shape = shapes.shapes[index];
-    if (shape.IsInvisible() || shape.PrimitiveCount() == 0) return;
-    const Mesh* mesh = std::get_if<Mesh>(&shape.geometry);
-    RTCGeometry geometry =
-        rtcNewGeometry(device.get(), mesh ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserData(geometry, &users[index]);
-    if (mesh) {
-        // Embree reads the vertices where they are; it may read 4 bytes past the last one,
-        // for which the loader keeps a spare vertex.
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   mesh->p.data(), 0, sizeof(Vec3f), mesh->p.size() - 1);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                   mesh->triangles.data(), 0, 3 * sizeof(uint32_t),
-                                   mesh->triangles.size());
-    } else {
-        rtcSetGeometryUserPrimitiveCount(geometry, shape.PrimitiveCount());
-        std::visit(
-            [&]<typename S>(const S&) {
-                if constexpr (!std::is_same_v<S, Mesh>) {
-                    if (shape.coverage)
-                        SetCallbacks<S, Passing::Uncovered>(geometry);
-                    else if (shape.hiddenFrom)
-                        SetCallbacks<S, Passing::Hidden>(geometry);
-                    else
-                        SetCallbacks<S, Passing::None>(geometry);
-                }
-            },
-            shape.geometry);
-    }
-    if (mesh && shape.alpha) rtcSetGeometryIntersectFilterFunction(geometry, FilterNearestByAlpha);
-    if (mesh && (shape.alpha || shape.shadowAlpha))
-        rtcSetGeometryOccludedFilterFunction(geometry, FilterOcclusionByAlpha);
-    const bool isUsual = !shape.hiddenFrom && shape.coverage && shape.coverage->IsWhole() &&
-                         !shape.coverage->openBehind;
-    if (mesh && isUsual) {  // as most meshes of glTF: shadow rays need no filter
-        rtcSetGeometryIntersectFilterFunction(geometry, FilterSingleSided);
-    } else if (mesh && (shape.coverage || shape.hiddenFrom)) {
-        rtcSetGeometryIntersectFilterFunction(geometry, FilterByCoverage);
-        rtcSetGeometryOccludedFilterFunction(geometry, FilterByCoverage);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, unsigned(index));
-    rtcReleaseGeometry(geometry);
-}
-
-void Accelerator::Implementation::AttachInstance(const Instance& instance, int index) {
-    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, objects[instance.object].get());
-    const Eigen::Matrix<float, 3, 4> m =
-        instance.worldFromInstance.topRows<3>().cast<float>();  // column-major
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m.data());
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(world.get(), geometry, unsigned(shapeCount + index));
-    rtcReleaseGeometry(geometry);
-}
-
-void Accelerator::Implementation::AttachMoving(const ShapeTable& shapes, int index) {
-    const Instance& instance = shapes.instances[index];
-    movingUsers.push_back(std::make_unique<MovingUser>(MovingUser{
-        &shapes, index, objects[instance.object].get(),
-        BoundMotion(shapes.motions[instance.motion], shapes.ObjectBounds(instance.object))}));
-    movingUsers.back()->Attach(device.get(), world.get(), unsigned(shapeCount + index));
-}
-
-Accelerator::Accelerator() = default;
-Accelerator::~Accelerator() = default;
-Accelerator::Accelerator(Accelerator&&) noexcept = default;
-Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
-
-Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures)
-    : implementation(std::make_unique<Implementation>()) {
-    Implementation& impl = *implementation;
-    // A number of threads for the device would limit oneTBB as long as it lives.
-    impl.device.reset(rtcNewDevice(nullptr));
-    if (!impl.device)
-        throw Error(rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU
-                        ? "Embree does not support this processor"
-                        : "Embree cannot be started: there is not enough memory");
-    rtcSetDeviceErrorFunction(impl.device.get(), ReportEmbreeError, nullptr);
-
-    impl.shapeCount = int(shapes.shapes.size());
-    for (int i = 0; i < impl.shapeCount; ++i) impl.users.push_back({&shapes, &textures, i});
-    for (const Object& object : shapes.objects) {
-        impl.objects.push_back(impl.NewScene());
-        for (int i = 0; i < object.shapeCount; ++i)
-            impl.Attach(impl.objects.back().get(), shapes, object.firstShape + i);
-        rtcCommitScene(impl.objects.back().get());
-    }
-    impl.world = impl.NewScene();
-    for (int i = 0; i < shapes.worldShapeCount; ++i) impl.Attach(impl.world.get(), shapes, i);
-    for (size_t i = 0; i < shapes.instances.size(); ++i)
-        if (shapes.instances[i].motion < 0)
-            impl.AttachInstance(shapes.instances[i], int(i));
-        else
-            impl.AttachMoving(shapes, int(i));
-    rtcCommitScene(impl.world.get());
 }
 
 // Traces rays through instances that move. Embree could interpolate their transforms itself, but
 // not outside of its span of time, nor with pbrt-v3's choice of arc, nor in double, as hits are
 // placed; so that it is told no more than where they are.
-namespace {
 
 void MovingBounds(const RTCBoundsFunctionArguments* args) {
     const auto& user = *static_cast<const MovingUser*>(args->geometryUserPtr);
@@ -319,6 +174,133 @@ void OccludedMoving(const RTCOccludedFunctionNArguments* args) {
 }
 
 }  // namespace
+
+// Mixes by Stafford 2011, variant 13.
+float NumberOf(const RTCRay& ray, const RTCHit& hit) {
+    uint64_t state = 0;
+    const auto mix = [&](uint64_t bits) {
+        state = (state ^ bits) + 0x9e3779b97f4a7c15ull;
+        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ull;
+        state = (state ^ (state >> 27)) * 0x94d049bb133111ebull;
+        state ^= state >> 31;
+    };
+    const auto pair = [](float a, float b) {
+        return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
+    };
+    mix(pair(ray.org_x, ray.org_y));
+    mix(pair(ray.org_z, ray.dir_x));
+    mix(pair(ray.dir_y, ray.dir_z));
+    mix(uint64_t(hit.geomID) << 32 | hit.primID);
+    mix(hit.instID[0]);
+    return float(state >> 40) * 0x1p-24f;
+}
+
+EmbreeScene Accelerator::Implementation::NewScene() {
+    EmbreeScene scene(rtcNewScene(device.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    return scene;
+}
+
+void Accelerator::Implementation::Attach(RTCScene scene, const ShapeTable& shapes, int index) {
+    const Shape& shape = shapes.shapes[index];
+    if (shape.IsInvisible() || shape.PrimitiveCount() == 0) return;
+    const Mesh* mesh = std::get_if<Mesh>(&shape.geometry);
+    RTCGeometry geometry =
+        rtcNewGeometry(device.get(), mesh ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserData(geometry, &users[index]);
+    if (mesh) {
+        // Embree reads the vertices where they are; it may read 4 bytes past the last one,
+        // for which the loader keeps a spare vertex.
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh->p.data(), 0, sizeof(Vec3f), mesh->p.size() - 1);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh->triangles.data(), 0, 3 * sizeof(uint32_t),
+                                   mesh->triangles.size());
+    } else {
+        rtcSetGeometryUserPrimitiveCount(geometry, shape.PrimitiveCount());
+        std::visit(
+            [&]<typename S>(const S&) {
+                if constexpr (!std::is_same_v<S, Mesh>) {
+                    if (shape.coverage)
+                        SetCallbacks<S, Passing::Uncovered>(geometry);
+                    else if (shape.hiddenFrom)
+                        SetCallbacks<S, Passing::Hidden>(geometry);
+                    else
+                        SetCallbacks<S, Passing::None>(geometry);
+                }
+            },
+            shape.geometry);
+    }
+    if (mesh && shape.alpha)
+        rtcSetGeometryIntersectFilterFunction(geometry, FilterBy<IsCutOut<false>>);
+    if (mesh && (shape.alpha || shape.shadowAlpha))
+        rtcSetGeometryOccludedFilterFunction(geometry, FilterBy<IsCutOut<true>>);
+    const bool isUsual = !shape.hiddenFrom && shape.coverage && shape.coverage->IsWhole() &&
+                         !shape.coverage->openBehind;
+    if (mesh && isUsual) {  // as most meshes of glTF: shadow rays need no filter
+        rtcSetGeometryIntersectFilterFunction(geometry, FilterBy<IsBehindSingleSided>);
+    } else if (mesh && (shape.coverage || shape.hiddenFrom)) {
+        rtcSetGeometryIntersectFilterFunction(geometry, FilterBy<IsUncovered>);
+        rtcSetGeometryOccludedFilterFunction(geometry, FilterBy<IsUncovered>);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, unsigned(index));
+    rtcReleaseGeometry(geometry);
+}
+
+void Accelerator::Implementation::AttachInstance(const Instance& instance, int index) {
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, objects[instance.object].get());
+    const Eigen::Matrix<float, 3, 4> m =
+        instance.worldFromInstance.topRows<3>().cast<float>();  // column-major
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(world.get(), geometry, unsigned(shapeCount + index));
+    rtcReleaseGeometry(geometry);
+}
+
+void Accelerator::Implementation::AttachMoving(const ShapeTable& shapes, int index) {
+    const Instance& instance = shapes.instances[index];
+    movingUsers.push_back(std::make_unique<MovingUser>(MovingUser{
+        &shapes, index, objects[instance.object].get(),
+        BoundMotion(shapes.motions[instance.motion], shapes.ObjectBounds(instance.object))}));
+    movingUsers.back()->Attach(device.get(), world.get(), unsigned(shapeCount + index));
+}
+
+Accelerator::Accelerator() = default;
+Accelerator::~Accelerator() = default;
+Accelerator::Accelerator(Accelerator&&) noexcept = default;
+Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
+
+Accelerator::Accelerator(const ShapeTable& shapes, const TextureTable& textures)
+    : implementation(std::make_unique<Implementation>()) {
+    Implementation& impl = *implementation;
+    // A number of threads for the device would limit oneTBB as long as it lives.
+    impl.device.reset(rtcNewDevice(nullptr));
+    if (!impl.device)
+        throw Error(rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU
+                        ? "Embree does not support this processor"
+                        : "Embree cannot be started: there is not enough memory");
+    rtcSetDeviceErrorFunction(impl.device.get(), ReportEmbreeError, nullptr);
+
+    impl.shapeCount = int(shapes.shapes.size());
+    for (int i = 0; i < impl.shapeCount; ++i) impl.users.push_back({&shapes, &textures, i});
+    for (const Object& object : shapes.objects) {
+        impl.objects.push_back(impl.NewScene());
+        for (int i = 0; i < object.shapeCount; ++i)
+            impl.Attach(impl.objects.back().get(), shapes, object.firstShape + i);
+        rtcCommitScene(impl.objects.back().get());
+    }
+    impl.world = impl.NewScene();
+    for (int i = 0; i < shapes.worldShapeCount; ++i) impl.Attach(impl.world.get(), shapes, i);
+    for (size_t i = 0; i < shapes.instances.size(); ++i)
+        if (shapes.instances[i].motion < 0)
+            impl.AttachInstance(shapes.instances[i], int(i));
+        else
+            impl.AttachMoving(shapes, int(i));
+    rtcCommitScene(impl.world.get());
+}
 
 void MovingUser::Attach(RTCDevice device, RTCScene world, unsigned id) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);

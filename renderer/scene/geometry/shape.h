@@ -39,7 +39,6 @@
 #include "renderer/scene/geometry/shapes/curves.h"
 #include "renderer/scene/geometry/shapes/mesh.h"
 #include "renderer/scene/geometry/shapes/quadric.h"
-#include "renderer/scene/geometry/shapes/revolved.h"
 #include "renderer/scene/textures/texture.h"
 
 namespace lull {
@@ -123,8 +122,6 @@ struct Shape {
     uint32_t PrimitiveCount() const;
     Bounds3f WorldBounds() const;
 };
-
-// Computes the coverage of a mesh at a point.
 
 // Returns the probability, in [0, 1], that a ray hits the shape at this point of a triangle. The
 // shape is a mesh with coverage.

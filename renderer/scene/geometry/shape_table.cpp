@@ -122,9 +122,7 @@ void ShapeTable::AddMotion(const Description& description, const InstanceEntity&
         transforms.emplace_back(pair.at[0], pair.at[1], startTime, endTime, shutter);
     }
     instance->worldFromInstance = ProductAt(transforms, 0);
-    if (std::all_of(transforms.begin(), transforms.end(),
-                    [](const AnimatedTransform& t) { return t.IsConstant(); }))
-        return;
+    if (std::ranges::all_of(transforms, &AnimatedTransform::IsConstant)) return;
     instance->motion = int(motions.size());
     motions.push_back(std::move(transforms));
 }
@@ -160,16 +158,9 @@ size_t ShapeTable::TriangleCount() const {
 void ShapeTable::Interact(const Ray& ray, const Hit& hit, SurfaceNeeds needs,
                           SurfaceInteraction* interaction, float time) const {
     const Instance* instance = hit.instance < 0 ? nullptr : &instances[hit.instance];
-    if (instance && instance->motion >= 0)
-        InteractMoving(ray, hit, *instance, time, needs, interaction);
-    else
-        InteractIn(instance, ray, hit, needs, interaction);
-}
-
-void ShapeTable::InteractMoving(const Ray& ray, const Hit& hit, const Instance& instance,
-                                float time, SurfaceNeeds needs,
-                                SurfaceInteraction* interaction) const {
-    const Instance moved = InstanceAt(instance, time);
+    if (!instance || instance->motion < 0)
+        return InteractIn(instance, ray, hit, needs, interaction);
+    const Instance moved = InstanceAt(*instance, time);
     InteractIn(&moved, ray, hit, needs, interaction);
 }
 

@@ -64,8 +64,6 @@ struct ShapeTable {
     void AddInstances(const Description&, std::span<const Bounds3f> objectBounds, Warnings&);
     void AddMotion(const Description&, const InstanceEntity&, const Shutter&, Instance*, Warnings&);
     void LimitReach(std::span<const FileLoc> placesOfInstances);
-    void InteractMoving(const Ray&, const Hit&, const Instance&, float time, SurfaceNeeds,
-                        SurfaceInteraction*) const;
     // `instance` is null for shapes of the world itself.
     void InteractIn(const Instance* instance, const Ray&, const Hit&, SurfaceNeeds,
                     SurfaceInteraction*) const;

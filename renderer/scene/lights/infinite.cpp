@@ -28,6 +28,118 @@ int NeighbourOf(int cell, int n, Wrap wrap) {
     return wrap == Wrap::Repeat ? (beside + n) % n : std::clamp(beside, 0, n - 1);
 }
 
+// A square soft box: where it hangs, in degrees, to the right of the camera and above the horizon,
+// half its width, and how bright it is.
+struct SoftBox {
+    float azimuth, elevation, halfWidth, radiance;
+};
+constexpr SoftBox kBoxes[] = {
+    {-45, 45, 22, 4},    // the key light
+    {60, 15, 25, 1.5f},  // fills its shadows
+    {160, 55, 15, 3},    // draws the outline from behind
+};
+
+float SmoothStep(float x) {
+    x = std::clamp(x, 0.f, 1.f);
+    return x * x * (3 - 2 * x);
+}
+
+Vec3f Direction(float azimuth, float elevation) {
+    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+            std::sin(elevation)};
+}
+
+float RadianceOf(const SoftBox& box, const Vec3f& w) {
+    constexpr float kDegree = kPi / 180, kEdge = 0.2f;  // of half the width
+    const float a = box.azimuth * kDegree, e = box.elevation * kDegree;
+    const Vec3f center = Direction(a, e), right(-std::sin(a), std::cos(a), 0);
+    const float ahead = w.dot(center);
+    if (ahead <= 0) return 0;
+    const float scale = 1 / (ahead * std::tan(box.halfWidth * kDegree));
+    const float x = std::abs(w.dot(right)) * scale,
+                y = std::abs(w.dot(center.cross(right))) * scale;
+    return box.radiance * SmoothStep((1 - std::max(x, y)) / kEdge);
+}
+
+// Returns latitude-longitude coordinates of a unit vector of light space, each in [0, 1].
+Vec2f CoordinatesOf(const Vec3f& w) {
+    const float phi = std::atan2(w.y(), w.x());
+    return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
+            std::acos(std::clamp(w.z(), -1.f, 1.f)) / kPi};
+}
+
+// Blackens texels that are not finite once multiplied by L, and parts of others that are negative,
+// as compression and filters leave them. Returns how many texels that were, for more than rounding.
+int Blacken(const Rgb& L, Image* image) {
+    int count = 0;
+    std::visit(
+        [&](auto& texels) {
+            using T = std::decay_t<decltype(texels[0])>;
+            const int colors = image->channels < 3 ? 1 : 3;
+            for (size_t at = 0; at < texels.size(); at += size_t(image->channels)) {
+                bool isGood = true, isFinite = true;
+                for (int c = 0; c < 3; ++c) {
+                    T& texel = texels[at + size_t(c % colors)];
+                    const float value = float(texel) * L[c];
+                    isGood &= value >= -float(kRounding);
+                    isFinite &= std::abs(value) <= EnvironmentMap::kMaxTexel;
+                    if (value < 0) texel = T();
+                }
+                if (!isFinite) std::fill_n(&texels[at], colors, T());
+                count += !(isGood && isFinite);
+            }
+        },
+        image->texels);
+    return count;
+}
+
+// Returns the direction, unit, of a point of the square, and the sine of its colatitude; 1 of equal
+// areas.
+Vec3f DirectionOf(MapProjection projection, const Vec2f& st, float* sine) {
+    *sine = 1;
+    if (projection == MapProjection::EqualArea) return DirectionOfEqualAreaSquare(st);
+    const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
+    const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
+    *sine = sinTheta;
+    return {sinTheta * cosPhi, sinTheta * sinPhi, cosTheta};
+}
+
+// Tells by its shape how a map of pbrt-v4 shows directions. Throws Error for other shapes.
+MapProjection ProjectionOf(const LightReader& in, const Image& image, const std::string& file) {
+    if (!in.entity.parameters.GetBool("equalarea", false)) return MapProjection::LatitudeLongitude;
+    if (image.width == image.height) return MapProjection::EqualArea;
+    if (image.width != 2 * image.height)
+        throw Error(in.entity.loc,
+                    fmt::format("the sky \"{}\" has {}x{} pixels; it has to be square, of equal "
+                                "areas, or twice as wide as high, of latitude and longitude",
+                                file, image.width, image.height));
+    in.warnings.Add(
+        in.entity.loc,
+        "a sky that is twice as wide as high is taken for one of latitude and longitude", file);
+    return MapProjection::LatitudeLongitude;
+}
+
+// Returns the illuminance, as luminance, that the half of a map about +z gives a surface.
+float IlluminanceOf(const EnvironmentMap& map, int width, int height) {
+    // Small maps have texels on both sides of the horizon.
+    const int columns = std::max(width, 512), rows = std::max(height, 512);
+    double sum = 0, solidAngle = 0;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) {
+            const Vec2f st((float(x) + 0.5f) / float(columns), (float(y) + 0.5f) / float(rows));
+            float weight;
+            const Vec3f w = DirectionOf(map.Projection(), st, &weight);
+            solidAngle += double(weight);
+            if (w.z() > 0) sum += double(weight * w.z() * Luminance(map.Radiance(st)));
+        }
+    return float(4 * kPi * sum / solidAngle);
+}
+
+// Returns the steradians that an area of the square shows, where DirectionOf() finds this sine.
+float SolidAnglePerArea(MapProjection projection, float sine) {
+    return projection == MapProjection::EqualArea ? 4 * kPi : 2 * kPi * kPi * sine;
+}
+
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(Image i, const Rgb& s, bool isCompensated, MapProjection p)
@@ -138,43 +250,6 @@ float Portal::Pdf(const Vec3f& from, const Vec3f& w) const {
     return t * t / (area * cosine);
 }
 
-namespace {
-
-// A square soft box: where it hangs, in degrees, to the right of the camera and above the horizon,
-// half its width, and how bright it is.
-struct SoftBox {
-    float azimuth, elevation, halfWidth, radiance;
-};
-constexpr SoftBox kBoxes[] = {
-    {-45, 45, 22, 4},    // the key light
-    {60, 15, 25, 1.5f},  // fills its shadows
-    {160, 55, 15, 3},    // draws the outline from behind
-};
-
-float SmoothStep(float x) {
-    x = std::clamp(x, 0.f, 1.f);
-    return x * x * (3 - 2 * x);
-}
-
-Vec3f Direction(float azimuth, float elevation) {
-    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-            std::sin(elevation)};
-}
-
-float RadianceOf(const SoftBox& box, const Vec3f& w) {
-    constexpr float kDegree = kPi / 180, kEdge = 0.2f;  // of half the width
-    const float a = box.azimuth * kDegree, e = box.elevation * kDegree;
-    const Vec3f center = Direction(a, e), right(-std::sin(a), std::cos(a), 0);
-    const float ahead = w.dot(center);
-    if (ahead <= 0) return 0;
-    const float scale = 1 / (ahead * std::tan(box.halfWidth * kDegree));
-    const float x = std::abs(w.dot(right)) * scale,
-                y = std::abs(w.dot(center.cross(right))) * scale;
-    return box.radiance * SmoothStep((1 - std::max(x, y)) / kEdge);
-}
-
-}  // namespace
-
 Image MakeStudio() {
     constexpr int kWidth = 256, kHeight = 128;
     std::vector<float> texels;
@@ -189,89 +264,6 @@ Image MakeStudio() {
         }
     return {kWidth, kHeight, 1, std::move(texels)};
 }
-
-namespace {
-
-// Returns latitude-longitude coordinates of a unit vector of light space, each in [0, 1].
-Vec2f CoordinatesOf(const Vec3f& w) {
-    const float phi = std::atan2(w.y(), w.x());
-    return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
-            std::acos(std::clamp(w.z(), -1.f, 1.f)) / kPi};
-}
-
-// Blackens texels that are not finite once multiplied by L, and parts of others that are negative,
-// as compression and filters leave them. Returns how many texels that were, for more than rounding.
-int Blacken(const Rgb& L, Image* image) {
-    int count = 0;
-    std::visit(
-        [&](auto& texels) {
-            using T = std::decay_t<decltype(texels[0])>;
-            const int colors = image->channels < 3 ? 1 : 3;
-            for (size_t at = 0; at < texels.size(); at += size_t(image->channels)) {
-                bool isGood = true, isFinite = true;
-                for (int c = 0; c < 3; ++c) {
-                    T& texel = texels[at + size_t(c % colors)];
-                    const float value = float(texel) * L[c];
-                    isGood &= value >= -float(kRounding);
-                    isFinite &= std::abs(value) <= EnvironmentMap::kMaxTexel;
-                    if (value < 0) texel = T();
-                }
-                if (!isFinite) std::fill_n(&texels[at], colors, T());
-                count += !(isGood && isFinite);
-            }
-        },
-        image->texels);
-    return count;
-}
-
-// Returns the direction, unit, of a point of the square, and the sine of its colatitude; 1 of equal
-// areas.
-Vec3f DirectionOf(MapProjection projection, const Vec2f& st, float* sine) {
-    *sine = 1;
-    if (projection == MapProjection::EqualArea) return DirectionOfEqualAreaSquare(st);
-    const auto [sinTheta, cosTheta] = SineCosineOfTurn(0.5f * st.y());
-    const auto [sinPhi, cosPhi] = SineCosineOfTurn(st.x());
-    *sine = sinTheta;
-    return {sinTheta * cosPhi, sinTheta * sinPhi, cosTheta};
-}
-
-// Tells by its shape how a map of pbrt-v4 shows directions. Throws Error for other shapes.
-MapProjection ProjectionOf(const LightReader& in, const Image& image, const std::string& file) {
-    if (!in.entity.parameters.GetBool("equalarea", false)) return MapProjection::LatitudeLongitude;
-    if (image.width == image.height) return MapProjection::EqualArea;
-    if (image.width != 2 * image.height)
-        throw Error(in.entity.loc,
-                    fmt::format("the sky \"{}\" has {}x{} pixels; it has to be square, of equal "
-                                "areas, or twice as wide as high, of latitude and longitude",
-                                file, image.width, image.height));
-    in.warnings.Add(
-        in.entity.loc,
-        "a sky that is twice as wide as high is taken for one of latitude and longitude", file);
-    return MapProjection::LatitudeLongitude;
-}
-
-// Returns the illuminance, as luminance, that the half of a map about +z gives a surface.
-float IlluminanceOf(const EnvironmentMap& map, int width, int height) {
-    // Small maps have texels on both sides of the horizon.
-    const int columns = std::max(width, 512), rows = std::max(height, 512);
-    double sum = 0, solidAngle = 0;
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x) {
-            const Vec2f st((float(x) + 0.5f) / float(columns), (float(y) + 0.5f) / float(rows));
-            float weight;
-            const Vec3f w = DirectionOf(map.Projection(), st, &weight);
-            solidAngle += double(weight);
-            if (w.z() > 0) sum += double(weight * w.z() * Luminance(map.Radiance(st)));
-        }
-    return float(4 * kPi * sum / solidAngle);
-}
-
-// Returns the steradians that an area of the square shows, where DirectionOf() finds this sine.
-float SolidAnglePerArea(MapProjection projection, float sine) {
-    return projection == MapProjection::EqualArea ? 4 * kPi : 2 * kPi * kPi * sine;
-}
-
-}  // namespace
 
 InfiniteLight InfiniteLight::Make(const LightReader& in) {
     const LightEntity& entity = in.entity;

@@ -113,8 +113,6 @@ class InfiniteLight {
     std::optional<Portal> portal;
 };
 
-// Lights in one direction, without size or with.
-
 // Emits L, W/(m^2 sr) times the solid angle it stands for, from one direction.
 struct DistantLight {
     static constexpr LightType kType = LightType::DeltaDirection;

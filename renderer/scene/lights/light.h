@@ -34,7 +34,6 @@
 #pragma once
 
 #include "renderer/base/variant.h"
-#include "renderer/scene/lights/area.h"
 #include "renderer/scene/lights/infinite.h"
 #include "renderer/scene/lights/point.h"
 

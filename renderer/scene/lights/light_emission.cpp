@@ -104,10 +104,7 @@ std::optional<EmittedRay> LightEmission::Sample(float u, const Vec2f& origin,
             ray.p = s.p, ray.pError = s.pError, ray.n = s.n;
             ray.w = SampleOnward(l, s.n, direction);
             ray.L = l.Le(s.n, ray.w);
-            if (l.map) {
-                const Vec2f b = SampleUniformTriangle(origin);  // as the triangle does
-                ray.L *= l.map->Covered(l.triangle, b.y(), 1 - b.x() - b.y());
-            }
+            if (l.map) ray.L *= l.map->Sampled(l.triangle, origin);
         } else if constexpr (L::kType == LightType::DeltaPosition) {
             ray.p = l.p;
             ray.w = ConeOf(l).Sample(direction);

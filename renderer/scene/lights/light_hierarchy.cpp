@@ -1,4 +1,4 @@
-#include "renderer/scene/lights/light_hierarchy.h"
+#include "renderer/scene/lights/light_distribution.h"
 
 #include <numbers>
 

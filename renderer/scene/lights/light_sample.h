@@ -36,8 +36,6 @@ struct Emitted {
     float pdf;  // 1/sr, with which sampling the light finds the same direction
 };
 
-// Bounds where lights sit, where they shine and how much, for one light or for many together.
-
 // Follows Conty Estevez and Kulla 2018 (section 4.1): light leaves at angles of up to theta_e from
 // normals that lie within theta_o of an axis.
 struct LightBounds {
@@ -68,8 +66,6 @@ inline Rgb LightColor(const Entity& entity, const std::string& name, Warnings& w
                  fmt::format("\"{}\" of \"{}\"", name, entity.name));
     return color.max(0.f);
 }
-
-// Inputs of the functions that read lights.
 
 struct LightReader {
     const Description& description;  // relative file names start at its directory

@@ -224,7 +224,7 @@ LightTable::LightTable(const Description& description, ShapeTable& shapes,
             entity && IsKnownAreaLight(*entity, warnings))
             AddAreaLights(description.shapes[i], textures, asPbrtV3, &shapes.shapes[i], warnings);
     if (lights.empty()) return;
-    anyVisible = std::any_of(lights.begin(), lights.end(), IsVisible);
+    anyVisible = std::ranges::any_of(lights, IsVisible);
     const std::string strategy = StrategyOf(description.integrator, warnings);
     const bool isMany = !asPbrtV3 && lights.size() > kMostTableLights;
     if (strategy == "bvh" || (strategy == "spatial" && isMany))

@@ -100,6 +100,23 @@ float FactorOfPower(const Entity& entity, float whole) {
     return power > 0 && whole > 0 ? power / whole : 1;
 }
 
+// Integrates the image over the directions that it is projected to.
+float WholePower(const ProjectionLight& light) {
+    const Image& image = light.image->image;
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const Vec2f st((float(x) + 0.5f) / float(image.width),
+                           (float(y) + 0.5f) / float(image.height));
+            const Vec2f plane =
+                (2 * st - Vec2f::Ones()).cwiseProduct(light.screen) / light.perTangent;
+            const double cosine = 1 / std::sqrt(1 + double(plane.squaredNorm()));
+            sum += double(NearestRgb(image, st).mean()) * cosine * cosine * cosine;
+        }
+    const Vec2f size = 2 * light.screen / light.perTangent;
+    return float(sum) * size.x() * size.y() / (float(image.width) * float(image.height));
+}
+
 }  // namespace
 
 PointLight PointLight::Make(const LightReader& in) {
@@ -149,27 +166,6 @@ std::optional<LightSample> GoniometricLight::Sample(const Vec3f& from, const Vec
                                   std::acos(std::clamp(w.y(), -1.f, 1.f)) * kInvPi});
     });
 }
-
-namespace {
-
-// Integrates the image over the directions that it is projected to.
-float WholePower(const ProjectionLight& light) {
-    const Image& image = light.image->image;
-    double sum = 0;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const Vec2f st((float(x) + 0.5f) / float(image.width),
-                           (float(y) + 0.5f) / float(image.height));
-            const Vec2f plane =
-                (2 * st - Vec2f::Ones()).cwiseProduct(light.screen) / light.perTangent;
-            const double cosine = 1 / std::sqrt(1 + double(plane.squaredNorm()));
-            sum += double(NearestRgb(image, st).mean()) * cosine * cosine * cosine;
-        }
-    const Vec2f size = 2 * light.screen / light.perTangent;
-    return float(sum) * size.x() * size.y() / (float(image.width) * float(image.height));
-}
-
-}  // namespace
 
 ProjectionLight ProjectionLight::Make(const LightReader& in) {
     const Parameters& params = in.entity.parameters;

@@ -1,4 +1,4 @@
-// Lights at points.
+// Lights that have a place: at points, and on shapes.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,6 @@
 namespace lull {
 
 // The image that shapes the beam of a light.
-
 struct LightImage {
     Image image;
     Rgb mean;                                         // of all texels
@@ -31,8 +30,6 @@ struct LightImage {
 // Texels that are negative or not finite count as black, with a counted warning. Null substitutes
 // an image that cannot be read. `isRound`: columns are longitudes, which repeat.
 std::shared_ptr<const LightImage> ReadLightImage(const LightReader&, bool isRound);
-
-// Varies the emission of a mesh over its surface.
 
 // Shared data of the triangles of an emitting mesh. The shape and textures are a scene's.
 struct EmissionMap {
@@ -63,6 +60,12 @@ struct EmissionMap {
         return e * CoverageAt(*shape, *textures, Vec3f::Zero(), triangle, b1, b2);
     }
 
+    // Returns it for the point that SampleUniformTriangle(u) is in the triangle as it is sampled.
+    Rgb Sampled(uint32_t triangle, const Vec2f& u) const {
+        const Vec2f b = SampleUniformTriangle(u);
+        return Covered(triangle, b.y(), 1 - b.x() - b.y());
+    }
+
     bool IsCutOut(uint32_t triangle, float b1, float b2) const {
         const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
         const auto& p = mesh.corners[triangle].p;
@@ -76,16 +79,12 @@ struct EmissionMap {
         constexpr int kSteps = 4;
         Rgb sum = Rgb::Zero();
         for (int i = 0; i < kSteps; ++i)
-            for (int j = 0; j < kSteps; ++j) {
-                const Vec2f b = SampleUniformTriangle(
-                    {(float(i) + 0.5f) / float(kSteps), (float(j) + 0.5f) / float(kSteps)});
-                sum += Covered(triangle, b.y(), 1 - b.x() - b.y());
-            }
+            for (int j = 0; j < kSteps; ++j)
+                sum += Sampled(triangle, {(float(i) + 0.5f) / float(kSteps),
+                                          (float(j) + 0.5f) / float(kSteps)});
         return sum / float(kSteps * kSteps);
     }
 };
-
-// How the light of spots and of area lights depends on the direction.
 
 // How the light of spots falls off to the sides.
 //
@@ -227,6 +226,80 @@ struct ProjectionLight {
     static ProjectionLight Make(const LightReader&);
     std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const;
     Rgb Power() const;
+};
+
+// Emits L from one primitive of a shape, on the side of its normal or on both.
+struct AreaLight {
+    static constexpr LightType kType = LightType::Area;
+
+    Rgb L;
+    bool twoSided = false;
+    bool isHidden = false;                     // its shape has alpha 0
+    const EmissionProfile* profile = nullptr;  // null: the same radiance to all sides
+    Emitter surface;
+    // If the emission of a mesh varies: the factor of L, which triangle this is, and roughly the
+    // mean factor over it.
+    const EmissionMap* map = nullptr;
+    uint32_t triangle = 0;
+    Rgb meanFactor = Rgb::Ones();
+
+    // Returns the radiance that leaves a point with normal n towards w, without the map.
+    Rgb Le(const Vec3f& n, const Vec3f& w) const {
+        if (!twoSided && !(n.dot(w) > 0)) return Rgb::Zero();
+        return profile ? Rgb(L * Falloff(*profile, n, w)) : L;
+    }
+    // Returns it with the map; the point is the hit's.
+    Rgb Le(const Vec3f& n, const Vec3f& w, const Hit& hit) const {
+        return map ? Le(n, w) * map->At(triangle, hit.b1, hit.b2) : Le(n, w);
+    }
+
+    std::optional<LightSample> Sample(const Vec3f& from, const Vec2f& u) const {
+        const auto s =
+            VisitEmitter(surface, [&](const auto& e) { return lull::Sample(e, from, u); });
+        if (!s) return {};
+        const Vec3f wi = (s->p - from).normalized();
+        Rgb emitted = Le(s->n, -wi);
+        if (map) emitted *= map->Sampled(triangle, u);
+        if (IsBlack(emitted)) return {};
+        return LightSample{.L = emitted,
+                           .wi = wi,
+                           .pdf = s->pdf,
+                           .isHidden = isHidden,
+                           .p = s->p,
+                           .pError = s->pError,
+                           .n = s->n};
+    }
+
+    float Pdf(const Vec3f& from, const Vec3f& p, const Vec3f& n) const {
+        return VisitEmitter(surface, [&](const auto& e) { return lull::Pdf(e, from, p, n); });
+    }
+
+    LightBounds Bounds() const {
+        LightBounds bounds{
+            .box = VisitEmitter(surface, [](const auto& e) { return e.WorldBounds(); })};
+        if (const auto* cone = std::get_if<SpotCone>(profile)) {
+            cone->Bound(&bounds);
+            bounds.power = BoundedPower(Whole());
+            return bounds;
+        }
+        const NormalBounds normals =
+            VisitEmitter(surface, [](const auto& e) { return e.Normals(); });
+        bounds.axis = normals.axis;
+        bounds.cosNormals = normals.cosAngle;
+        if (const auto* spread = std::get_if<Spread>(profile))
+            bounds.cosEmission = spread->cosEmission;
+        bounds.power = BoundedPower(Power());
+        bounds.isTwoSided = twoSided || normals.isTwoSided;
+        return bounds;
+    }
+    Rgb Power() const { return profile ? Rgb(PowerFraction(*profile) * Whole()) : Whole(); }
+    float Area() const {
+        return VisitEmitter(surface, [](const auto& e) { return e.Area(); });
+    }
+
+  private:
+    // Returns the power without a profile.
+    Rgb Whole() const { return (twoSided ? 2 : 1) * kPi * Area() * L * meanFactor; }
 };
 
 }  // namespace lull

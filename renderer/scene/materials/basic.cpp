@@ -59,6 +59,12 @@ Roughness MetalRoughness(const MaterialReader& in) {
             in.FloatOrNone("vroughness").value_or(both)};
 }
 
+Roughness UberRoughness(const MaterialReader& in) {
+    const FloatTexture both = in.Float("roughness", 0.1f);
+    const FloatTexture u = in.FloatOrNone("uroughness").value_or(both);
+    return {in, u, in.FloatOrNone("vroughness").value_or(u)};
+}
+
 }  // namespace
 
 Metal::Metal(const MaterialReader& in)
@@ -138,16 +144,6 @@ void Translucent::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
         if (!IsBlack(t)) bsdf->Add(MicrofacetTransmission{Rgb(t * glossy), distribution, kIndex});
     }
 }
-
-namespace {
-
-Roughness UberRoughness(const MaterialReader& in) {
-    const FloatTexture both = in.Float("roughness", 0.1f);
-    const FloatTexture u = in.FloatOrNone("uroughness").value_or(both);
-    return {in, u, in.FloatOrNone("vroughness").value_or(u)};
-}
-
-}  // namespace
 
 Uber::Uber(const MaterialReader& in)
     : kd(in.ShareOfColors("Kd", 0.25f)),

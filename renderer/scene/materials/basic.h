@@ -1,5 +1,8 @@
-// pbrt-v3's materials that are textures and a few lobes.
+// Materials that are textures and a few lobes: pbrt-v3's and, in coated.cpp, pbrt-v4's.
 #pragma once
+
+#include <memory>
+#include <string>
 
 #include "renderer/bsdf/subsurface.h"
 #include "renderer/scene/materials/material_inputs.h"
@@ -160,6 +163,75 @@ struct Hair {
     std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
 
     MaterialTraits Traits(const MaterialReader& in) const;
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Materials of pbrt-v4 that are layered: a diffuse base or a conductor under a dielectric coat, and
+// thin sheets of glass.
+
+// Parameters: "reflectance", "eta" and "thickness" of the coat, "uroughness", "vroughness".
+struct CoatedDiffuse {
+    SpectrumTexture reflectance;
+    Roughness roughness;
+    float eta;
+    std::shared_ptr<const CoatTable> table;
+
+    explicit CoatedDiffuse(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const {
+        return ProblemOfIndex(in, FloatTexture{eta});
+    }
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(2, reflectance, roughness);
+    }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Parameters: "interface.eta", "interface.uroughness", "interface.vroughness" and "thickness" of
+// the coat; "eta" and "k", or "reflectance", "conductor.uroughness" and "conductor.vroughness" of
+// the conductor.
+struct CoatedConductor {
+    SpectrumTexture eta, k;
+    std::optional<SpectrumTexture> reflectance;
+    Roughness coat, base;
+    float index, thickness;
+
+    explicit CoatedConductor(const MaterialReader& in);
+    std::string Problem(const MaterialReader& in) const {
+        return ProblemOfIndex(in, FloatTexture{index});
+    }
+    MaterialTraits Traits(const MaterialReader& in) const {
+        return in.TraitsOf(2, eta, k, reflectance, coat, base);
+    }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
+};
+
+// Parameter: "eta".
+struct ThinDielectric {
+    FloatTexture eta;
+
+    explicit ThinDielectric(const MaterialReader& in) : eta(in.IndexOfRefraction()) {}
+    std::string Problem(const MaterialReader& in) const { return ProblemOfIndex(in, eta); }
+    MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1, eta); }
+    void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
+        bsdf->Add(ThinDielectricLobe{Rgb(1, 1, 1), in.Index(eta)});
+    }
+};
+
+// Reads the .bsdf files of layered materials: version 1 of the format, as layerlab writes it and
+// pbrt-v3 reads it: one basis, without textures and extrapolation, one channel or three. Throws
+// Error with the path if it is anything else, cut short, or holds impossible numbers.
+FourierTable LoadFourierTable(const std::string& path);
+
+// Represents a layered or measured material, tabulated in a file.
+struct Fourier {
+    std::shared_ptr<const FourierTable> table;
+    std::string problem;  // why there is no table
+
+    explicit Fourier(const MaterialReader& in);
+
+    // Returns why the file could not be read, "" if it was.
+    std::string Problem(const MaterialReader&) const { return problem; }
+    MaterialTraits Traits(const MaterialReader& in) const { return in.TraitsOf(1); }
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 

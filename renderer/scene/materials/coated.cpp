@@ -1,5 +1,3 @@
-#include "renderer/scene/materials/coated.h"
-
 #include "renderer/input/spectrum.h"
 #include "renderer/scene/materials/basic.h"
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/materials/fourier.h"
+#include "renderer/scene/materials/basic.h"
 
 #include <fmt/format.h>
 

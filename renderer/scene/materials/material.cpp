@@ -7,8 +7,6 @@
 #include "renderer/input/spectrum.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/materials/basic.h"
-#include "renderer/scene/materials/coated.h"
-#include "renderer/scene/materials/fourier.h"
 #include "renderer/scene/materials/material_inputs.h"
 #include "renderer/scene/materials/metallic_roughness.h"
 #include "renderer/scene/materials/subsurface.h"

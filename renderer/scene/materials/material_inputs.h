@@ -29,8 +29,6 @@
 
 namespace lull {
 
-// Tilts the shading geometry of surfaces by textures.
-
 // Tilts the shading geometry as a displacement of the surface would.
 //
 // Turns hit->ns, dpdu and dpdv to those of the surface displaced by the texture along its shading
@@ -161,8 +159,6 @@ struct MaterialInputs {
 inline bool IsAlwaysBlack(const SpectrumTexture& t) {
     return t.IsConstant() && (t.constant <= 0).all();
 }
-
-// Reads roughness parameters and turns them into a microfacet distribution.
 
 // How a roughness becomes alpha: not at all, as in pbrt-v3, or by its root, as in pbrt-v4.
 enum class Remapping { None, PbrtV3, Root };

@@ -1,7 +1,7 @@
 #include "renderer/scene/materials/metallic_roughness.h"
 
 #include "renderer/base/math.h"
-#include "renderer/bsdf/directional_albedo.h"
+#include "renderer/bsdf/layered_lobes.h"
 #include "renderer/scene/materials/basic.h"
 
 namespace lull {
@@ -11,24 +11,28 @@ namespace {
 // lights would make fireflies of it, as very few paths find where it shows them.
 constexpr float kSmoothAlpha = 1e-3f;
 
-UvSlot<FloatTexture> FloatSlot(const MaterialReader& in, const std::string& name) {
-    return {in.Float(name, 1), in.entity.parameters.GetInt(name + "uv", 0) == 1};
-}
-
-UvSlot<SpectrumTexture> SpectrumSlot(const MaterialReader& in, const std::string& name) {
-    return {in.Spectrum(name, 1), in.entity.parameters.GetInt(name + "uv", 0) == 1};
-}
-
 float Factor(const MaterialReader& in, const std::string& name, float otherwise) {
     return std::max(0.f, in.entity.parameters.GetFloat(name + "factor", otherwise));
 }
 
-Rgb ColorFactor(const MaterialReader& in, const std::string& name, float otherwise = 1) {
-    return in.entity.parameters.GetSpectrum(name + "factor", Rgb::Constant(otherwise)).max(0.f);
+bool UsesSecondUv(const MaterialReader& in, const std::string& name) {
+    return in.entity.parameters.GetInt(name + "uv", 0) == 1;
 }
 
-template <typename Texture>
-auto Look(const UvSlot<Texture>& slot, const MaterialInputs& in) {
+UvSlot<FloatTexture> FloatSlot(const MaterialReader& in, const std::string& name,
+                               float otherwise = 0) {
+    return {in.Float(name, 1), UsesSecondUv(in, name), Factor(in, name, otherwise)};
+}
+
+UvSlot<SpectrumTexture, Rgb> ColorSlot(const MaterialReader& in, const std::string& name,
+                                       float otherwise = 1) {
+    const Rgb factor =
+        in.entity.parameters.GetSpectrum(name + "factor", Rgb::Constant(otherwise)).max(0.f);
+    return {in.Spectrum(name, 1), UsesSecondUv(in, name), factor};
+}
+
+template <typename Texture, typename Factor>
+auto Look(const UvSlot<Texture, Factor>& slot, const MaterialInputs& in) {
     if (!slot.secondUv || slot.texture.IsConstant())
         return in.textures.Evaluate(slot.texture, in.context);
     TextureContext context = in.context;
@@ -36,8 +40,8 @@ auto Look(const UvSlot<Texture>& slot, const MaterialInputs& in) {
     return in.textures.Evaluate(slot.texture, context);
 }
 
-float Weight(const UvSlot<FloatTexture>& slot, float factor, const MaterialInputs& in) {
-    return factor == 0 ? 0 : std::clamp(factor * Look(slot, in), 0.f, 1.f);
+float Weight(const UvSlot<FloatTexture>& slot, const MaterialInputs& in) {
+    return slot.factor == 0 ? 0 : std::clamp(slot.factor * Look(slot, in), 0.f, 1.f);
 }
 
 // Of the frame in which light to the view is scattered.
@@ -50,31 +54,22 @@ float AlphaOf(float roughness) { return Sqr(std::clamp(roughness, 0.f, 1.f)); }
 }  // namespace
 
 MetallicRoughness::MetallicRoughness(const MaterialReader& in)
-    : baseColor(SpectrumSlot(in, "basecolor")),
-      metallicRoughness(SpectrumSlot(in, "metallicroughness")),
-      specularColor(SpectrumSlot(in, "specularcolor")),
-      sheenColor(SpectrumSlot(in, "sheencolor")),
-      anisotropy(SpectrumSlot(in, "anisotropy")),
-      diffuseTransmissionColor(SpectrumSlot(in, "diffusetransmissioncolor")),
-      specular(FloatSlot(in, "specular")),
+    : baseColor(ColorSlot(in, "basecolor")),
+      specularColor(ColorSlot(in, "specularcolor")),
+      sheenColor(ColorSlot(in, "sheencolor", 0)),
+      diffuseTransmissionColor(ColorSlot(in, "diffusetransmissioncolor")),
+      metallicRoughness{in.Spectrum("metallicroughness", 1), UsesSecondUv(in, "metallicroughness"),
+                        1},
+      anisotropy{in.Spectrum("anisotropy", 1), UsesSecondUv(in, "anisotropy"),
+                 std::min(Factor(in, "anisotropy", 0), 1.f)},
+      specular(FloatSlot(in, "specular", 1)),
       transmission(FloatSlot(in, "transmission")),
       clearcoat(FloatSlot(in, "clearcoat")),
       clearcoatRoughness(FloatSlot(in, "clearcoatroughness")),
       sheenRoughness(FloatSlot(in, "sheenroughness")),
       diffuseTransmission(FloatSlot(in, "diffusetransmission")),
-      baseColorFactor(ColorFactor(in, "basecolor")),
-      specularColorFactor(ColorFactor(in, "specularcolor")),
-      sheenColorFactor(ColorFactor(in, "sheencolor", 0)),
-      diffuseTransmissionColorFactor(ColorFactor(in, "diffusetransmissioncolor")),
       metallicFactor(Factor(in, "metallic", 1)),
       roughnessFactor(Factor(in, "roughness", 1)),
-      specularFactor(Factor(in, "specular", 1)),
-      transmissionFactor(Factor(in, "transmission", 0)),
-      clearcoatFactor(Factor(in, "clearcoat", 0)),
-      clearcoatRoughnessFactor(Factor(in, "clearcoatroughness", 0)),
-      sheenRoughnessFactor(Factor(in, "sheenroughness", 0)),
-      anisotropyFactor(std::min(Factor(in, "anisotropy", 0), 1.f)),
-      diffuseTransmissionFactor(std::min(Factor(in, "diffusetransmission", 0), 1.f)),
       ior(in.entity.parameters.GetFloat("ior", 1.5f)),
       anisotropyRotation(in.entity.parameters.GetFloat("anisotropyrotation", 0)),
       solid(in.entity.parameters.GetBool("solid", false)),
@@ -82,6 +77,7 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
       addedInterface(in.entity.parameters.GetBool("addedinterface", false)),
       evenInterface(in.entity.parameters.GetBool("eveninterface", false)),
       keepsRadiance(in.entity.parameters.GetBool("keepsradiance", false)) {
+    diffuseTransmission.factor = std::min(diffuseTransmission.factor, 1.f);
     // An index of 0 stands for an interface that reflects all (KHR_materials_ior).
     if (ior == 0) return;
     const auto index = InRange(double(ior), 1, 100);
@@ -91,9 +87,9 @@ MetallicRoughness::MetallicRoughness(const MaterialReader& in)
 }
 
 MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
-    const bool isAnisotropic = anisotropyFactor > 0, hasSheen = !IsBlack(sheenColorFactor);
+    const bool isAnisotropic = anisotropy.factor > 0, hasSheen = !IsBlack(sheenColor.factor);
     MaterialTraits traits = in.TraitsOf(4 + (addedInterface || evenInterface) + isAnisotropic +
-                                        hasSheen + (diffuseTransmissionFactor > 0));
+                                        hasSheen + (diffuseTransmission.factor > 0));
     VisitSlots([&](const auto& slot) {
         if (slot.texture.IsConstant()) return;
         traits.Need(in.textures.Needs(slot.texture));
@@ -103,16 +99,16 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
     // The light that sheen, the interface, or a coat on one side leaves to the rest depends on the
     // view.
-    if (hasSheen || diffuseTransmissionFactor > 0 || IsCoatedSolid()) traits.isConstant = false;
+    if (hasSheen || diffuseTransmission.factor > 0 || IsCoatedSolid()) traits.isConstant = false;
     if (keepsRadiance && solid) traits.isConstant = false;  // by the side of the view
     if (CanLetThrough()) traits.needs = traits.needs | kLetsThrough;
     return traits;
 }
 
 bool MetallicRoughness::CanLetThrough() const {
-    if (solid || transmissionFactor == 0) return false;
+    if (solid || transmission.factor == 0) return false;
     const SpectrumTexture& packed = metallicRoughness.texture;
-    if (anisotropyFactor > 0 && anisotropy.texture.IsConstant()) return false;
+    if (anisotropy.factor > 0 && anisotropy.texture.IsConstant()) return false;
     if (!packed.IsConstant()) return true;
     return metallicFactor * packed.constant.z() < 1 &&
            AlphaOf(roughnessFactor * packed.constant.y()) < kSmoothAlpha;
@@ -129,8 +125,8 @@ SurfaceTilt MetallicRoughness::Tilt(const MaterialReader& in) const {
 }
 
 Vec2f MetallicRoughness::Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const {
-    if (anisotropyFactor == 0) return {alpha, alpha};
-    float strength = anisotropyFactor;
+    if (anisotropy.factor == 0) return {alpha, alpha};
+    float strength = anisotropy.factor;
     Vec2f direction(1, 0);
     if (!anisotropy.texture.IsConstant()) {
         const Rgb texel = Look(anisotropy, in);
@@ -151,10 +147,10 @@ Vec2f MetallicRoughness::Alphas(const MaterialInputs& in, float alpha, Bsdf* bsd
 // reflect: here by the view alone, of which exactly as much is left as the sheen adds.
 void MetallicRoughness::AddSheen(const MaterialInputs& in, const CoatAbove& coat,
                                  Bsdf* bsdf) const {
-    const Rgb color = (Look(sheenColor, in) * sheenColorFactor).max(0.f).min(1.f);
+    const Rgb color = (Look(sheenColor, in) * sheenColor.factor).max(0.f).min(1.f);
     if (IsBlack(color)) return;
     const float roughness =
-        sheenRoughnessFactor > 0 ? sheenRoughnessFactor * Look(sheenRoughness, in) : 0;
+        sheenRoughness.factor > 0 ? sheenRoughness.factor * Look(sheenRoughness, in) : 0;
     const float alpha = std::max(AlphaOf(roughness), CharlieSheen::kLeastAlpha);
     const float cosine = CosineTowards(in, *bsdf);
     const float albedo = SheenAlbedo(cosine, alpha);
@@ -168,7 +164,7 @@ void MetallicRoughness::AddSheen(const MaterialInputs& in, const CoatAbove& coat
 void MetallicRoughness::AddDiffuseTransmission(const MaterialInputs& in, float share,
                                                const InterfaceAbove& above, float alpha,
                                                const CoatAbove& coat, Bsdf* bsdf) const {
-    const Rgb color = Look(diffuseTransmissionColor, in) * diffuseTransmissionColorFactor;
+    const Rgb color = Look(diffuseTransmissionColor, in) * diffuseTransmissionColor.factor;
     const float cosine = CosineTowards(in, *bsdf);
     const float reflected = DirectionalAlbedo(cosine, alpha)(above.f0, above.f90);
     const float left = coat.Through(cosine) * std::max(0.f, 1 - reflected);
@@ -212,7 +208,7 @@ void MetallicRoughness::AddSolid(const MaterialInputs& in, const Rgb& reflected,
 }
 
 void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
-    Rgb color = (Look(baseColor, in) * baseColorFactor).max(0.f).min(1.f);
+    Rgb color = (Look(baseColor, in) * baseColor.factor).max(0.f).min(1.f);
     if (vertexColors) color = (color * in.hit->color).max(0.f).min(1.f);
     const Rgb packed = Look(metallicRoughness, in);
     const float metallic = std::clamp(metallicFactor * packed.z(), 0.f, 1.f);
@@ -224,22 +220,23 @@ void MetallicRoughness::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
 
     // The dielectric's interface (KHR_materials_specular), and how the material is divided into
     // metal, dielectric over a diffuse base and dielectric that transmits.
-    const float strength = Weight(specular, specularFactor, in);
-    const Rgb tint = Look(specularColor, in) * specularColorFactor;
+    const float strength = Weight(specular, in);
+    const Rgb tint = Look(specularColor, in) * specularColor.factor;
     const Rgb f0 = strength * (Sqr((ior - 1) / (ior + 1)) * tint).max(0.f).min(1.f);
     const InterfaceAbove above{f0.maxCoeff(), strength};
     const bool isOwn = addedInterface || evenInterface;
     const InterfaceAbove aboveBase = isOwn ? InterfaceAbove{} : above;
     const float dielectric = 1 - metallic;
-    const float transmitting = dielectric * Weight(transmission, transmissionFactor, in);
+    const float transmitting = dielectric * Weight(transmission, in);
     // A coat lies on the outside of a solid, and on both sides of all else.
     const bool isInside = IsCoatedSolid() && in.hit->wo.dot(in.hit->n) < 0;
-    const float coatWeight = isInside ? 0 : Weight(clearcoat, clearcoatFactor, in);
-    const float coatAlpha = AlphaOf(
-        clearcoatRoughnessFactor > 0 ? clearcoatRoughnessFactor * Look(clearcoatRoughness, in) : 0);
+    const float coatWeight = isInside ? 0 : Weight(clearcoat, in);
+    const float coatAlpha = AlphaOf(clearcoatRoughness.factor > 0
+                                        ? clearcoatRoughness.factor * Look(clearcoatRoughness, in)
+                                        : 0);
     const CoatAbove coat(addedInterface ? 0 : coatWeight, coatAlpha);
     const bool isSmooth = alpha < kSmoothAlpha && !isAnisotropic;
-    const float toOtherSide = Weight(diffuseTransmission, diffuseTransmissionFactor, in);
+    const float toOtherSide = Weight(diffuseTransmission, in);
     const Rgb diffuse = (dielectric - transmitting) * (1 - toOtherSide) * color;
     const Rgb base = isOwn ? Rgb(Rgb::Zero()) : diffuse;  // below the interface
 

@@ -7,11 +7,12 @@
 
 namespace lull {
 
-// A texture that may be looked up with the second set of texture coordinates.
-template <typename Texture>
+// A texture, its factor, and whether it is looked up with the second set of texture coordinates.
+template <typename Texture, typename Factor = float>
 struct UvSlot {
     Texture texture;
     bool secondUv = false;
+    Factor factor;
 };
 
 // Reads the following textures, each multiplied by the parameter NAMEfactor, and looked up with the
@@ -29,14 +30,11 @@ struct UvSlot {
 // from all directions, over a Lambertian base that it does not attenuate; "keepsradiance": solids
 // do not scale the radiance that they refract by the square of the index, as if it left them again.
 struct MetallicRoughness {
-    UvSlot<SpectrumTexture> baseColor, metallicRoughness, specularColor, sheenColor, anisotropy,
-        diffuseTransmissionColor;
+    UvSlot<SpectrumTexture, Rgb> baseColor, specularColor, sheenColor, diffuseTransmissionColor;
+    UvSlot<SpectrumTexture> metallicRoughness, anisotropy;  // the former's factors are apart
     UvSlot<FloatTexture> specular, transmission, clearcoat, clearcoatRoughness, sheenRoughness,
         diffuseTransmission;
-    Rgb baseColorFactor, specularColorFactor, sheenColorFactor, diffuseTransmissionColorFactor;
-    float metallicFactor, roughnessFactor, specularFactor, transmissionFactor, clearcoatFactor,
-        clearcoatRoughnessFactor, sheenRoughnessFactor, anisotropyFactor, diffuseTransmissionFactor;
-    float ior, anisotropyRotation;
+    float metallicFactor, roughnessFactor, ior, anisotropyRotation;
     bool solid, vertexColors, addedInterface, evenInterface, keepsRadiance;
 
     explicit MetallicRoughness(const MaterialReader& in);
@@ -49,12 +47,13 @@ struct MetallicRoughness {
   private:
     // Returns whether it is a smooth thin sheet anywhere, which light goes straight through.
     bool CanLetThrough() const;
-    bool IsCoatedSolid() const { return solid && transmissionFactor > 0 && clearcoatFactor > 0; }
+    bool IsCoatedSolid() const { return solid && transmission.factor > 0 && clearcoat.factor > 0; }
     template <typename F>
     void VisitSlots(F&& f) const {
-        for (const auto* slot : {&baseColor, &metallicRoughness, &specularColor, &sheenColor,
-                                 &anisotropy, &diffuseTransmissionColor})
+        for (const auto* slot :
+             {&baseColor, &specularColor, &sheenColor, &diffuseTransmissionColor})
             f(*slot);
+        for (const auto* slot : {&metallicRoughness, &anisotropy}) f(*slot);
         for (const auto* slot : {&specular, &transmission, &clearcoat, &clearcoatRoughness,
                                  &sheenRoughness, &diffuseTransmission})
             f(*slot);

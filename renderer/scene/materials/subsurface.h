@@ -11,8 +11,6 @@
 
 namespace lull {
 
-// Reads measured coefficients of media by name.
-
 // Absorption and scattering. Those that were measured are reduced: the mean cosine is 0.
 struct MediumPreset {
     Rgb sigmaA, sigmaS;

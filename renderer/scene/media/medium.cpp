@@ -34,6 +34,19 @@ float NextCollision(float t, float majorant, Sampler& sampler) {
     return next > t ? next : NextFloatTowards(1, t);
 }
 
+// Where colours differ, collisions are those of the greatest extinction, and others weigh in.
+MediumSample SampleTinted(const GridMedium& grid, const Crossing& crossing, float majorant,
+                          Sampler& sampler) {
+    Rgb weight = Rgb::Ones();
+    for (float t = crossing.tMin;;) {
+        t = NextCollision(t, majorant, sampler);
+        if (!(t < crossing.tMax)) return {.weight = weight};
+        const float share = std::clamp(grid.Density(crossing(t)) / grid.maxDensity, 0.f, 1.f);
+        if (sampler.Get1D() < share) return {.t = t, .weight = weight * grid.albedo};
+        weight *= (1 - *grid.tint * share) / (1 - share);
+    }
+}
+
 }  // namespace
 
 float GridMedium::Density(const Vec3f& p) const {
@@ -56,51 +69,18 @@ float GridMedium::Density(const Vec3f& p) const {
     return sum;
 }
 
-namespace {
-
-// Where colours differ, collisions are those of the greatest extinction, and others weigh in.
-Rgb TintedTransmittance(const GridMedium& grid, const Crossing& crossing, float majorant,
-                        Sampler& sampler) {
-    Rgb transmittance = Rgb::Ones();
-    for (float t = crossing.tMin;;) {
-        t = NextCollision(t, majorant, sampler);
-        if (!(t < crossing.tMax)) return transmittance;
-        const float share = std::max(0.f, grid.Density(crossing(t)) / grid.maxDensity);
-        transmittance *= 1 - *grid.tint * share;
-        if (const float most = transmittance.maxCoeff(); most < 0.1f) {
-            const float q = std::max(0.05f, 1 - most);
-            if (sampler.Get1D() < q) return Rgb::Zero();
-            transmittance /= 1 - q;
-        }
-    }
-}
-
-MediumSample SampleTinted(const GridMedium& grid, const Crossing& crossing, float majorant,
-                          Sampler& sampler) {
-    Rgb weight = Rgb::Ones();
-    for (float t = crossing.tMin;;) {
-        t = NextCollision(t, majorant, sampler);
-        if (!(t < crossing.tMax)) return {.weight = weight};
-        const float share = std::clamp(grid.Density(crossing(t)) / grid.maxDensity, 0.f, 1.f);
-        if (sampler.Get1D() < share) return {.t = t, .weight = weight * grid.albedo};
-        weight *= (1 - *grid.tint * share) / (1 - share);
-    }
-}
-
-}  // namespace
-
 Rgb GridMedium::Transmittance(const Ray& worldRay, Sampler& sampler) const {
     const float majorant = sigmaT * maxDensity;
     if (!(majorant > 0)) return Rgb::Ones();
     const Crossing crossing(gridFromWorld, worldRay);
-    if (tint) return TintedTransmittance(*this, crossing, majorant, sampler);
-    float transmittance = 1;
+    const Rgb shares = tint.value_or(Rgb::Ones());  // of the greatest extinction
+    Rgb transmittance = Rgb::Ones();
     for (float t = crossing.tMin;;) {
         t = NextCollision(t, majorant, sampler);
-        if (!(t < crossing.tMax)) return Rgb::Constant(transmittance);
-        transmittance *= 1 - std::max(0.f, Density(crossing(t)) / maxDensity);
-        if (transmittance < 0.1f) {
-            const float q = std::max(0.05f, 1 - transmittance);
+        if (!(t < crossing.tMax)) return transmittance;
+        transmittance *= 1 - shares * std::max(0.f, Density(crossing(t)) / maxDensity);
+        if (const float most = transmittance.maxCoeff(); most < 0.1f) {
+            const float q = std::max(0.05f, 1 - most);
             if (sampler.Get1D() < q) return Rgb::Zero();
             transmittance /= 1 - q;
         }

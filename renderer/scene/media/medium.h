@@ -16,7 +16,6 @@ struct MediumSample {
 };
 
 // Represents a medium that is the same everywhere.
-
 struct HomogeneousMedium {
     Rgb sigmaS, sigmaT;  // scattering and extinction, per unit of length
     float g;             // of the phase function
@@ -48,10 +47,8 @@ struct HomogeneousMedium {
     }
 };
 
-// Represents a medium whose density is given by a grid.
-
-// Fills the unit cube of its own space; outside there is nothing. The densities are at the centres
-// of cells, and 0 beyond the outermost.
+// Represents a medium whose density is given by a grid, which fills the unit cube of its own space.
+// The densities are at the centres of cells, and 0 beyond the outermost; outside there is nothing.
 struct GridMedium {
     float sigmaT;  // greatest extinction per unit of length in the world where the density is 1
     Rgb albedo;    // scattering over that

@@ -55,6 +55,26 @@ float Ramp(int x, int y, int z, float dx, float dy, float dz) {
 // Eases t so that first and second derivatives vanish at lattice points (Perlin 2002, eq. 1b).
 float Ease(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
+// Returns how many octaves samples of that distance resolve.
+float ResolvedOctaves(float spacing2, int octaves) {
+    return spacing2 > 0 ? std::clamp(-1 - 0.5f * std::log2(spacing2), 0.f, float(octaves))
+                        : float(octaves);
+}
+
+// Rises from 0 to 1 as the fraction of an octave that is resolved goes from 0.3 to 0.7.
+float Fade(float fraction) {
+    const float t = std::clamp((fraction - 0.3f) / 0.4f, 0.f, 1.f);
+    return t * t * (3 - 2 * t);
+}
+
+// pbrt-v3's spline has nine control colours and six segments, but only the first five colours
+// are ever used (see Evaluate).
+constexpr float kColors[5][3] = {
+    {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f},
+    {0.50f, 0.50f, 0.50f}, {0.60f, 0.59f, 0.58f},
+};
+constexpr int kSegments = 6;
+
 }  // namespace
 
 float Noise(const Vec3f& p) {
@@ -72,22 +92,6 @@ float Noise(const Vec3f& p) {
     }
     return Lerp(wz, planes[0], planes[1]);
 }
-
-namespace {
-
-// Returns how many octaves samples of that distance resolve.
-float ResolvedOctaves(float spacing2, int octaves) {
-    return spacing2 > 0 ? std::clamp(-1 - 0.5f * std::log2(spacing2), 0.f, float(octaves))
-                        : float(octaves);
-}
-
-// Rises from 0 to 1 as the fraction of an octave that is resolved goes from 0.3 to 0.7.
-float Fade(float fraction) {
-    const float t = std::clamp((fraction - 0.3f) / 0.4f, 0.f, 1.f);
-    return t * t * (3 - 2 * t);
-}
-
-}  // namespace
 
 float FractionalBrownianMotion(const Vec3f& p, float spacing2, float roughness, int octaves) {
     const float resolved = ResolvedOctaves(spacing2, octaves);
@@ -121,18 +125,6 @@ float Turbulence(const Vec3f& p, float spacing2, float roughness, int octaves) {
     }
     return sum;
 }
-
-namespace {
-
-// pbrt-v3's spline has nine control colours and six segments, but only the first five colours
-// are ever used (see Evaluate).
-constexpr float kColors[5][3] = {
-    {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f},
-    {0.50f, 0.50f, 0.50f}, {0.60f, 0.59f, 0.58f},
-};
-constexpr int kSegments = 6;
-
-}  // namespace
 
 Rgb Evaluate(const Marble& marble, const TextureTable&, const TextureContext& c) {
     const Vec3f p = Map(marble.mapping, c) * marble.scale;

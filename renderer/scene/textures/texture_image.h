@@ -77,7 +77,6 @@ class TextureImages {
 };
 
 // Inputs of the functions that read textures.
-
 struct TextureInput {
     const TextureEntity& entity;
     const Description& description;

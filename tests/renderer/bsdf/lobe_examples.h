@@ -138,10 +138,26 @@ inline bool IsFrontFacing(const Lobe& lobe, const Vec3f& wo, const Vec3f& wi) {
     return wo.dot(h) * wo.z() * h.z() > 0;
 }
 
+// Returns a direction that the Bsdf scatters to, but for specular ones.
+inline std::optional<Vec3f> SampleSpread(const Bsdf& bsdf, const Vec3f& wo, const Vec2f& u,
+                                         LobeSet set) {
+    const auto s = bsdf.Sample(wo, u, set);
+    return s && !s->isSpecular ? std::optional(s->wi) : std::nullopt;
+}
+
 // Makes a Bsdf whose frame is the axes.
 inline Bsdf MakeBsdf(const std::vector<Lobe>& lobes, const Vec3f& ng = Vec3f::UnitZ()) {
     Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, ng);
     for (const Lobe& lobe : lobes) bsdf.Add(lobe);
+    return bsdf;
+}
+
+// Makes the Bsdf of a surface in the plane z = 0, whose map tilts the normal.
+inline Bsdf Tilted(const Lobe& lobe, const Vec3f& normal) {
+    Frame frame{{}, {}, normal};
+    CoordinateSystem(normal, &frame.s, &frame.t);
+    Bsdf bsdf(frame, Vec3f::UnitZ(), 1, true);
+    bsdf.Add(lobe);
     return bsdf;
 }
 

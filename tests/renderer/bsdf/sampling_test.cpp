@@ -39,18 +39,12 @@ double SampledDensity(const Bsdf& bsdf, const Vec3f& wo, const Vec3f& wi) {
 // Returns the p-value of samples of the Bsdf's lobes that are not specular.
 double PValue(const Bsdf& bsdf, const Vec3f& wo, const SphereGrid& grid, uint64_t seed,
               double* total) {
-    const std::vector<double> expected =
-        Integrate(grid, [&](const Vec3f& wi) { return SampledDensity(bsdf, wo, wi); });
-    *total = 0;
-    for (double e : expected) *total += e;
-
-    constexpr int kSamples = 50'000;
-    Random random(seed);
-    std::vector<int64_t> observed(expected.size());
-    for (int i = 0; i < kSamples; ++i)
-        if (const auto s = bsdf.Sample(wo, random.Point(), LobeSet::NonSpecular))
-            ++observed[grid.CellOf(s->wi)];
-    return ChiSquarePValue(expected, observed, kSamples);
+    return PValueOf(
+        grid, [&](const Vec3f& wi) { return SampledDensity(bsdf, wo, wi); }, 50'000, seed,
+        [&](Random& random) {
+            return SampleSpread(bsdf, wo, random.Point(), LobeSet::NonSpecular);
+        },
+        total);
 }
 
 TEST(LobeSampling, FollowsItsDensity) {
@@ -116,20 +110,19 @@ TEST(BsdfSampling, ByShareFollowsItsDensity) {
             const Vec3f wo = FromAngles(angle, 200);
             Bsdf bsdf = MakeBsdf(lobes);
             bsdf.ChooseByShare(wo);
-            const SphereGrid grid = EvenGrid(20, 24);
-            const std::vector<double> expected = Integrate(grid, [&](const Vec3f& wi) {
-                return double(bsdf.Evaluate(wo, wi, LobeSet::All).pdf);
-            });
-            constexpr int kSamples = 50'000;
-            Random random(++seed);
-            std::vector<int64_t> observed(expected.size());
-            for (int i = 0; i < kSamples; ++i) {
-                const auto s = bsdf.Sample(wo, random.Point(), LobeSet::All);
-                if (!s || s->isSpecular) continue;
-                ++observed[grid.CellOf(s->wi)];
-                ASSERT_NEAR(s->pdf, bsdf.Evaluate(wo, s->wi, LobeSet::All).pdf, 2e-3f * s->pdf);
-            }
-            EXPECT_GT(ChiSquarePValue(expected, observed, kSamples), significance)
+            double total;
+            const double p = PValueOf(
+                EvenGrid(20, 24),
+                [&](const Vec3f& wi) { return double(bsdf.Evaluate(wo, wi, LobeSet::All).pdf); },
+                50'000, ++seed,
+                [&](Random& random) {
+                    const auto s = bsdf.Sample(wo, random.Point(), LobeSet::All);
+                    if (!s || s->isSpecular) return std::optional<Vec3f>();
+                    EXPECT_NEAR(s->pdf, bsdf.Evaluate(wo, s->wi, LobeSet::All).pdf, 2e-3f * s->pdf);
+                    return std::optional(s->wi);
+                },
+                &total);
+            EXPECT_GT(p, significance)
                 << lobes.size() << " lobes, " << angle << " degrees, seed " << seed;
         }
 }

@@ -177,6 +177,21 @@ inline double ChiSquarePValue(const std::vector<double>& expected,
     return terms > 1 ? UpperGamma((terms - 1) / 2.0, statistic / 2) : 1;
 }
 
+// Returns the p-value of `count` directions, which sample(random) returns (nothing: refused),
+// against the integrals of their density; `total` receives the integral over all.
+template <typename Sample>
+double PValueOf(const SphereGrid& grid, const SphereFunction& density, int count, uint64_t seed,
+                const Sample& sample, double* total) {
+    const std::vector<double> expected = Integrate(grid, density);
+    *total = 0;
+    for (const double e : expected) *total += e;
+    Random random(seed);
+    std::vector<int64_t> observed(expected.size());
+    for (int i = 0; i < count; ++i)
+        if (const std::optional<Vec3f> w = sample(random)) ++observed[size_t(grid.CellOf(*w))];
+    return ChiSquarePValue(expected, observed, count);
+}
+
 // Returns the significance of each of n tests that gives the whole family 0.001 (Sidak 1967).
 inline double Significance(int n) { return 1 - std::pow(1 - 0.001, 1.0 / n); }
 

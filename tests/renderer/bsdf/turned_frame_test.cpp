@@ -16,15 +16,6 @@ Lobe Metal(float roughness) {
     return LayeredReflection(Rgb::Zero(), kNoLoss, 1, alpha, InterfaceAbove{0, 0}, 0);
 }
 
-// The surface lies in the plane z = 0; its map tilts the normal.
-Bsdf Tilted(const Lobe& lobe, const Vec3f& normal) {
-    Frame frame{{}, {}, normal};
-    CoordinateSystem(normal, &frame.s, &frame.t);
-    Bsdf bsdf(frame, Vec3f::UnitZ(), 1, true);
-    bsdf.Add(lobe);
-    return bsdf;
-}
-
 // Returns the share of uniform light that is scattered to wo.
 float Reflectance(const Bsdf& bsdf, const Vec3f& wo, Random& random, int count) {
     double sum = 0;

@@ -16,7 +16,7 @@
 
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/render/render.h"
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/renderer/bench_scenes.h"
 

@@ -50,11 +50,7 @@ struct Lamps {
         return text;
     }
     std::string ErrorOf(const std::vector<std::string>& names) const {
-        try {
-            return "none: " + Grouped(names);
-        } catch (const Error& e) {
-            return e.what();
-        }
+        return lull::ErrorOf([&] { Group(names); });
     }
 };
 

@@ -1,5 +1,5 @@
 // Checks that panes with a thickness are told from other closed meshes.
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/input/scene_edits.h"
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/camera.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/geometry/shapes/revolved.h"
+#include "renderer/scene/geometry/shapes/quadric.h"
 
 #include "renderer/scene/geometry/animated_transform.h"
 

@@ -333,6 +333,18 @@ constexpr Kind<Shape(const ShapeReader&)> kShapes[] = {
     {"curve", MakeCurves},
 };
 
+// Replaces the linear part by the nearest rotation, mirrored where it mirrors, and returns its mean
+// scale. Nothing is returned where it stretches by more than matrices of three decimals do.
+std::optional<float> TakeNearestScale(Mat4d* m) {
+    constexpr double kMostStretch = 5e-3;
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m->topLeftCorner<3, 3>(),
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Vector3d scales = svd.singularValues();  // the largest first
+    if (!(scales[0] - scales[2] <= kMostStretch * scales[0])) return {};
+    m->topLeftCorner<3, 3>() = svd.matrixU() * svd.matrixV().transpose();
+    return float(scales.mean());
+}
+
 }  // namespace
 
 Shape MakeShape(const Description& description, const ShapeEntity& entity,
@@ -352,22 +364,6 @@ Shape MakeShape(const Description& description, const ShapeEntity& entity,
     shape.material = entity.material;
     return shape;
 }
-
-namespace {
-
-// Replaces the linear part by the nearest rotation, mirrored where it mirrors, and returns its mean
-// scale. Nothing is returned where it stretches by more than matrices of three decimals do.
-std::optional<float> TakeNearestScale(Mat4d* m) {
-    constexpr double kMostStretch = 5e-3;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m->topLeftCorner<3, 3>(),
-                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Vector3d scales = svd.singularValues();  // the largest first
-    if (!(scales[0] - scales[2] <= kMostStretch * scales[0])) return {};
-    m->topLeftCorner<3, 3>() = svd.matrixU() * svd.matrixV().transpose();
-    return float(scales.mean());
-}
-
-}  // namespace
 
 bool Mirrors(const Mat4d& m) { return m.topLeftCorner<3, 3>().determinant() < 0; }
 

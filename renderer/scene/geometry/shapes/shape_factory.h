@@ -18,8 +18,6 @@ Shape MakeShape(const Description&, const ShapeEntity&, const TextureTable&, War
 // finite, a width is negative, a name is unknown, or the curve should emit light.
 Curves ReadCurves(const ShapeEntity&, Warnings&);
 
-// Makes meshes of parametric surfaces.
-
 // Spans "nu" by "nv" heights "Pz" over the unit square, two triangles per cell. Throws Error with
 // file and line if the counts do not agree or a height is not finite.
 MeshData HeightfieldMesh(const ShapeEntity&);
@@ -28,8 +26,6 @@ MeshData HeightfieldMesh(const ShapeEntity&);
 // "v0" and "v1", as pbrt-v3 does, and joins them by triangles with the surface's normals. Throws
 // Error with file and line for orders below 2, and counts, knots or ranges that do not agree.
 MeshData NurbsMesh(const ShapeEntity&);
-
-// Places shapes that are intersected in their own space.
 
 bool Mirrors(const Mat4d& m);
 

@@ -1,5 +1,5 @@
 // A camera sees points where its rays go through them.
-#include "renderer/scene/cameras/camera_view.h"
+#include "renderer/scene/cameras/camera.h"
 
 #include <gtest/gtest.h>
 

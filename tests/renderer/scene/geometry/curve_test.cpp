@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "renderer/input/pbrt_parser.h"
-#include "renderer/scene/compile.h"
 #include "renderer/scene/geometry/shapes/shape_factory.h"
+#include "renderer/scene/scene.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
@@ -14,23 +14,14 @@ namespace {
 
 using test::Random;
 
-Parameter Points(std::vector<float> values) {
-    return {ParameterType::Point3, "P", LocAt(7), std::move(values)};
-}
+Parameter Points(std::vector<float> values) { return PointParameter("P", std::move(values)); }
 Parameter Normals(std::vector<float> values) {
     return {ParameterType::Normal, "N", LocAt(7), std::move(values)};
 }
 
-ShapeEntity MakeEntity(std::vector<Parameter> parameters) {
-    ShapeEntity entity;
-    entity.name = "curve";
-    entity.loc = LocAt(3);
-    for (Parameter& p : parameters) entity.parameters.Add(std::move(p));
-    return entity;
-}
-
-Curves Read(std::vector<Parameter> parameters, const Mat4d& worldFromObject = Mat4d::Identity()) {
-    ShapeEntity entity = MakeEntity(std::move(parameters));
+Curves Read(const std::vector<Parameter>& parameters,
+            const Mat4d& worldFromObject = Mat4d::Identity()) {
+    ShapeEntity entity = ShapeOf("curve", parameters);
     entity.worldFromObject = worldFromObject;
     Warnings warnings;
     return ReadCurves(entity, warnings);
@@ -227,7 +218,7 @@ TEST(Curves, MayHaveNoWidthOrLength) {
             EXPECT_NEAR(at.n.norm(), 1, 1e-5f);
         }
     }
-    ShapeEntity point = MakeEntity({Points({1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3})});
+    ShapeEntity point = ShapeOf("curve", {Points({1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3})});
     Warnings warnings;
     EXPECT_EQ(ReadCurves(point, warnings).PrimitiveCount(), 0u);
     EXPECT_EQ(warnings.Total(), 1);
@@ -238,8 +229,8 @@ TEST(Curves, MayHaveNoWidthOrLength) {
 }
 
 TEST(Curves, RefuseNonsense) {
-    const auto error = [](std::vector<Parameter> parameters) {
-        return ErrorOf([&] { Read(std::move(parameters)); });
+    const auto error = [](const std::vector<Parameter>& parameters) {
+        return ErrorOf([&] { Read(parameters); });
     };
     EXPECT_TRUE(Contains(error({}), "scene.pbrt:3: the curve has 0 points"));
     EXPECT_TRUE(Contains(error({Points({1, 2, 3, 4, 5, 6})}), "4 + n * 3 are needed"));
@@ -266,7 +257,7 @@ TEST(Curves, RefuseNonsense) {
     std::vector<float> broken = kBend;
     broken[4] = std::nanf("");
     EXPECT_TRUE(Contains(error({Points(broken)}), "not finite"));
-    ShapeEntity lamp = MakeEntity({Points(kBend)});
+    ShapeEntity lamp = ShapeOf("curve", {Points(kBend)});
     lamp.areaLight = Entity{};
     Warnings warnings;
     EXPECT_TRUE(Contains(ErrorOf([&] { ReadCurves(lamp, warnings); }), "pbrt-v3 cannot sample"));

@@ -9,25 +9,10 @@
 namespace lull {
 namespace {
 
-Parameter Floats(const std::string& name, std::vector<float> values) {
-    return FloatParameter(name, std::move(values));
-}
-Parameter Points(const std::string& name, std::vector<float> values) {
-    return {ParameterType::Point3, name, LocAt(7), std::move(values)};
-}
-
-ShapeEntity MakeEntity(const std::string& name, std::vector<Parameter> parameters) {
-    ShapeEntity entity;
-    entity.name = name;
-    entity.loc = LocAt(3);
-    for (Parameter& p : parameters) entity.parameters.Add(std::move(p));
-    return entity;
-}
-
 TEST(Heightfield, SpansTheUnitSquare) {
     const MeshData data =
-        HeightfieldMesh(MakeEntity("heightfield", {IntParameter("nu", 3), IntParameter("nv", 2),
-                                                   Floats("Pz", {1, 2, 3, 4, 5, 6})}));
+        HeightfieldMesh(ShapeOf("heightfield", {IntParameter("nu", 3), IntParameter("nv", 2),
+                                                FloatParameter("Pz", {1, 2, 3, 4, 5, 6})}));
     ASSERT_EQ(data.positions.size(), 6u);
     EXPECT_EQ(data.positions[1], Vec3f(0.5f, 0, 2));
     EXPECT_EQ(data.positions[5], Vec3f(1, 1, 6));
@@ -39,14 +24,15 @@ TEST(Heightfield, SpansTheUnitSquare) {
 
 TEST(Heightfield, RefusesNonsense) {
     const auto error = [](std::vector<Parameter> parameters) {
-        return ErrorOf([&] { HeightfieldMesh(MakeEntity("heightfield", parameters)); });
+        return ErrorOf([&] { HeightfieldMesh(ShapeOf("heightfield", parameters)); });
     };
     EXPECT_TRUE(Contains(error({}), "scene.pbrt:3: \"nu\" of a heightfield"));
     EXPECT_TRUE(Contains(error({IntParameter("nu", 2), IntParameter("nv", 1)}), "\"nv\""));
     EXPECT_TRUE(Contains(
-        error({IntParameter("nu", 2), IntParameter("nv", 2), Floats("Pz", {1, 2, 3})}), "\"Pz\""));
+        error({IntParameter("nu", 2), IntParameter("nv", 2), FloatParameter("Pz", {1, 2, 3})}),
+        "\"Pz\""));
     EXPECT_TRUE(Contains(error({IntParameter("nu", 2), IntParameter("nv", 2),
-                                Floats("Pz", {1, 2, 3, std::nanf("")})}),
+                                FloatParameter("Pz", {1, 2, 3, std::nanf("")})}),
                          "not finite"));
 }
 
@@ -55,7 +41,7 @@ std::vector<Parameter> Net(int n, int order, const std::vector<float>& knots) {
     for (const char* letter : {"u", "v"}) {
         parameters.push_back(IntParameter(std::string("n") + letter, n));
         parameters.push_back(IntParameter(std::string(letter) + "order", order));
-        parameters.push_back(Floats(std::string(letter) + "knots", knots));
+        parameters.push_back(FloatParameter(std::string(letter) + "knots", knots));
     }
     return parameters;
 }
@@ -68,8 +54,8 @@ TEST(Nurbs, EqualsABezierPatch) {
         for (int i = 0; i < 4; ++i)
             for (const float x : {float(i), float(j), float((i * 7 + j * 5) % 6) / 3})
                 points.push_back(x);
-    parameters.push_back(Points("P", points));
-    const MeshData data = NurbsMesh(MakeEntity("nurbs", parameters));
+    parameters.push_back(PointParameter("P", points));
+    const MeshData data = NurbsMesh(ShapeOf("nurbs", parameters));
     ASSERT_EQ(data.positions.size(), 900u);
     const auto bernstein = [](int i, double t) {
         const double choose[] = {1, 3, 3, 1};
@@ -96,12 +82,13 @@ TEST(Nurbs, EqualsABezierPatch) {
 // A quarter of a circle is a rational quadratic: the weights make a cylinder of it.
 TEST(Nurbs, WeightsMakeACylinder) {
     const float w = std::sqrt(0.5f);
-    const MeshData data = NurbsMesh(MakeEntity(
-        "nurbs",
-        {IntParameter("nu", 3), IntParameter("uorder", 3), Floats("uknots", {0, 0, 0, 2, 2, 2}),
-         IntParameter("nv", 2), IntParameter("vorder", 2), Floats("vknots", {0, 0, 1, 1}),
-         Floats("v1", {0.5f}), Floats("Pw", {1, 0, 0, 1, w, w, 0, w, 0, 1, 0, 1,  //
-                                             1, 0, 1, 1, w, w, w, w, 0, 1, 1, 1})}));
+    const MeshData data = NurbsMesh(
+        ShapeOf("nurbs", {IntParameter("nu", 3), IntParameter("uorder", 3),
+                          FloatParameter("uknots", {0, 0, 0, 2, 2, 2}), IntParameter("nv", 2),
+                          IntParameter("vorder", 2), FloatParameter("vknots", {0, 0, 1, 1}),
+                          FloatParameter("v1", {0.5f}),
+                          FloatParameter("Pw", {1, 0, 0, 1, w, w, 0, w, 0, 1, 0, 1,  //
+                                                1, 0, 1, 1, w, w, w, w, 0, 1, 1, 1})}));
     for (size_t k = 0; k < data.positions.size(); ++k) {
         const Vec3f& p = data.positions[k];
         ASSERT_NEAR(p.head<2>().norm(), 1, 1e-5);
@@ -113,10 +100,10 @@ TEST(Nurbs, WeightsMakeACylinder) {
 TEST(Nurbs, RefusesNonsense) {
     const auto error = [](std::vector<Parameter> parameters, Parameter last) {
         parameters.push_back(std::move(last));
-        return ErrorOf([&] { NurbsMesh(MakeEntity("nurbs", parameters)); });
+        return ErrorOf([&] { NurbsMesh(ShapeOf("nurbs", parameters)); });
     };
     const std::vector<float> knots = {0, 0, 1, 1}, points(12, 1.f);
-    const Parameter good = Points("P", points);
+    const Parameter good = PointParameter("P", points);
     EXPECT_EQ(error(Net(2, 2, knots), good), "");
     EXPECT_TRUE(Contains(error({}, good), "scene.pbrt:3: \"nu\""));
     EXPECT_TRUE(Contains(error(Net(2, 1, knots), good), "\"uorder\""));
@@ -124,9 +111,10 @@ TEST(Nurbs, RefusesNonsense) {
     EXPECT_TRUE(Contains(error(Net(2, 2, {0, 1}), good), "\"uknots\" has 2 values"));
     EXPECT_TRUE(Contains(error(Net(2, 2, {0, 1, 0, 1}), good), "ascending"));
     EXPECT_TRUE(Contains(error(Net(2, 2, {1, 1, 1, 1}), good), "no range"));
-    EXPECT_TRUE(Contains(error(Net(2, 2, knots), Points("P", {1, 2, 3})), "control points"));
+    EXPECT_TRUE(
+        Contains(error(Net(2, 2, knots), PointParameter("P", {1, 2, 3})), "control points"));
     std::vector<Parameter> outside = Net(2, 2, knots);
-    outside.push_back(Floats("u1", {2}));
+    outside.push_back(FloatParameter("u1", {2}));
     EXPECT_TRUE(Contains(error(outside, good), "\"u1\""));
 }
 

@@ -33,6 +33,23 @@ double CellWeight(const EnvironmentMap& map, int u, int v) {
     return std::sin(std::numbers::pi * (v + 0.5) / (2 * kHeight)) * Luminance(map.Radiance(centre));
 }
 
+// Samples have these probabilities by cell, and know their density.
+void ExpectSamplesOf(const EnvironmentMap& map, const std::vector<double>& expected,
+                     uint64_t seed) {
+    constexpr int kSamples = 200000;
+    Random random(seed);
+    std::vector<int64_t> cells(expected.size());
+    for (int k = 0; k < kSamples; ++k) {
+        float pdf;
+        const Vec2f st = map.Sample(random.Point(), &pdf);
+        ASSERT_TRUE(st.minCoeff() >= 0 && st.maxCoeff() < 1);
+        const int cell = int(st.y() * 2 * kHeight) * 2 * kWidth + int(st.x() * 2 * kWidth);
+        ASSERT_NEAR(pdf, expected[cell] * expected.size(), 1e-4 * (1 + pdf));
+        ++cells[cell];
+    }
+    EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
+}
+
 TEST(EnvironmentMap, DensityFollowsBrightnessAndSolidAngle) {
     const Rgb scale(1, 0.5f, 2);
     const EnvironmentMap map(TestImage(), scale);
@@ -51,19 +68,7 @@ TEST(EnvironmentMap, DensityFollowsBrightnessAndSolidAngle) {
                             1e-5 * (1 + e));
             }
 
-    // Samples have this density, and know it.
-    constexpr int kSamples = 200000;
-    Random random(1);
-    std::vector<int64_t> cells(expected.size());
-    for (int k = 0; k < kSamples; ++k) {
-        float pdf;
-        const Vec2f st = map.Sample(random.Point(), &pdf);
-        ASSERT_TRUE(st.minCoeff() >= 0 && st.maxCoeff() < 1);
-        const int cell = int(st.y() * 2 * kHeight) * 2 * kWidth + int(st.x() * 2 * kWidth);
-        ASSERT_NEAR(pdf, expected[cell] * expected.size(), 1e-4 * (1 + pdf));
-        ++cells[cell];
-    }
-    EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
+    ExpectSamplesOf(map, expected, 1);
 }
 
 // Compensated maps end at the poles, as all others have them; pbrt-v3's rows repeat.
@@ -91,43 +96,13 @@ TEST(EnvironmentMap, CompensatedLeavesTheDarkToOthers) {
     EXPECT_NEAR(std::accumulate(expected.begin(), expected.end(), 0.0), 1, 1e-5);
     EXPECT_GT(less, kWidth * kHeight);
 
-    constexpr int kSamples = 200000;
-    Random random(6);
-    std::vector<int64_t> cells(expected.size());
-    for (int k = 0; k < kSamples; ++k) {
-        float pdf;
-        const Vec2f st = map.Sample(random.Point(), &pdf);
-        const int cell = int(st.y() * 2 * kHeight) * 2 * kWidth + int(st.x() * 2 * kWidth);
-        ASSERT_NEAR(pdf, expected[cell] * expected.size(), 1e-4 * (1 + pdf));
-        ++cells[cell];
-    }
-    EXPECT_GT(ChiSquarePValue(expected, cells, kSamples), 1e-3);
+    ExpectSamplesOf(map, expected, 6);
 
     // Where all is equally bright, nothing lies above the mean.
     const EnvironmentMap even({2, 1, 1, std::vector<float>{3, 3}}, Rgb::Ones(), true);
     EXPECT_NEAR(even.Pdf({0.2f, 0.5f}),
                 EnvironmentMap({2, 1, 1, std::vector<float>{3, 3}}, Rgb::Ones()).Pdf({0.2f, 0.5f}),
                 1e-4);
-}
-
-// The mean of radiance by density is the integral, whatever the place within cells.
-TEST(EnvironmentMap, EstimatesItsIntegral) {
-    for (const bool isCompensated : {false, true}) {
-        const EnvironmentMap map(TestImage(), Rgb::Ones(), isCompensated);
-        Random random(2);
-        double estimate = 0, squares = 0, uniform = 0;
-        constexpr int kSamples = 200000;
-        for (int k = 0; k < kSamples; ++k) {
-            float pdf;
-            const Vec2f st = map.Sample(random.Point(), &pdf);
-            const double value = Luminance(map.Radiance(st)) / pdf;
-            estimate += value / kSamples;
-            squares += value * value / kSamples;
-            uniform += Luminance(map.Radiance({(k % 500 + 0.5f) / 500, (k / 500 + 0.5f) / 400})) /
-                       double(kSamples);
-        }
-        EXPECT_NEAR(estimate, uniform, 4 * std::sqrt((squares - estimate * estimate) / kSamples));
-    }
 }
 
 TEST(EnvironmentMap, FormsOfTexelsAgree) {
@@ -174,8 +149,6 @@ TEST(EnvironmentMap, HoldsExtremes) {
         EXPECT_TRUE(std::isfinite(sun.Pdf({0.305f, 0.41f})));
     }
 }
-
-using test::Random;
 
 std::string Sun(double angle) {
     return fmt::format(

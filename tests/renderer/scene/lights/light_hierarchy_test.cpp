@@ -1,6 +1,6 @@
 // Compares what the hierarchy of lights chooses with the probabilities that it states, and with
 // what lights give.
-#include "renderer/scene/lights/light_hierarchy.h"
+#include "renderer/scene/lights/light_distribution.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

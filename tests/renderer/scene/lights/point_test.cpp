@@ -12,6 +12,8 @@
 namespace lull::emission_profile_test {
 namespace {
 
+using test::Random;
+
 double FalloffAt(const Spread& spread, double theta) {
     const Vec3f w(float(std::sin(theta)), 0, float(std::cos(theta)));
     return double(Falloff(spread, Vec3f::UnitZ(), w));
@@ -55,25 +57,13 @@ TEST(EmissionProfile, IsFiniteHoweverNarrow) {
 
 TEST(EmissionProfile, RefusesOtherAngles) {
     for (const char* bad : {"0", "-1", "181"}) {
-        try {
+        const std::string error = ErrorOf([&] {
             SceneOf(WorldText(std::string("AreaLightSource \"diffuse\" \"float spread\" [") + bad +
                               "]\nShape \"sphere\"\n"));
-            ADD_FAILURE() << bad;
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find("above 0 and at most 180 degrees"),
-                      std::string::npos)
-                << error.what();
-        }
+        });
+        EXPECT_TRUE(Contains(error, "above 0 and at most 180 degrees")) << bad << error;
     }
 }
-
-}  // namespace
-}  // namespace lull::emission_profile_test
-
-namespace lull {
-namespace {
-
-using test::Random;
 
 // From afar a small sphere shines as the spot light at its centre does.
 TEST(Lights, SpotsWithARadiusShineAsSpots) {
@@ -149,9 +139,7 @@ std::string WriteBeam(const TemporaryDirectory& directory) {
 
 LightSample SampleOf(const Scene& scene, const Vec3f& from) {
     const auto s = scene.lights.Sample(0, from, {0.5f, 0.5f});
-    return s ? *s
-             : LightSample{
-                   .L = Rgb::Zero(), .wi = {}, .pdf = 0, .isDelta = true, .isHidden = false};
+    return s ? *s : LightSample{.L = Rgb::Zero(), .wi = {}, .pdf = 0, .isDelta = true};
 }
 
 TEST(GoniometricLight, ShinesAsItsImageSays) {
@@ -216,4 +204,4 @@ TEST(ImageLights, RefuseWhatTheyCannotRead) {
 }
 
 }  // namespace
-}  // namespace lull
+}  // namespace lull::emission_profile_test

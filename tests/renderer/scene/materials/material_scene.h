@@ -70,11 +70,10 @@ struct MaterialScene {
         warnings.ThrowErrors();
         return table;
     }
-    // Makes the Bsdf of a material at a simple hit.
+    // Make the Bsdf of a hit, and that of a material at a simple hit.
+    Bsdf MakeBsdf(SurfaceInteraction hit) { return Make().MakeBsdf(textures, &hit); }
     Bsdf MakeBsdf(int material, const Vec3f& p = Vec3f(0.5f, 0.5f, 0.5f)) {
-        const MaterialTable table = Make();
-        SurfaceInteraction hit = Hit(material, p);
-        return table.MakeBsdf(textures, &hit);
+        return MakeBsdf(Hit(material, p));
     }
     static SurfaceInteraction Hit(int material, const Vec3f& p = Vec3f(0.5f, 0.5f, 0.5f)) {
         SurfaceInteraction hit;

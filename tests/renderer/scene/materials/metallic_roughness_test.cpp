@@ -1,7 +1,7 @@
 // Checks what glTF's material is made of; its values are checked in bsdf/, its look in transport/.
 #include <gtest/gtest.h>
 
-#include "renderer/bsdf/directional_albedo.h"
+#include "renderer/bsdf/layered_lobes.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/materials/material_scene.h"
 
@@ -89,10 +89,9 @@ TEST(MetallicRoughness, TransmitsWhatTheInterfaceLeaves) {
             SceneWith b({{"metallicfactor", 0},
                          {"roughnessfactor", roughness},
                          {"diffusetransmissionfactor", 1}});
-            const MaterialTable table = b.Make();
             SurfaceInteraction hit = MaterialScene::Hit(0);
             hit.wo = FromAngles(angle);
-            const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+            const Bsdf bsdf = b.MakeBsdf(hit);
             ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 2);
             const GgxAlbedo reflected = DirectionalAlbedo(hit.wo.z(), Sqr(roughness));
             EXPECT_NEAR(LobeAt<LambertianTransmission>(bsdf, 1).t.r + reflected(0.04f, 1), 1, 1e-3)
@@ -148,11 +147,10 @@ TEST(MetallicRoughness, ReflectsEvenlyWhereAskedTo) {
 TEST(MetallicRoughness, KeepsRadianceInGlassWhereAskedTo) {
     SceneWith b({{"metallicfactor", 0}, {"transmissionfactor", 1}, {"roughnessfactor", 0}}, true);
     b.description.materials[0].parameters.Add(Bool("keepsradiance", true));
-    const MaterialTable table = b.Make();
     SurfaceInteraction hit = MaterialScene::Hit(0);
     for (const float side : {1.f, -1.f}) {
         hit.wo = Vec3f(0, 0, side);
-        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+        const Bsdf bsdf = b.MakeBsdf(hit);
         EXPECT_FLOAT_EQ(bsdf.Eta(), 1);
         EXPECT_FLOAT_EQ(LobeAt<FresnelSpecular>(bsdf, 0).t.r,
                         0.5f * (side > 0 ? Sqr(1.5f) : 1 / Sqr(1.5f)));
@@ -179,11 +177,10 @@ TEST(MetallicRoughness, TransmitsAsSheetOrSolid) {
 TEST(MetallicRoughness, ReflectsNothingIntoTheSurface) {
     for (const float roughness : {0.f, 0.05f, 0.2f}) {
         SceneWith b({{"roughnessfactor", roughness}});
-        const MaterialTable table = b.Make();
         SurfaceInteraction hit = MaterialScene::Hit(0);
         hit.ns = Vec3f(-0.766f, 0, 0.643f).normalized();
         hit.wo = Vec3f(0.94f, 0, 0.342f).normalized();
-        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+        const Bsdf bsdf = b.MakeBsdf(hit);
         Random random(7);
         int count = 0;
         for (int i = 0; i < 500; ++i) {
@@ -202,10 +199,9 @@ TEST(MetallicRoughness, LaysSheenOverTheRest) {
         {"metallicfactor", 0}, {"specularfactor", 0}, {"sheenroughnessfactor", 0.5f}};
     const auto make = [](SceneWith b, const Vec3f& wo) {
         b.description.materials[0].parameters.Add(Color("sheencolorfactor", Rgb(0.25f, 0.5f, 1)));
-        const MaterialTable table = b.Make();
         SurfaceInteraction hit = MaterialScene::Hit(0);
         hit.wo = wo;
-        return table.MakeBsdf(b.textures, &hit);
+        return b.MakeBsdf(hit);
     };
     for (const Vec3f& wo : {Vec3f(0, 0, 1), Vec3f(0.8f, 0, 0.6f), Vec3f(0.99f, 0, 0.14107f)}) {
         const Bsdf bsdf = make(SceneWith(factors), wo);

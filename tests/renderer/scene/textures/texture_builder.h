@@ -26,8 +26,20 @@ inline Parameter IntParameter(const std::string& name, int value) {
 inline Parameter BoolParameter(const std::string& name, bool value) {
     return {ParameterType::Bool, name, LocAt(7), std::vector<int>{value}};
 }
+inline Parameter PointParameter(const std::string& name, std::vector<float> values) {
+    return {ParameterType::Point3, name, LocAt(7), std::move(values)};
+}
 inline Parameter StringParameter(const std::string& name, const std::string& value) {
     return {ParameterType::String, name, LocAt(7), std::vector<std::string>{value}};
+}
+
+// Makes a shape's directive, at line 3.
+inline ShapeEntity ShapeOf(const std::string& name, const std::vector<Parameter>& parameters) {
+    ShapeEntity entity;
+    entity.name = name;
+    entity.loc = LocAt(3);
+    for (const Parameter& p : parameters) entity.parameters.Add(p);
+    return entity;
 }
 
 // Collects textures and makes the table of them.
