@@ -119,7 +119,9 @@ struct GltfFile {
     std::string Binary() const {
         json whole = root;
         whole["buffers"] = {{{"byteLength", bytes.size()}}};
-        std::string text = whole.dump(), data = bytes;
+        return Glb(whole.dump(), bytes);
+    }
+    static std::string Glb(std::string text, std::string data) {
         text.resize((text.size() + 3) / 4 * 4, ' ');
         data.resize((data.size() + 3) / 4 * 4);
         const auto number = [](size_t n) {
