@@ -89,27 +89,10 @@ Mat3f WhiteBalance(float kelvin);
 class V4Reader {
   public:
     V4Reader(const V4Context& context, const Entity& from)
-        : write(&written, from.loc), context(context), from(from) {}
+        : given(from.parameters), write(&written, from.loc), context(context), from(from) {}
     V4Reader(const V4Reader&) = delete;
     V4Reader& operator=(const V4Reader&) = delete;
 
-    // Read a parameter; it then counts as known.
-    float Float(const char* name, float otherwise) const {
-        return from.parameters.GetFloat(name, otherwise);
-    }
-    int Int(const char* name, int otherwise) const {
-        return from.parameters.GetInt(name, otherwise);
-    }
-    bool Bool(const char* name, bool otherwise) const {
-        return from.parameters.GetBool(name, otherwise);
-    }
-    std::string String(const char* name, const std::string& otherwise = "") const {
-        return from.parameters.GetString(name, otherwise);
-    }
-    const TextureRef* Texture(const char* name) const { return from.parameters.GetTexture(name); }
-    bool Has(ParameterType type, const char* name) const {
-        return from.parameters.Find(type, name) != nullptr;
-    }
     // Returns a spectrum parameter that is no texture, nothing where there is none.
     std::optional<V4Spectrum> Spectrum(const char* name) const;
     // Return it, or the given value, as a colour. Reflectances given as RGB above 1 are an error.
@@ -137,12 +120,12 @@ class V4Reader {
 
     const FileLoc& Loc() const { return from.loc; }
     const std::string& Name() const { return from.name; }
-    const Parameters& All() const { return from.parameters; }
     const V4Context& Context() const { return context; }
 
     // Returns the entity written. Throws Error if a parameter of the other is unknown.
     Entity Finish(const std::string& name, const std::string& owner) const;
 
+    const Parameters& given;      // those that were looked up count as known
     const ParameterWriter write;  // of the other entity
 
   private:

@@ -166,4 +166,8 @@ inline std::vector<float> FloatsOf(const Entity& entity, ParameterType type, con
     return {values.begin(), values.end()};
 }
 
+inline std::vector<float> Positions(const Description& d, size_t shape = 0) {
+    return FloatsOf(d.shapes.at(shape), ParameterType::Point3, "P");
+}
+
 }  // namespace lull
