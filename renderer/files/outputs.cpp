@@ -20,7 +20,6 @@
 #include "stopping/base/parallel.h"
 
 namespace lull {
-
 namespace {
 
 namespace fs = std::filesystem;

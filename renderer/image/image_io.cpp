@@ -18,7 +18,6 @@
 #include "stopping/base/input_file.h"
 
 namespace lull {
-
 namespace {
 
 constexpr int kMaxSide = 1 << 16;

@@ -29,7 +29,6 @@
 #include "renderer/image/files/exr_header.h"
 
 namespace lull {
-
 namespace {
 
 // OpenEXR's messages begin with the name of the file, which is not known here.

@@ -16,7 +16,6 @@
 #include "renderer/formats/formats.h"
 
 namespace lull {
-
 namespace {
 
 const Primaries kRec709 = {{0.64f, 0.33f}, {0.3f, 0.6f}, {0.15f, 0.06f}, {0.3127f, 0.329f}};

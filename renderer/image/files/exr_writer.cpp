@@ -26,7 +26,6 @@
 #include "stopping/base/parallel.h"
 
 namespace lull {
-
 namespace {
 
 [[noreturn]] void FailToWriteExr(const std::string& path, const std::string& reason) {

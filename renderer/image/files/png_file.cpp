@@ -19,7 +19,6 @@
 #include "stopping/base/parallel.h"
 
 namespace lull {
-
 namespace {
 
 constexpr size_t kPngSignature = 8;

@@ -4,12 +4,15 @@
 
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "renderer/input/description.h"
 #include "renderer/input/pbrt/pbrt_state.h"
-#include "renderer/input/pbrt/v4_spectra.h"
 
 namespace lull {
 
@@ -38,31 +41,58 @@ void SetExposureOfV4(Description* description);
 // them.
 void AddPresets(const Parameters& presets, Parameters* parameters);
 
+// Spectra become linear sRGB: by what they are spectra of, as rendering by wavelengths would show
+// them in the light of D65.
+
+// Values at rising wavelengths in nm, linear between them and 0 outside.
+struct SampledSpectrum {
+    std::vector<Vec2f> samples;
+
+    double At(double wavelength) const;
+};
+struct NamedSpectrum {
+    std::string name;
+};
+struct BlackbodySpectrum {
+    float kelvin;
+};
+
+using V4Spectrum = std::variant<Rgb, SampledSpectrum, NamedSpectrum, BlackbodySpectrum>;
+
+// Reads pairs of wavelength and value. Throws Error at `loc` unless the wavelengths rise.
+SampledSpectrum SampledSpectrumOf(std::span<const float> pairs, const FileLoc& loc);
+
+// Returns whether pbrt-v4 has a spectrum of that name built in.
+bool IsNamedSpectrum(const std::string& name);
+
+// Each throws Error at `loc` where the spectrum is of another thing by its name.
+
+// Returns the colour of emitted light, of luminance 1 but for RGB, as pbrt-v4 has it. Parts below 0
+// are black.
+Rgb RgbOfLight(const V4Spectrum&, const FileLoc& loc);
+// Returns that of a reflectance, or of a coefficient of absorption or scattering.
+Rgb RgbOfSurface(const V4Spectrum&, const FileLoc& loc);
+// Returns the index of refraction at 587.6 nm, of RGB the mean.
+float IndexOf(const V4Spectrum&, const FileLoc& loc);
+// Returns eta and k with which the reflectance at normal incidence is that of the spectra.
+std::pair<Rgb, Rgb> RgbOfConductor(const V4Spectrum& eta, const V4Spectrum& k, const FileLoc& loc);
+
+// Returns the matrix from a colour space of pbrt-v4 to linear sRGB, by way of XYZ and without
+// adaptation. Throws Error at `loc` for other names.
+Mat3f RgbFromColorSpace(const std::string& name, const FileLoc& loc);
+
+// Returns the matrix of linear sRGB that turns the white of daylight of so many kelvin into that of
+// D65 (Bradford's adaptation); below 4,000 K the white is a black body's.
+Mat3f WhiteBalance(float kelvin);
+
 // Reads the parameters of a pbrt-v4 entity, and writes those of another.
 class V4Reader {
   public:
     V4Reader(const V4Context& context, const Entity& from)
-        : write(&written, from.loc), context(context), from(from) {}
+        : given(from.parameters), write(&written, from.loc), context(context), from(from) {}
     V4Reader(const V4Reader&) = delete;
     V4Reader& operator=(const V4Reader&) = delete;
 
-    // Read a parameter; it then counts as known.
-    float Float(const char* name, float otherwise) const {
-        return from.parameters.GetFloat(name, otherwise);
-    }
-    int Int(const char* name, int otherwise) const {
-        return from.parameters.GetInt(name, otherwise);
-    }
-    bool Bool(const char* name, bool otherwise) const {
-        return from.parameters.GetBool(name, otherwise);
-    }
-    std::string String(const char* name, const std::string& otherwise = "") const {
-        return from.parameters.GetString(name, otherwise);
-    }
-    const TextureRef* Texture(const char* name) const { return from.parameters.GetTexture(name); }
-    bool Has(ParameterType type, const char* name) const {
-        return from.parameters.Find(type, name) != nullptr;
-    }
     // Returns a spectrum parameter that is no texture, nothing where there is none.
     std::optional<V4Spectrum> Spectrum(const char* name) const;
     // Return it, or the given value, as a colour. Reflectances given as RGB above 1 are an error.
@@ -90,12 +120,12 @@ class V4Reader {
 
     const FileLoc& Loc() const { return from.loc; }
     const std::string& Name() const { return from.name; }
-    const Parameters& All() const { return from.parameters; }
     const V4Context& Context() const { return context; }
 
     // Returns the entity written. Throws Error if a parameter of the other is unknown.
     Entity Finish(const std::string& name, const std::string& owner) const;
 
+    const Parameters& given;      // those that were looked up count as known
     const ParameterWriter write;  // of the other entity
 
   private:

@@ -16,23 +16,24 @@ void CopyRoughness(V4Reader* in, const std::string& prefix = "") {
     const std::string both = prefix + "roughness";
     for (const char* axis : {"u", "v"}) {
         const std::string to = prefix + axis + "roughness";
-        if (in->Has(ParameterType::Float, to.c_str()) || in->Texture(to.c_str()))
+        if (in->given.Find(ParameterType::Float, to) || in->given.GetTexture(to))
             in->CopyFloat(to.c_str());
-        else if (in->Has(ParameterType::Float, both.c_str()) || in->Texture(both.c_str()))
+        else if (in->given.Find(ParameterType::Float, both) || in->given.GetTexture(both))
             in->CopyFloat(both.c_str(), to.c_str());
         else
-            in->write.Float(to.c_str(), 0.f);
+            in->write.Float(to, 0.f);
     }
 }
 
 void CopyAllRoughness(V4Reader* in) {
     CopyRoughness(in);
-    in->write.String("remapping", in->Bool("remaproughness", true) ? "sqrt" : "none");
+    in->write.String("remapping", in->given.GetBool("remaproughness", true) ? "sqrt" : "none");
 }
 
 void CopyIndex(V4Reader* in, const char* name, float otherwise) {
-    if (in->Texture(name)) in->Fail(fmt::format("\"{}\" by a texture is not supported", name));
-    float index = in->Float(name, otherwise);
+    if (in->given.GetTexture(name))
+        in->Fail(fmt::format("\"{}\" by a texture is not supported", name));
+    float index = in->given.GetFloat(name, otherwise);
     if (const auto spectrum = in->Spectrum(name)) {
         index = IndexOf(*spectrum, in->Loc());
         if (!std::holds_alternative<Rgb>(*spectrum))
@@ -44,7 +45,7 @@ void CopyIndex(V4Reader* in, const char* name, float otherwise) {
 
 // Reads eta and k of a conductor, or its reflectance, of names that begin with `prefix`.
 void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflectance) {
-    if (const TextureRef* texture = in->Texture(reflectance)) {
+    if (const TextureRef* texture = in->given.GetTexture(reflectance)) {
         in->write.Texture("reflectance", *texture);
     } else if (in->Spectrum(reflectance)) {
         in->write.Spectrum("reflectance", in->Reflectance(reflectance, Rgb::Zero()));
@@ -53,11 +54,11 @@ void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflecta
         const auto [n, absorption] = RgbOfConductor(
             in->Spectrum(eta.c_str()).value_or(NamedSpectrum{"metal-Cu-eta"}),
             in->Spectrum(k.c_str()).value_or(NamedSpectrum{"metal-Cu-k"}), in->Loc());
-        if (const TextureRef* texture = in->Texture(eta.c_str()))
+        if (const TextureRef* texture = in->given.GetTexture(eta))
             in->write.Texture("eta", *texture);
         else
             in->write.Spectrum("eta", n);
-        if (const TextureRef* texture = in->Texture(k.c_str()))
+        if (const TextureRef* texture = in->given.GetTexture(k))
             in->write.Texture("k", *texture);
         else
             in->write.Spectrum("k", absorption);
@@ -66,20 +67,20 @@ void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflecta
 
 // Reads the layer between a coat and its base.
 void CopyLayer(V4Reader* in) {
-    in->write.Float("thickness", in->Float("thickness", 0.01f));
+    in->write.Float("thickness", in->given.GetFloat("thickness", 0.01f));
     in->Ignore({"g", "maxdepth", "nsamples"});
-    if (in->Texture("albedo") || (in->Surface("albedo", Rgb::Zero()) > 0).any())
+    if (in->given.GetTexture("albedo") || (in->Surface("albedo", Rgb::Zero()) > 0).any())
         in->Fail("a coat whose layer scatters (\"albedo\" above 0) is not supported");
 }
 
 void CopyMix(V4Reader* in) {
-    const Parameter* names = in->All().Find(ParameterType::String, "materials");
+    const Parameter* names = in->given.Find(ParameterType::String, "materials");
     const auto* two = names ? std::get_if<std::vector<std::string>>(&names->values) : nullptr;
     if (!two || two->size() != 2) in->Fail("Material \"mix\" needs two names as \"materials\"");
     // The amount is the share of the second.
     in->write.String("namedmaterial1", (*two)[1]);
     in->write.String("namedmaterial2", (*two)[0]);
-    if (in->Has(ParameterType::Float, "amount") || in->Texture("amount"))
+    if (in->given.Find(ParameterType::Float, "amount") || in->given.GetTexture("amount"))
         in->CopyFloat("amount", "share");
     else
         in->write.Float("share", 0.5f);
@@ -89,7 +90,7 @@ void CopySubsurface(V4Reader* in, std::string* name) {
     CopyAllRoughness(in);
     CopyIndex(in, "eta", 1.33f);
     in->Copy(ParameterType::Float, {"g", "scale"});
-    if (in->Spectrum("reflectance") || in->Texture("reflectance")) {
+    if (in->Spectrum("reflectance") || in->given.GetTexture("reflectance")) {
         *name = "kdsubsurface";
         in->CopyReflectance("reflectance", "Kd", 0.5f);
         in->CopySurface("mfp", "mfp");
@@ -103,14 +104,15 @@ void CopySubsurface(V4Reader* in, std::string* name) {
 void CopyHair(V4Reader* in) {
     for (const char* name : {"eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"})
         in->CopyFloat(name);
-    const char* color = in->Texture("color") || in->Spectrum("color") ? "color" : "reflectance";
-    if (in->Texture(color) || in->Spectrum(color)) in->CopyReflectance(color, "color", 0);
+    const char* color =
+        in->given.GetTexture("color") || in->Spectrum("color") ? "color" : "reflectance";
+    if (in->given.GetTexture(color) || in->Spectrum(color)) in->CopyReflectance(color, "color", 0);
     in->CopySurface("sigma_a", "sigma_a");
 }
 
 // Reads the maps of the shading normal, which all but mixtures and interfaces have.
 void CopyTilt(V4Reader* in) {
-    const std::string map = in->String("normalmap");
+    const std::string map = in->given.GetString("normalmap", "");
     // Where both are given the normal map counts.
     if (!map.empty())
         in->write.Texture("normals", in->AddImage(map, true));
@@ -153,12 +155,12 @@ std::string CopyKind(V4Reader* in) {
         CopyIndex(in, "interface.eta", 1.5f);
         CopyRoughness(in, "interface.");
         CopyRoughness(in, "conductor.");
-        in->write.String("remapping", in->Bool("remaproughness", true) ? "sqrt" : "none");
+        in->write.String("remapping", in->given.GetBool("remaproughness", true) ? "sqrt" : "none");
         CopyLayer(in);
         return kind;
     }
     if (kind == "diffusetransmission") {
-        in->write.Spectrum("Kd", Rgb::Constant(in->Float("scale", 1)));
+        in->write.Spectrum("Kd", Rgb::Constant(in->given.GetFloat("scale", 1)));
         in->write.Spectrum("Ks", Rgb::Zero());
         in->CopyReflectance("reflectance", "reflect", 0.25f);
         in->CopyReflectance("transmittance", "transmit", 0.25f);
@@ -178,7 +180,7 @@ std::string CopyKind(V4Reader* in) {
 Entity TranslateMaterial(V4Reader& in) {
     const std::string& kind = in.Name();
     const std::string owner = "material \"" + Printable(kind) + "\"";
-    in.String("type");
+    in.given.GetString("type", "");
     RefuseKindOfV3("Material", kind, in.Loc());
     if (kind.empty() || kind == "none" || kind == "interface") {
         in.Ignore({"displacement", "normalmap"});
@@ -207,13 +209,14 @@ constexpr float kDegree = kPi / 180;
 
 // Returns the light's colour times its "scale".
 Rgb Color(const V4Reader& in, const char* name) {
-    return in.Light(name, Rgb::Ones()) * in.Float("scale", 1);
+    return in.Light(name, Rgb::Ones()) * in.given.GetFloat("scale", 1);
 }
 
 void CopySpot(V4Reader* in) {
-    const float cone = in->Float("coneangle", 30), delta = in->Float("conedeltaangle", 5);
+    const float cone = in->given.GetFloat("coneangle", 30),
+                delta = in->given.GetFloat("conedeltaangle", 5);
     Rgb I = Color(*in, "I");
-    if (const float power = in->Float("power", -1); power > 0) {
+    if (const float power = in->given.GetFloat("power", -1); power > 0) {
         const float whole = std::cos((cone - delta) * kDegree), end = std::cos(cone * kDegree);
         I *= power / (2 * kPi * ((1 - whole) + (whole - end) / 2));
     }
@@ -225,23 +228,23 @@ void CopySpot(V4Reader* in) {
 
 // Reads a light whose beam an image shapes; the image is named in the file's terms.
 void CopyImageLight(V4Reader* in) {
-    const std::string file = in->String("filename");
+    const std::string file = in->given.GetString("filename", "");
     if (file.empty()) in->Fail(fmt::format("LightSource \"{}\" needs a \"filename\"", in->Name()));
     in->write.String("mapname", file);
     in->write.Bool("decode", true);
     in->write.Spectrum("I", in->Name() == "goniometric"
                                 ? Color(*in, "I")
-                                : Rgb::Constant(in->Float("scale", 1)).eval());
+                                : Rgb::Constant(in->given.GetFloat("scale", 1)).eval());
     in->Copy(ParameterType::Float, {"power"});
-    if (in->Name() == "projection") in->write.Float("fov", in->Float("fov", 90));
+    if (in->Name() == "projection") in->write.Float("fov", in->given.GetFloat("fov", 90));
     if (in->Name() == "goniometric") in->write.Bool("equalarea", true);
 }
 
 void CopyInfinite(V4Reader* in) {
     Rgb L = Color(*in, "L");
-    const std::string file = in->String("filename");
+    const std::string file = in->given.GetString("filename", "");
     if (file.empty()) {
-        if (const float e = in->Float("illuminance", -1); e > 0) L *= e * kInvPi;
+        if (const float e = in->given.GetFloat("illuminance", -1); e > 0) L *= e * kInvPi;
     } else {
         if (in->Spectrum("L")) in->Fail("an infinite light has \"L\" or \"filename\", not both");
         in->write.String("mapname", file);
@@ -260,11 +263,11 @@ Entity TranslateLight(V4Reader& in) {
     const std::string& kind = in.Name();
     in.Copy(ParameterType::String, {"lightgroup"});
     if (kind == "point") {
-        const float power = in.Float("power", -1);
+        const float power = in.given.GetFloat("power", -1);
         in.write.Spectrum("I", Color(in, "I") * (power > 0 ? power / (4 * kPi) : 1));
         in.Copy(ParameterType::Point3, {"from"});
     } else if (kind == "distant") {
-        const float illuminance = in.Float("illuminance", -1);
+        const float illuminance = in.given.GetFloat("illuminance", -1);
         in.write.Spectrum("L", Color(in, "L") * (illuminance > 0 ? illuminance : 1));
         in.Copy(ParameterType::Point3, {"from", "to"});
     } else if (kind == "spot") {
@@ -288,14 +291,14 @@ Entity TranslateAreaLight(V4Reader& in) {
         in.Fail(fmt::format("AreaLightSource \"{}\" is not supported; only \"diffuse\" is",
                             Printable(in.Name())));
     in.Copy(ParameterType::String, {"lightgroup"});
-    in.write.Bool("twosided", in.Bool("twosided", false));
-    if (const std::string file = in.String("filename"); !file.empty()) {
+    in.write.Bool("twosided", in.given.GetBool("twosided", false));
+    if (const std::string file = in.given.GetString("filename", ""); !file.empty()) {
         if (in.Spectrum("L")) in.Fail("an area light has \"L\" or \"filename\", not both");
         in.write.Texture("emission", in.AddImage(file, false));
     }
     in.write.Spectrum("L", Color(in, "L"));
     in.Copy(ParameterType::Float, {"power"});
-    if (in.Has(ParameterType::Float, "spread")) {
+    if (in.given.Find(ParameterType::Float, "spread")) {
         in.Warn(
             "\"spread\" is no parameter of pbrt-v4; it is taken as the angle of the cone, in "
             "degrees, that each point shines into");

@@ -19,7 +19,7 @@ constexpr ParameterType kSpectrumTypes[] = {ParameterType::Spectrum, ParameterTy
 
 std::optional<V4Spectrum> V4Reader::Spectrum(const char* name) const {
     for (const ParameterType type : kSpectrumTypes) {
-        const Parameter* parameter = from.parameters.Find(type, name);
+        const Parameter* parameter = given.Find(type, name);
         if (!parameter) continue;
         const FileLoc& loc = parameter->loc;
         if (const auto* names = std::get_if<std::vector<std::string>>(&parameter->values)) {
@@ -55,21 +55,22 @@ Rgb V4Reader::Surface(const char* name, const Rgb& otherwise) const {
 Rgb V4Reader::Reflectance(const char* name, const Rgb& otherwise) const {
     const Rgb color = Surface(name, otherwise);
     const bool isSrgb = context.state.rgbFromColorSpace == Mat3f::Identity();
-    if (isSrgb && Has(ParameterType::Spectrum, name) && (color > 1).any())
+    const Parameter* rgb = given.Find(ParameterType::Spectrum, name);
+    if (isSrgb && rgb && (color > 1).any())
         throw Error(
-            from.parameters.Find(ParameterType::Spectrum, name)->loc,
+            rgb->loc,
             fmt::format("\"rgb {}\" has a part above 1; a reflectance lies between 0 and 1", name));
     return color.max(0.f).min(1.f);
 }
 
 void V4Reader::Ignore(std::initializer_list<const char*> names) const {
     for (const char* name : names)
-        for (const Parameter& parameter : from.parameters.All())
+        for (const Parameter& parameter : given.All())
             if (parameter.name == name) parameter.lookedUp = true;
 }
 
 void V4Reader::Copy(ParameterType type, const char* name, const char* to) {
-    const Parameter* parameter = from.parameters.Find(type, name);
+    const Parameter* parameter = given.Find(type, name);
     if (!parameter) return;
     Parameter copy = *parameter;
     copy.name = to;
@@ -87,14 +88,14 @@ void V4Reader::CopyFloat(const char* name, const char* to) {
 }
 
 void V4Reader::CopyReflectance(const char* name, const char* to, float otherwise) {
-    if (const TextureRef* texture = Texture(name))
+    if (const TextureRef* texture = given.GetTexture(name))
         write.Texture(to, *texture);
     else
         write.Spectrum(to, Reflectance(name, Rgb::Constant(otherwise)));
 }
 
 void V4Reader::CopySurface(const char* name, const char* to) {
-    if (const TextureRef* texture = Texture(name))
+    if (const TextureRef* texture = given.GetTexture(name))
         write.Texture(to, *texture);
     else if (Spectrum(name))
         write.Spectrum(to, Surface(name, Rgb::Ones()));
@@ -114,12 +115,12 @@ TextureRef V4Reader::AddImage(const std::string& file, bool isData) const {
 }
 
 Entity V4Reader::Finish(const std::string& name, const std::string& owner) const {
-    for (const Parameter& parameter : from.parameters.All())
+    for (const Parameter& parameter : given.All())
         if (!parameter.lookedUp)
             throw Error(parameter.loc,
                         fmt::format("{} has no parameter \"{} {}\" in pbrt-v4{}", owner,
                                     NameOf(parameter.type), Printable(parameter.name),
-                                    from.parameters.Mistyped(parameter.name)));
+                                    given.Mistyped(parameter.name)));
     return {name, written, from.loc};
 }
 
@@ -166,21 +167,21 @@ Entity TranslateFilm(V4Reader& in) {
                             Printable(in.Name())));
     if (in.Name() == "spectral")
         in.Warn("Film \"spectral\" is rendered as \"rgb\": its wavelengths are not kept");
-    if (in.Name() == "gbuffer") in.String("coordinatesystem");
+    if (in.Name() == "gbuffer") in.given.GetString("coordinatesystem", "");
     in.Copy(ParameterType::Integer, {"xresolution", "yresolution", "pixelbounds"});
     in.Copy(ParameterType::Float, {"cropwindow", "diagonal"});
-    in.write.String("filename", in.String("filename", "pbrt.exr"));
-    in.write.Float("scale", in.Float("iso", 100) / 100);
+    in.write.String("filename", in.given.GetString("filename", "pbrt.exr"));
+    in.write.Float("scale", in.given.GetFloat("iso", 100) / 100);
     in.Copy(ParameterType::Float, {"maxcomponentvalue"});
     in.Ignore({"savefp16", "nbuckets", "lambdamin", "lambdamax"});
-    const std::string sensor = in.String("sensor", "cie1931");
+    const std::string sensor = in.given.GetString("sensor", "cie1931");
     if (std::ranges::count(kSensors, sensor) == 0)
         in.Fail(fmt::format("the sensor \"{}\" is unknown", Printable(sensor)));
     if (sensor != "cie1931")
         in.Warn(
             "a camera's sensor has no effect: in RGB it is that of the eye, but for 2 to 4 % "
             "of a saturated colour");
-    const float kelvin = in.Float("whitebalance", 0);
+    const float kelvin = in.given.GetFloat("whitebalance", 0);
     const bool isNeutral = kelvin == 0 || (kelvin == 6500 && sensor != "cie1931");
     if (!isNeutral) {
         if (!(kelvin >= 1000 && kelvin <= 25000))
@@ -202,7 +203,7 @@ Entity TranslateCamera(V4Reader& in) {
     if (name == "realistic") {
         in.Copy(ParameterType::String, {"lensfile"});
         in.Copy(ParameterType::Float, {"aperturediameter", "focusdistance"});
-        if (!in.String("aperture").empty())
+        if (!in.given.GetString("aperture", "").empty())
             in.Warn("\"aperture\" has no effect: the stop of the lens is round");
         in.write.Bool("simpleweighting", true);
         return in.Finish(name, owner);
@@ -210,7 +211,7 @@ Entity TranslateCamera(V4Reader& in) {
     in.Copy(ParameterType::Float, {"frameaspectratio", "screenwindow"});
     if (name == "spherical") {
         in.Ignore({"lensradius", "focaldistance"});
-        const std::string mapping = in.String("mapping", "equalarea");
+        const std::string mapping = in.given.GetString("mapping", "equalarea");
         if (mapping != "equalarea" && mapping != "equirectangular")
             in.Fail(fmt::format("the mapping \"{}\" is unknown; equalarea and equirectangular are",
                                 Printable(mapping)));
@@ -220,8 +221,8 @@ Entity TranslateCamera(V4Reader& in) {
     if (name == "stereoscopic") {
         // Of the laboratory's fork: parallel eyes, both unless one is named.
         in.Copy(ParameterType::Float, {"lensradius", "focaldistance", "fov"});
-        in.write.Float("eyedistance", in.Float("eyeDistance", 0.065f));
-        in.write.String("eye", in.String("view"));
+        in.write.Float("eyedistance", in.given.GetFloat("eyeDistance", 0.065f));
+        in.write.String("eye", in.given.GetString("view", ""));
         return in.Finish("perspective", owner);
     }
     if (name != "perspective" && name != "orthographic")
@@ -245,9 +246,10 @@ Entity TranslateFilter(V4Reader& in) {
             fmt::format("PixelFilter \"{}\" is unknown; box, gaussian, mitchell, sinc and "
                         "triangle are",
                         Printable(in.Name())));
-    in.write.Float("xwidth", in.Float("xradius", kind->radius));
-    in.write.Float("ywidth", in.Float("yradius", kind->radius));
-    if (in.Name() == "gaussian") in.write.Float("alpha", 0.5f / Sqr(in.Float("sigma", 0.5f)));
+    in.write.Float("xwidth", in.given.GetFloat("xradius", kind->radius));
+    in.write.Float("ywidth", in.given.GetFloat("yradius", kind->radius));
+    if (in.Name() == "gaussian")
+        in.write.Float("alpha", 0.5f / Sqr(in.given.GetFloat("sigma", 0.5f)));
     if (in.Name() == "mitchell") in.Copy(ParameterType::Float, {"B", "C"});
     if (in.Name() == "sinc") in.Copy(ParameterType::Float, {"tau"});
     return in.Finish(in.Name(), "PixelFilter");
@@ -258,8 +260,9 @@ Entity TranslateSampler(V4Reader& in) {
     const std::string& name = in.Name();
     in.Ignore({"seed", "randomization"});
     if (name == "stratified") {
-        in.write.Int("pixelsamples", in.Int("xsamples", 4) * in.Int("ysamples", 4));
-        in.Bool("jitter", true);
+        in.write.Int("pixelsamples",
+                     in.given.GetInt("xsamples", 4) * in.given.GetInt("ysamples", 4));
+        in.given.GetBool("jitter", true);
         return in.Finish("sobol", "Sampler \"stratified\"");
     }
     constexpr std::string_view kKnown[] = {"halton", "paddedsobol", "pmj02bn", "sobol", "zsobol"};
@@ -270,7 +273,7 @@ Entity TranslateSampler(V4Reader& in) {
             fmt::format("Sampler \"{}\" is unknown in pbrt-v4; halton, independent, "
                         "paddedsobol, pmj02bn, sobol, stratified and zsobol are",
                         Printable(name)));
-    in.write.Int("pixelsamples", in.Int("pixelsamples", isIndependent ? 4 : 16));
+    in.write.Int("pixelsamples", in.given.GetInt("pixelsamples", isIndependent ? 4 : 16));
     return in.Finish(isIndependent ? "random" : "sobol", "Sampler \"" + name + "\"");
 }
 
@@ -295,15 +298,15 @@ Entity TranslateIntegrator(V4Reader& in) {
             fmt::format("Integrator \"{}\" is not supported; path, volpath, bdpt, simplepath, "
                         "simplevolpath, randomwalk, lightpath, mlt and sppm are",
                         Printable(in.Name())));
-    in.write.Int("maxdepth", in.Int("maxdepth", 5));
-    if (in.Bool("regularize", false))
+    in.write.Int("maxdepth", in.given.GetInt("maxdepth", 5));
+    if (in.given.GetBool("regularize", false))
         in.Warn("\"regularize\" has no effect: it would blur reflections of reflections");
     if (!kind->isSame)
         in.Warn(fmt::format("Integrator \"{}\" is rendered as \"{}\"", in.Name(), kind->as));
     in.Ignore(
         {"lightsampler", "samplelights", "samplebsdf", "visualizestrategies", "visualizeweights"});
     if (!kind->isSame)
-        for (const Parameter& parameter : in.All().All()) parameter.lookedUp = true;
+        for (const Parameter& parameter : in.given.All()) parameter.lookedUp = true;
     return in.Finish(kind->as, "Integrator \"" + in.Name() + "\"");
 }
 

@@ -1,5 +1,4 @@
-#include "renderer/input/pbrt/v4_spectra.h"
-
+// Turns pbrt-v4's spectra into linear sRGB.
 #include <fmt/format.h>
 #include <Eigen/LU>
 
@@ -9,6 +8,7 @@
 #include <string_view>
 
 #include "renderer/base/color.h"
+#include "renderer/input/pbrt/v4.h"
 #include "renderer/input/spectrum.h"
 #include "stopping/base/input_file.h"
 

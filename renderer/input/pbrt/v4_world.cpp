@@ -21,12 +21,12 @@ void CopyMapping(V4Reader* in) {
 void CopyOperand(V4Reader* in, const char* name, bool isSpectrum, float otherwise,
                  const char* to = nullptr) {
     if (!to) to = name;
-    if (const TextureRef* texture = in->Texture(name))
+    if (const TextureRef* texture = in->given.GetTexture(name))
         in->write.Texture(to, *texture);
     else if (isSpectrum)
         in->write.Spectrum(to, in->Surface(name, Rgb::Constant(otherwise)));
     else
-        in->write.Float(to, in->Float(name, otherwise));
+        in->write.Float(to, in->given.GetFloat(name, otherwise));
 }
 
 void CopyImage(V4Reader* in, bool isSpectrum) {
@@ -35,23 +35,23 @@ void CopyImage(V4Reader* in, bool isSpectrum) {
     in->Copy(ParameterType::Float, {"scale"});
     in->Copy(ParameterType::Bool, {"invert"});
     in->Ignore({"filter", "maxanisotropy"});
-    std::string wrap = in->String("wrap", "repeat");
+    std::string wrap = in->given.GetString("wrap", "repeat");
     if (wrap == "octahedralsphere") {
         in->Warn("wrap \"octahedralsphere\" is replaced by \"repeat\"");
         wrap = "repeat";
     }
     in->write.String("wrap", wrap);
-    in->write.String("encoding", in->String("encoding", "sRGB"));
+    in->write.String("encoding", in->given.GetString("encoding", "sRGB"));
     if (!isSpectrum) in->write.String("channel", "mean or alpha");
 }
 
 // Multiplies a texture by another. The factor of an image is multiplied with its texels, before
 // they are inverted.
 Entity TranslateScale(V4Reader& in, bool isSpectrum, const std::string& owner) {
-    const TextureRef* texture = in.Texture("tex");
+    const TextureRef* texture = in.given.GetTexture("tex");
     const int index = !texture ? -1 : isSpectrum ? texture->spectrumIndex : texture->floatIndex;
-    const float factor = in.Float("scale", 1);
-    if (index >= 0 && !in.Texture("scale")) {
+    const float factor = in.given.GetFloat("scale", 1);
+    if (index >= 0 && !in.given.GetTexture("scale")) {
         const TextureEntity& image = in.Context().description.textures[size_t(index)];
         if (image.name == "imagemap") {
             Entity copy = image;
@@ -91,7 +91,7 @@ Entity TranslateTexture(V4Reader& in) {
         CopyOperand(&in, "amount", false, 0.5f);
     } else if (kind == "directionmix") {
         operands({"tex1", "tex2"}, 0);
-        const Vec3f dir = in.All().GetVector3("dir", Vec3f::UnitY());
+        const Vec3f dir = in.given.GetVector3("dir", Vec3f::UnitY());
         in.write.Floats(ParameterType::Vector3, "dir", {dir.x(), dir.y(), dir.z()});
     } else if (kind == "imagemap") {
         CopyImage(&in, isSpectrum);
@@ -122,7 +122,7 @@ using Corners = std::array<Vec3f, 4>;
 template <typename Vector>
 std::vector<Vector> Vectors(const V4Reader& in, ParameterType type, const char* name) {
     constexpr int n = Vector::RowsAtCompileTime;
-    const auto values = in.All().GetFloats(type, name);
+    const auto values = in.given.GetFloats(type, name);
     std::vector<Vector> vectors(values.size() / n);
     for (size_t i = 0; i < vectors.size(); ++i)
         vectors[i] = Eigen::Map<const Vector>(values.data() + n * i);
@@ -146,12 +146,12 @@ Entity TranslatePatches(V4Reader& in) {
     const auto p = Vectors<Vec3f>(in, ParameterType::Point3, "P");
     const auto n = Vectors<Vec3f>(in, ParameterType::Normal, "N");
     const auto uv = Vectors<Vec2f>(in, ParameterType::Point2, "uv");
-    std::vector<int> indices(in.All().GetInts("indices").begin(),
-                             in.All().GetInts("indices").end());
+    std::vector<int> indices(in.given.GetInts("indices").begin(),
+                             in.given.GetInts("indices").end());
     if (indices.empty() && p.size() == 4) indices = {0, 1, 2, 3};
     if (indices.empty() || indices.size() % 4 != 0)
         in.Fail("a bilinearmesh needs four \"indices\" for each patch");
-    if (!in.String("emissionfilename").empty())
+    if (!in.given.GetString("emissionfilename", "").empty())
         in.Warn("\"emissionfilename\" of a bilinearmesh has no effect on its emission");
     in.Ignore({"faceIndices"});
     const bool hasNormals = !n.empty() && n.size() == p.size();
@@ -209,8 +209,8 @@ Entity TranslatePatches(V4Reader& in) {
 
 // Reads the opacity, which is by chance.
 void CopyAlpha(V4Reader* in) {
-    const float alpha = in->Float("alpha", 1);
-    if (const TextureRef* texture = in->Texture("alpha"))
+    const float alpha = in->given.GetFloat("alpha", 1);
+    if (const TextureRef* texture = in->given.GetTexture("alpha"))
         in->write.Texture("coverage", *texture);
     else if (alpha <= 0)
         in->write.Bool("invisible", true);
@@ -231,12 +231,12 @@ Entity TranslateShape(V4Reader& in) {
         in.Copy(ParameterType::Normal, {"N"});
         in.Ignore({"S"});
         // Three points are a triangle.
-        if (!in.Has(ParameterType::Integer, "indices") &&
-            in.All().GetFloats(ParameterType::Point3, "P").size() == 9)
+        if (!in.given.Find(ParameterType::Integer, "indices") &&
+            in.given.GetFloats(ParameterType::Point3, "P").size() == 9)
             in.write.Ints("indices", {0, 1, 2});
     } else if (kind == "plymesh") {
         in.Copy(ParameterType::String, {"filename"});
-        if (in.Texture("displacement"))
+        if (in.given.GetTexture("displacement"))
             in.Fail(
                 "\"displacement\" of a plymesh is not supported; displace the mesh itself, or "
                 "use the material's \"displacement\", which tilts its normals");
@@ -266,18 +266,19 @@ Entity TranslateShape(V4Reader& in) {
 Entity TranslateMedium(V4Reader& in) {
     const std::string& kind = in.Name();
     const std::string owner = "medium \"" + Printable(kind) + "\"";
-    in.String("type");
+    in.given.GetString("type", "");
     const bool isGrid = kind == "uniformgrid";
     if (!isGrid && kind != "homogeneous")
         in.Fail(fmt::format("{} is not supported; homogeneous and uniformgrid are", owner));
     in.Copy(ParameterType::Float, {"g", "scale"});
-    if (in.Has(ParameterType::String, "preset") && !isGrid) {
+    if (in.given.Find(ParameterType::String, "preset") && !isGrid) {
         in.Copy(ParameterType::String, {"preset"});
     } else {
         in.write.Spectrum("sigma_a", in.Surface("sigma_a", Rgb::Ones()));
         in.write.Spectrum("sigma_s", in.Surface("sigma_s", Rgb::Ones()));
     }
-    if ((in.Light("Le", Rgb::Zero()) > 0).any() || in.Has(ParameterType::Float, "temperature"))
+    if ((in.Light("Le", Rgb::Zero()) > 0).any() ||
+        in.given.Find(ParameterType::Float, "temperature"))
         in.Fail("media that emit light are not supported");
     in.Ignore({"Lescale", "temperaturescale", "temperatureoffset"});
     if (isGrid) {

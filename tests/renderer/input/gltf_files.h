@@ -119,7 +119,9 @@ struct GltfFile {
     std::string Binary() const {
         json whole = root;
         whole["buffers"] = {{{"byteLength", bytes.size()}}};
-        std::string text = whole.dump(), data = bytes;
+        return Glb(whole.dump(), bytes);
+    }
+    static std::string Glb(std::string text, std::string data) {
         text.resize((text.size() + 3) / 4 * 4, ' ');
         data.resize((data.size() + 3) / 4 * 4);
         const auto number = [](size_t n) {
@@ -162,6 +164,10 @@ void ExpectNear(const std::vector<T>& values, const std::vector<double>& expecte
 inline std::vector<float> FloatsOf(const Entity& entity, ParameterType type, const char* name) {
     const auto values = entity.parameters.GetFloats(type, name);
     return {values.begin(), values.end()};
+}
+
+inline std::vector<float> Positions(const Description& d, size_t shape = 0) {
+    return FloatsOf(d.shapes.at(shape), ParameterType::Point3, "P");
 }
 
 }  // namespace lull

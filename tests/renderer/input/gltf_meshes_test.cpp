@@ -6,10 +6,6 @@
 namespace lull {
 namespace {
 
-std::vector<float> Positions(const Description& d, size_t shape = 0) {
-    return FloatsOf(d.shapes.at(shape), ParameterType::Point3, "P");
-}
-
 std::vector<int> Indices(const Description& d) {
     const auto values = d.shapes.at(0).parameters.GetInts("indices");
     return {values.begin(), values.end()};

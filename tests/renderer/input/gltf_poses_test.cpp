@@ -6,10 +6,6 @@ namespace {
 
 constexpr float kHalf = 0.70710678f;  // of a quaternion: a quarter turn
 
-std::vector<float> Positions(const Description& d, size_t shape = 0) {
-    return FloatsOf(d.shapes.at(shape), ParameterType::Point3, "P");
-}
-
 // A strip along x whose right end follows a joint at x = 1, its middle both joints. The joints
 // stand in a node at height 3; the joint at the end is turned by a quarter about z.
 GltfFile Arm() {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "renderer/input/pbrt/pbrt_lexer.h"
-#include "renderer/input/pbrt/v4_spectra.h"
+#include "renderer/input/pbrt/v4.h"
 #include "tests/renderer/input/test_files.h"
 #include "tests/shared_folder.h"
 
