@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "renderer/commands/command.h"
-#include "renderer/denoise/lightness_error.h"
+#include "renderer/denoise/visible_error.h"
 #include "renderer/image/grade.h"
 #include "renderer/progress/progress.h"
 #include "renderer/render/render.h"
