@@ -139,9 +139,8 @@ std::map<std::string, int> Warnings::Counts() const {
 }
 
 int Warnings::Total() const {
-    std::lock_guard lock(mutex);
     int total = 0;
-    for (const auto& [kind, count] : counts) total += count.count;
+    for (const auto& [kind, count] : Counts()) total += count;
     return total;
 }
 

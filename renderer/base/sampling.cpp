@@ -55,4 +55,90 @@ Distribution2D::Distribution2D(std::span<const float> values, int columns, int r
     marginal = Distribution1D(rowIntegrals);
 }
 
+BlockDistribution::BlockDistribution(int columns, int rows, const Weigh& weigh, float tolerance)
+    : columns(columns), rows(rows) {
+    const int across = (columns + kSide - 1) / kSide, down = (rows + kSide - 1) / kSide;
+    // Cells that fill up the last blocks have no weight.
+    const int stride = across * kSide;
+    std::vector<float> strip(size_t(stride) * kSide);
+    const auto weighStrip = [&](int block) {
+        std::fill(strip.begin(), strip.end(), 0.f);
+        for (int v = 0; v < std::min(kSide, rows - block * kSide); ++v)
+            weigh(block * kSide + v, {&strip[size_t(v) * stride], size_t(columns)});
+    };
+
+    // Weigh the blocks. Where one is sampled evenly, the variance of weight / density grows by its
+    // probability times the relative variance of its weights.
+    const size_t count = size_t(across) * size_t(down);
+    std::vector<float> means(count);
+    std::vector<double> variances(count);
+    double total = 0;
+    for (int y = 0; y < down; ++y) {
+        weighStrip(y);
+        for (int x = 0; x < across; ++x) {
+            double sum = 0, squares = 0;
+            for (int v = 0; v < kSide; ++v)
+                for (int u = 0; u < kSide; ++u) {
+                    const double weight = strip[size_t(v) * stride + x * kSide + u];
+                    sum += weight;
+                    squares += Sqr(weight);
+                }
+            constexpr double kCells = kSide * kSide;
+            const size_t i = size_t(y) * across + x;
+            means[i] = float(sum / kCells);
+            variances[i] = sum > 0 ? std::max(squares * kCells / sum - sum, 0.0) : 0;
+            total += sum;
+        }
+    }
+    blocks = Distribution2D(means, across, down);
+    if (total > 0) scale = float(double(columns) * rows / Sqr(kSide));
+
+    // Leave out as many tables as the tolerance allows.
+    std::vector<int> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return variances[a] < variances[b]; });
+    tables.assign(count, 0);
+    double left = tolerance * total;
+    for (const int i : order) {
+        const bool isPartial =
+            (i % across + 1) * kSide > columns || (i / across + 1) * kSide > rows;
+        if (isPartial) continue;
+        left -= variances[i];
+        if (left < 0) break;
+        tables[i] = -1;
+    }
+
+    for (int y = 0; y < down; ++y) {
+        const auto row = std::span(tables).subspan(size_t(y) * across, across);
+        if (std::all_of(row.begin(), row.end(), [](int32_t table) { return table < 0; })) continue;
+        weighStrip(y);
+        for (int x = 0; x < across; ++x) {
+            if (row[x] < 0) continue;
+            row[x] = int32_t(cells.size());
+            cells.push_back(MakeCells(&strip[size_t(x) * kSide], stride));
+        }
+    }
+}
+
+BlockDistribution::Sums BlockDistribution::SumsOf(const Sums& weights) {
+    const Distribution1D distribution(weights);
+    Sums sums;
+    std::copy_n(distribution.Tables().cdf + 1, kSide, sums.begin());
+    return sums;
+}
+
+BlockDistribution::Cells BlockDistribution::MakeCells(const float* weights, int stride) {
+    Cells made;
+    Sums means;
+    for (int row = 0; row < kSide; ++row) {
+        Sums in;
+        std::copy_n(weights + size_t(row) * size_t(stride), kSide, in.begin());
+        made.columns[row] = SumsOf(in);
+        means[row] = float(std::accumulate(in.begin(), in.end(), 0.0) / kSide);
+    }
+    made.rows = SumsOf(means);
+    return made;
+}
+
 }  // namespace lull

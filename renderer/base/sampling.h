@@ -1,6 +1,7 @@
 // Turns uniform numbers into directions, points and choices.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -261,5 +262,115 @@ float SampleSpline(std::span<const float> nodes, const Value& value, const Cdf& 
     }
     return x0 + t * width;
 }
+
+// Maps the sphere to the unit square so that equal areas stay equal: an octahedron whose lower
+// faces are folded outwards (Clarberg 2008, "Fast Equal-Area Mapping of the (Hemi)Sphere using
+// SIMD"), in the orientation of pbrt-v4: +z in the middle, -z in the corners.
+
+// Returns the direction of a point of the unit square; unit.
+inline Vec3f DirectionOfEqualAreaSquare(const Vec2f& p) {
+    const float u = 2 * p.x() - 1, v = 2 * p.y() - 1;
+    const float signedDistance = 1 - (std::abs(u) + std::abs(v));
+    const float r = 1 - std::abs(signedDistance);
+    const float phi = (r == 0 ? 1 : (std::abs(v) - std::abs(u)) / r + 1) * (kPi / 4);
+    const float z = std::copysign(1 - Sqr(r), signedDistance);
+    const float across = r * SafeSqrt(2 - Sqr(r));
+    return {std::copysign(std::cos(phi) * across, u), std::copysign(std::sin(phi) * across, v), z};
+}
+
+// Returns the point of the unit square of a unit direction.
+inline Vec2f EqualAreaSquareOf(const Vec3f& w) {
+    const float x = std::abs(w.x()), y = std::abs(w.y());
+    const float r = SafeSqrt(1 - std::abs(w.z()));
+    float v = r * (std::max(x, y) > 0 ? std::atan2(y, x) : 0) * (2 / kPi), u = r - v;
+    if (w.z() < 0) {
+        std::swap(u, v);
+        u = 1 - u;
+        v = 1 - v;
+    }
+    return {0.5f * (std::copysign(u, w.x()) + 1), 0.5f * (std::copysign(v, w.y()) + 1)};
+}
+
+// Samples the unit square by a large table, of which little has to be in the caches.
+
+// Represents a density over the unit square that is constant over each of columns x rows cells.
+// Blocks of cells are chosen by a small table. Where the weights of a block's cells differ, so that
+// it matters, the block has a table of its cells; else it is sampled evenly.
+class BlockDistribution {
+  public:
+    static constexpr int kSide = 16;  // of a block, in cells
+
+    // Writes the weights of a row of cells, >= 0, whose sum is finite. Called again for some rows.
+    using Weigh = std::function<void(int row, std::span<float> weights)>;
+
+    BlockDistribution() = default;
+    // The density is proportional to the weights, but for blocks that are sampled evenly. These
+    // add at most `tolerance` to the relative variance of weight / density: with 0 it is exact.
+    BlockDistribution(int columns, int rows, const Weigh& weigh, float tolerance);
+
+    // Returns a point of the unit square, and the density there: 0 if all weights are 0.
+    Vec2f Sample(const Vec2f& u, float* pdf) const {
+        Vec2f place = u;
+        float pmf;
+        const Vec2i block = blocks.SampleDiscrete(&place, &pmf);
+        *pdf = scale;
+        Vec2f cell = kSide * (block.cast<float>() + place);
+        if (const int32_t table = TableOf(block); table >= 0) {
+            const Cells& in = cells[table];
+            const int row = Choose(in.rows, &place.y(), pdf);
+            const int column = Choose(in.columns[row], &place.x(), pdf);
+            *pdf *= kSide * kSide;
+            cell = (kSide * block + Vec2i(column, row)).cast<float>() + place;
+        }
+        *pdf *= pmf;
+        return {std::min(cell.x() / float(columns), kOneMinusEpsilon),
+                std::min(cell.y() / float(rows), kOneMinusEpsilon)};
+    }
+    // Returns the density at a point of the unit square.
+    float Pdf(const Vec2f& st) const {
+        const int column = std::clamp(int(st.x() * float(columns)), 0, columns - 1);
+        const int row = std::clamp(int(st.y() * float(rows)), 0, rows - 1);
+        const Vec2i block(column / kSide, row / kSide);
+        const int32_t table = TableOf(block);
+        if (table < 0) return scale * blocks.Pmf(block);
+        const Cells& in = cells[table];
+        return scale * (kSide * kSide) * Pmf(in.rows, row % kSide) *
+               Pmf(in.columns[row % kSide], column % kSide) * blocks.Pmf(block);
+    }
+
+  private:
+    // Running sums of probabilities, up to and with each element; the last is 1.
+    using Sums = std::array<float, kSide>;
+
+    // The rows of a block, and the cells of each row: two cache lines are read.
+    struct alignas(64) Cells {
+        Sums rows;
+        std::array<Sums, kSide> columns;
+    };
+
+    int32_t TableOf(const Vec2i& block) const {
+        return tables[size_t(block.y()) * size_t(blocks.Columns()) + block.x()];
+    }
+    static float Pmf(const Sums& sums, int i) { return i == 0 ? sums[0] : sums[i] - sums[i - 1]; }
+    // Chooses an element; `u` in [0, 1) becomes the place in it, and `pmf` is multiplied by its
+    // probability.
+    static int Choose(const Sums& sums, float* u, float* pmf) {
+        int i = 0;
+        for (int k = 0; k < kSide - 1; ++k) i += sums[k] <= *u;
+        const float below = i == 0 ? 0 : sums[i - 1];
+        const float width = sums[i] - below;
+        *u = std::min((*u - below) / width, kOneMinusEpsilon);
+        *pmf *= width;
+        return i;
+    }
+    static Sums SumsOf(const Sums& weights);
+    static Cells MakeCells(const float* weights, int stride);
+
+    int columns = 1, rows = 1;  // without the padding of the last blocks
+    float scale = 0;            // density of a block that is as likely as all together
+    Distribution2D blocks;
+    std::vector<int32_t> tables;  // by block, row by row; -1: sampled evenly
+    std::vector<Cells> cells;
+};
 
 }  // namespace lull

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -22,28 +21,6 @@ template <size_t First = 0, typename Variant, typename F>
     if constexpr (First + 1 < std::variant_size_v<std::remove_const_t<Variant>>)
         if (variant.index() != First) return Visit<First + 1>(variant, f);
     return f(*std::get_if<First>(&variant));
-}
-
-// Loops over a closed set of kinds of which each may be missing, resolved at compile time.
-
-template <typename... Kinds>
-using OptionalKinds = std::tuple<std::optional<Kinds>...>;
-
-// Calls visit(optional) for each kind, in their order.
-template <typename Kinds, typename Visit>
-void ForEachOptional(Kinds& kinds, const Visit& visit) {
-    std::apply([&](auto&... kind) { (..., visit(kind)); }, kinds);
-}
-
-// Calls visit(kind) for each kind that is there.
-template <typename Kinds, typename Visit>
-void ForEachPresent(Kinds& kinds, const Visit& visit) {
-    std::apply([&](auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
-}
-
-template <typename Kinds>
-bool AreAllMissing(const Kinds& kinds) {
-    return std::apply([](const auto&... kind) { return (... && !kind); }, kinds);
 }
 
 // Names the values of an enum, once for options, headers and reports.

@@ -10,7 +10,7 @@
 #include "renderer/base/error.h"
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_messages.h"
-#include "renderer/denoise/dependent_halves.h"
+#include "renderer/denoise/denoiser.h"
 #include "renderer/files/outputs.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/channel_names.h"

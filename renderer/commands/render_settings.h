@@ -8,7 +8,7 @@
 #include "renderer/film/film.h"
 #include "renderer/input/gltf_loader.h"
 #include "renderer/render/session.h"
-#include "renderer/scene/compile.h"
+#include "renderer/scene/scene.h"
 #include "stopping/rules/rule.h"
 
 namespace lull {

@@ -2,9 +2,6 @@
 
 #include <cmath>
 
-#include "renderer/denoise/patch_weights.h"
-#include "renderer/denoise/residual_structure.h"
-
 namespace lull {
 
 namespace {

@@ -2,7 +2,6 @@
 
 #include <tbb/task_arena.h>
 
-#include "renderer/denoise/residual_structure.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 
-#include "renderer/denoise/lightness_error.h"
 #include "renderer/denoise/visible_error.h"
 
 namespace lull {
@@ -53,5 +53,16 @@ struct GroupedResult {
 
 // Denoises the groups one by one, each in the time of a picture.
 GroupedResult RunDenoiser(GroupedPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
+
+// Finds halves of the samples whose noise is not independent, which therefore cannot judge each
+// other.
+
+// Returns why two halves, R, G, B, of one size, are not independent, or "". Found are
+//   - the same values, unless all pixels are alike, which have no noise;
+//   - noise that both have: nowhere smooth, with the spectrum of noise, and more than three times
+//     as strong as their difference, for which a picture of white noise is mistaken too;
+//   - samples of one that the other has too, or six times as many samples.
+// The second and third need some 12 tiles of 16 x 16 pixels in which there is anything to see.
+std::string DependenceOf(const Halves&);
 
 }  // namespace lull

@@ -1,13 +1,9 @@
-#include "renderer/denoise/feature_filter.h"
 
 #include <array>
 #include <bit>
 #include <cmath>
 
 #include "renderer/denoise/denoise.h"
-#include "renderer/denoise/fireflies.h"
-#include "renderer/denoise/patch_weights.h"
-#include "renderer/denoise/regression.h"
 
 namespace lull {
 
@@ -247,24 +243,17 @@ Halves FilterLevel(const Level& level, Planes* features, Meter* meter) {
     return result;
 }
 
-Halves FilterLevels(const Halves& noisy, Planes features, const Planes& variance, int scales,
-                    int rowsPerFit, Meter* meter);
-
-// Filters a picture at half of its size, and at less. Returns nothing where it is too small for
-// that, or where no scale is left.
-Halves FilterCoarse(const Halves& noisy, const Planes& features, const Planes& variance, int scales,
-                    int rowsPerFit, Meter* meter) {
-    if (scales == 0 || !HasCoarse(variance.width, variance.height)) return {};
-    Planes ofMeans = Halved(variance);
-    for (float& v : ofMeans.values) v /= 4;
-    return FilterLevels({Halved(noisy.a), Halved(noisy.b)}, Halved(features), ofMeans, scales,
-                        rowsPerFit, meter);
-}
-
+// Filters a picture and, unless it is too small for that or no scale is left, the same at half of
+// its size, and at less: first, as nothing of this scale is there yet.
 Halves FilterLevels(const Halves& noisy, Planes features, const Planes& variance, int scales,
                     int rowsPerFit, Meter* meter) {
-    // First, as nothing of this scale is there yet.
-    const Halves coarse = FilterCoarse(noisy, features, variance, scales - 1, rowsPerFit, meter);
+    Halves coarse;
+    if (scales > 1 && HasCoarse(variance.width, variance.height)) {
+        Planes ofMeans = Halved(variance);
+        for (float& v : ofMeans.values) v /= 4;
+        coarse = FilterLevels({Halved(noisy.a), Halved(noisy.b)}, Halved(features), ofMeans,
+                              scales - 1, rowsPerFit, meter);
+    }
     return FilterLevel({noisy, features, variance, coarse, rowsPerFit}, &features, meter);
 }
 

@@ -1,9 +1,7 @@
-#include "renderer/denoise/fireflies.h"
+#include "renderer/denoise/denoise.h"
 
 #include <cmath>
 #include <iterator>
-
-#include "renderer/denoise/patch_weights.h"
 
 namespace lull {
 

@@ -1,4 +1,4 @@
-#include "renderer/denoise/regression.h"
+#include "renderer/denoise/denoise.h"
 
 #include <array>
 #include <cmath>

@@ -1,12 +1,10 @@
-#include "renderer/denoise/residual_structure.h"
+#include "renderer/denoise/denoise.h"
 
 #include <cmath>
 #include <numbers>
 #include <span>
 
-#include "renderer/denoise/fireflies.h"
-#include "renderer/denoise/lightness_error.h"
-#include "renderer/denoise/patch_weights.h"
+#include "renderer/denoise/visible_error.h"
 
 namespace lull {
 

@@ -5,12 +5,6 @@
 #include <numeric>
 #include <span>
 
-#include "renderer/base/math.h"
-#include "renderer/denoise/lightness_error.h"
-#include "renderer/denoise/patch_weights.h"
-#include "renderer/vision/image_pyramid.h"
-#include "renderer/vision/visible_difference.h"
-
 namespace lull {
 
 namespace {

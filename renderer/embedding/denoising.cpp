@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "renderer/denoise/denoiser.h"
-#include "renderer/denoise/dependent_halves.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

@@ -10,8 +10,7 @@
 
 #include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
-#include "renderer/film/display/snapshot.h"
-#include "renderer/film/display/tev.h"
+#include "renderer/film/display/viewer.h"
 
 namespace lull {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/film/layer.h"
 #include "renderer/film/layers.h"
-#include "renderer/film/pixel_plane.h"
 
 namespace lull {
 

@@ -1,8 +1,6 @@
 // What a render sums up in addition to the colours of the film: a closed set of kinds. Each has
 //
 //   static bool IsWanted(const LayerOptions&)
-//   static int64_t Bytes(const LayerOptions&)
-//       the memory that a pixel takes, where it is wanted
 //   static int Channels(const LayerOptions&)
 //       the floats a pixel that its channels take until they are written, where it is wanted
 //   Kind(const PixelRect& region, const LayerOptions&)
@@ -22,30 +20,132 @@
 // are resolved at compile time; those that are not wanted cost a comparison a sample.
 #pragma once
 
-#include "renderer/base/variant.h"
+#include <fmt/format.h>
+
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
 #include "renderer/film/first_hit_layer.h"
-#include "renderer/film/light_group_layer.h"
-#include "renderer/film/matte_layer.h"
 
 namespace lull {
+
+// Sums up the light of groups of lights.
+
+class LightGroupLayer {
+  public:
+    static bool IsWanted(const LayerOptions& o) { return o.groups.Count() > 0; }
+    static int Channels(const LayerOptions& o) { return 2 * 3 * o.groups.Count(); }
+    LightGroupLayer(const PixelRect& region, const LayerOptions& o) {
+        for (int i = 0; i < o.groups.Count(); ++i) planes.emplace_back(region, i, o);
+    }
+
+    static bool NeedsFirstHits(const LayerOptions& o) { return o.groupBackground; }
+    void Add(const Vec2i& p, const PathSample& sample) {
+        const std::span<const Rgb> light = sample.groups->All();
+        for (size_t i = 0; i < planes.size(); ++i)
+            planes[i].Add(p, InHalf(sample.index), light[i], sample.hit.found);
+    }
+    void AddSplats(const Vec2i& p, const PixelSplats& splats) {
+        for (size_t i = 0; i < planes.size(); ++i) planes[i].AddSplats(p, splats.groups[i]);
+    }
+    static std::string Identity(const LayerOptions& o) { return TextOf(o.groups); }
+    template <typename Self, typename Visit>
+    static void ForEachPlane(Self& self, const Visit& visit) {
+        for (auto& plane : self.planes) {
+            visit(plane.name.c_str(), plane.sums);
+            if (plane.noise) visit((plane.name + " noise").c_str(), *plane.noise);
+            if (plane.backgrounds) visit((plane.name + " background").c_str(), *plane.backgrounds);
+        }
+    }
+
+    int Count() const { return int(planes.size()); }
+    // Returns a pixel of a group: its sums, and the sample count that the film has. Without noise,
+    // `halfSum` is 0.
+    FilmPixel At(int group, const Vec2i& p, uint32_t count) const {
+        const Planes& plane = planes[size_t(group)];
+        FilmPixel pixel{.sum = plane.sums.At(p), .count = count};
+        if (plane.noise) pixel.halfSum = plane.noise->At(p).halfSum;
+        return pixel;
+    }
+    // Returns the sum of the squares of the samples' luminance; they are kept.
+    double SquaresAt(int group, const Vec2i& p) const {
+        return planes[size_t(group)].noise->At(p).squares;
+    }
+    // Returns whether the group has the film's first look, where a pixel has no samples: the last.
+    bool HasFirstLook(int group) const { return group + 1 == Count(); }
+    // Returns the sum of the light of samples that hit nothing; it is kept.
+    const std::array<double, 3>& BackgroundAt(int group, const Vec2i& p) const {
+        return planes[size_t(group)].backgrounds->At(p);
+    }
+
+  private:
+    using Sum = std::array<double, 3>;
+    struct Noise {
+        Sum halfSum = {};
+        double squares = 0;  // of the samples' luminance
+    };
+    struct Planes {
+        std::string name;
+        PixelPlane<Sum> sums;
+        std::optional<PixelPlane<Noise>> noise;
+        std::optional<PixelPlane<Sum>> backgrounds;
+
+        Planes(const PixelRect& region, int index, const LayerOptions& o)
+            : name(fmt::format("light group {:02}", index)), sums(region) {
+            if (o.groupNoise) noise.emplace(region);
+            if (o.groupBackground) backgrounds.emplace(region);
+        }
+        void Add(const Vec2i& p, bool inHalf, const Rgb& radiance, bool hitsSomething) {
+            AddTo(radiance, &sums.At(p));
+            if (backgrounds && !hitsSomething) AddTo(radiance, &backgrounds->At(p));
+            if (!noise) return;
+            Noise& pixel = noise->At(p);
+            if (inHalf) AddTo(radiance, &pixel.halfSum);
+            pixel.squares += Sqr(double(Luminance(radiance)));
+        }
+        void AddSplats(const Vec2i& p, const SplatLight& light) {
+            for (size_t c = 0; c < 3; ++c) sums.At(p)[c] += light.sum[c];
+            if (!noise) return;
+            Noise& pixel = noise->At(p);
+            for (size_t c = 0; c < 3; ++c) pixel.halfSum[c] += light.halfSum[c];
+            pixel.squares += light.Squares();
+        }
+    };
+    static void AddTo(const Rgb& radiance, Sum* sum) {
+        for (size_t c = 0; c < 3; ++c) (*sum)[c] += double(radiance[Eigen::Index(c)]);
+    }
+
+    std::vector<Planes> planes;  // of each group
+};
 
 class Layers {
   public:
     // No layers.
     Layers() = default;
     Layers(const PixelRect& region, const LayerOptions& wanted) : options(wanted) {
-        ForEachOptional(kinds, [&]<typename Kind>(std::optional<Kind>& kind) {
+        const auto make = [&]<typename Kind>(std::optional<Kind>& kind) {
             if (Kind::IsWanted(options)) kind.emplace(region, options);
-        });
+        };
+        std::apply([&](auto&... kind) { (..., make(kind)); }, kinds);
     }
     // Return the memory that a pixel takes, and what its channels take in the end.
     static int64_t Bytes(const LayerOptions& wanted) {
-        return Sum(wanted, []<typename Kind>(const LayerOptions& o) { return Kind::Bytes(o); });
+        int64_t bytes = 0;
+        Layers(PixelRect(), wanted).ForEach([&]<typename Kind>(const Kind& kind) {
+            Kind::ForEachPlane(kind, [&](const char*, const auto& plane) {
+                bytes += plane.Bytes({{0, 0}, {1, 1}});
+            });
+        });
+        return bytes;
     }
     static int64_t ChannelBytes(const LayerOptions& wanted) {
-        return Sum(wanted, []<typename Kind>(const LayerOptions& o) {
-            return Kind::Channels(o) * int64_t(sizeof(float));
+        int64_t bytes = 0;
+        Layers(PixelRect(), wanted).ForEach([&]<typename Kind>(const Kind&) {
+            bytes += Kind::Channels(wanted) * int64_t(sizeof(float));
         });
+        return bytes;
     }
 
     const LayerOptions& Options() const { return options; }
@@ -62,14 +162,16 @@ class Layers {
     // Call visit(kind) for each kind that is there.
     template <typename Visit>
     void ForEach(const Visit& visit) const {
-        ForEachPresent(kinds, visit);
+        std::apply([&](auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
     }
     template <typename Visit>
     void ForEach(const Visit& visit) {
-        ForEachPresent(kinds, visit);
+        std::apply([&](auto&... kind) { (..., (kind ? visit(*kind) : void())); }, kinds);
     }
 
-    bool IsEmpty() const { return AreAllMissing(kinds); }
+    bool IsEmpty() const {
+        return std::apply([](const auto&... kind) { return (... && !kind); }, kinds);
+    }
     bool NeedFirstHits() const {
         bool needed = false;
         ForEach([&]<typename Kind>(const Kind&) { needed |= Kind::NeedsFirstHits(options); });
@@ -89,21 +191,11 @@ class Layers {
     }
 
   private:
-    using Kinds =
-        OptionalKinds<FirstHitLayer, SquareLayer, EmissionLayer, MatteLayer, LightGroupLayer>;
-
-    template <typename Count>
-    static int64_t Sum(const LayerOptions& wanted, const Count& count) {
-        int64_t sum = 0;
-        Kinds kinds;
-        ForEachOptional(kinds, [&]<typename Kind>(const std::optional<Kind>&) {
-            if (Kind::IsWanted(wanted)) sum += count.template operator()<Kind>(wanted);
-        });
-        return sum;
-    }
-
     LayerOptions options;
-    Kinds kinds;
+    std::tuple<std::optional<FirstHitLayer>, std::optional<SquareLayer>,
+               std::optional<EmissionLayer>, std::optional<MatteLayer>,
+               std::optional<LightGroupLayer>>
+        kinds;
 };
 
 }  // namespace lull

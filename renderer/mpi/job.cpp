@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "renderer/base/error.h"
-#include "renderer/mpi/backoff.h"
 #include "renderer/mpi/mpi_calls.h"
 #include "stopping/base/state.h"
 

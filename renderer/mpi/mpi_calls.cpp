@@ -6,7 +6,6 @@
 #include <set>
 
 #include "renderer/base/error.h"
-#include "renderer/mpi/backoff.h"
 
 #ifdef LULL_MPI
 #include <mpi.h>

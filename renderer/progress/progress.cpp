@@ -43,16 +43,10 @@ std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool ada
 
 std::string TextOf(const TimeLeft& left) {
     const std::string time = FormatDuration(left.seconds);
-    switch (left.end) {
-        case TimeLeft::End::Prediction:
-            return "about " + time + " left";
-        case TimeLeft::End::Cap:
-            return time + " to the cap";
-        case TimeLeft::End::Limit:
-            return "at most " + time + " left";
-        default:
-            return time + " left";
-    }
+    return left.end == TimeLeft::End::Prediction ? "about " + time + " left"
+           : left.end == TimeLeft::End::Cap      ? time + " to the cap"
+           : left.end == TimeLeft::End::Limit    ? "at most " + time + " left"
+                                                 : time + " left";
 }
 
 // Returns the columns of a terminal.
@@ -68,14 +62,14 @@ int ColumnsOf(std::FILE* stream) {
 void RateMeter::Add(const RenderProgress& p) {
     history.push_back(p);
     // Keep one entry from before the window, so that it is always covered.
-    while (history.size() > 2 && history[1].seconds <= p.seconds - window) history.pop_front();
+    while (history.size() > 2 && history[1].seconds <= p.seconds - kWindow) history.pop_front();
 }
 
 double RateMeter::SamplesPerSecond() const {
     if (history.empty()) return 0;
     const RenderProgress& last = history.back();
     // Measure from the start until the window has moved off it.
-    const bool fromStart = last.seconds <= window || history.size() < 2;
+    const bool fromStart = last.seconds <= kWindow || history.size() < 2;
     const double seconds = last.seconds - (fromStart ? 0 : history.front().seconds);
     const int64_t samples = last.samples - (fromStart ? 0 : history.front().samples);
     return seconds > 0 ? double(samples) / seconds : 0;
@@ -186,14 +180,7 @@ std::optional<double> SecondsLeft(double share, double seconds) {
 }
 
 double SecondsBetweenReports(ProgressStyle style) {
-    switch (style) {
-        case ProgressStyle::Plain:
-            return 30;
-        case ProgressStyle::Json:
-            return 1;
-        default:
-            return 0.25;
-    }
+    return style == ProgressStyle::Plain ? 30 : style == ProgressStyle::Json ? 1 : 0.25;
 }
 
 }  // namespace

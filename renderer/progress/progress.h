@@ -29,13 +29,11 @@ struct RenderProgress {
 // that have stopped.
 class RateMeter {
   public:
-    explicit RateMeter(double windowSeconds = 30) : window(windowSeconds) {}
-
     void Add(const RenderProgress&);
     double SamplesPerSecond() const;  // 0: not known
 
   private:
-    double window;
+    static constexpr double kWindow = 30;  // seconds
     std::deque<RenderProgress> history;
 };
 

@@ -23,46 +23,49 @@ constexpr std::array<std::string_view, 4> kOlderFormats = {
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 
-// Packs the block's state: its samples, its cost, and its criterion's decision.
-std::vector<std::byte> PackBooks(const BlockResult& result) {
-    StateWriter writer;
-    const PixelRect& r = result.block.pixels;
-    writer.Put(std::array<int32_t, 4>{r.min.x(), r.min.y(), r.max.x(), r.max.y()});
-    writer.Put(int32_t(result.block.spp));
-    writer.Put(uint8_t(result.block.stopped));
-    writer.Put(uint8_t(result.block.stoppedByVote));
-    writer.Put(result.seconds);
-    writer.Put(result.criterionSeconds);
-    writer.Put(uint32_t(result.decisions.size()));
-    for (const BlockDecision& record : result.decisions) {
-        const Decision& d = record.decision;
-        writer.Put(int32_t(record.spp));
-        writer.Put(uint8_t(d.stop));
-        writer.Put(d.value);
-        writer.Put(d.threshold);
-        writer.Put(int32_t(d.votes));
+// Calls visit(value) for all that is kept of a block but its decisions, and of a decision.
+template <typename Visit>
+void ForEachValue(BlockResult& result, const Visit& visit) {
+    Block& block = result.block;
+    for (Vec2i* corner : {&block.pixels.min, &block.pixels.max}) {
+        visit(corner->x());
+        visit(corner->y());
     }
+    visit(block.spp);
+    visit(block.stopped);
+    visit(block.stoppedByVote);
+    visit(result.seconds);
+    visit(result.criterionSeconds);
+}
+
+template <typename Visit>
+void ForEachValue(BlockDecision& record, const Visit& visit) {
+    visit(record.spp);
+    visit(record.decision.stop);
+    visit(record.decision.value);
+    visit(record.decision.threshold);
+    visit(record.decision.votes);
+}
+
+// Packs the block's state: its samples, its cost, and its criterion's decisions.
+std::vector<std::byte> PackBooks(BlockResult result) {
+    StateWriter writer;
+    const auto put = [&](const auto& value) { writer.Put(value); };
+    ForEachValue(result, put);
+    writer.Put(uint32_t(result.decisions.size()));
+    for (BlockDecision& record : result.decisions) ForEachValue(record, put);
     return std::move(writer.bytes);
 }
 
 BlockResult UnpackBooks(std::span<const std::byte> bytes) {
     StateReader reader(bytes);
+    const auto get = [&]<typename T>(T& value) { value = reader.Get<T>(); };
     BlockResult result;
-    const auto r = reader.Get<std::array<int32_t, 4>>();
-    result.block.pixels = {{r[0], r[1]}, {r[2], r[3]}};
-    result.block.spp = reader.Get<int32_t>();
-    result.block.stopped = reader.Get<uint8_t>();
-    result.block.stoppedByVote = reader.Get<uint8_t>();
-    result.seconds = reader.Get<double>();
-    result.criterionSeconds = reader.Get<double>();
+    ForEachValue(result, get);
     for (uint32_t left = reader.Get<uint32_t>(); left > 0; --left) {
-        BlockDecision record{reader.Get<int32_t>(), {}};
+        BlockDecision& record = result.decisions.emplace_back();
         record.decision.checked = true;
-        record.decision.stop = reader.Get<uint8_t>();
-        record.decision.value = reader.Get<double>();
-        record.decision.threshold = reader.Get<double>();
-        record.decision.votes = reader.Get<int32_t>();
-        result.decisions.push_back(record);
+        ForEachValue(record, get);
     }
     reader.Finish();
     return result;

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "renderer/denoise/denoise.h"
-#include "renderer/denoise/patch_weights.h"
+#include "renderer/denoise/planes.h"
 #include "stopping/base/parallel.h"
 
 namespace lull {

@@ -124,8 +124,13 @@ bool LightRounds::Trace(const std::function<bool()>& isCancelled, int part, int 
         ForEachIndex(chunks, [&](int chunk) {
             if (isCancelled && isCancelled()) isWhole = false;
             if (!isWhole || (int64_t(sample) * chunks + chunk) % parts != part) return;
-            const uint32_t begin = uint32_t(chunk) * kChunk;
-            TraceSome(uint32_t(round.first + sample), begin, std::min(begin + kChunk, paths));
+            const uint32_t begin = uint32_t(chunk) * kChunk, index = uint32_t(round.first + sample);
+            Sampler sampler = start;
+            std::vector<Splat> splats;
+            for (uint32_t i = begin; i < std::min(begin + kChunk, paths); ++i) {
+                TraceLightPath(scene, round.shares, sampler, index, i, &splats);
+                for (const Splat& splat : splats) Add(splat, InHalf(index));
+            }
         });
     });
     return isWhole;
@@ -141,16 +146,6 @@ void LightRounds::Learn(Film* film) {
               kCostOfConnections, rest, kLeast.connections);
     shares.lightPaths = Moved(shares.lightPaths, of.paths * double(round.shares.lightPaths),
                               kCostOfLightPath, of.camera, kLeast.lightPaths);
-}
-
-void LightRounds::TraceSome(uint32_t sample, uint32_t begin, uint32_t stop) {
-    Sampler sampler = start;
-    const bool inHalf = InHalf(sample);
-    std::vector<Splat> splats;
-    for (uint32_t i = begin; i < stop; ++i) {
-        TraceLightPath(scene, round.shares, sampler, sample, i, &splats);
-        for (const Splat& splat : splats) Add(splat, inHalf);
-    }
 }
 
 void LightRounds::Add(const Splat& s, bool inHalf) {

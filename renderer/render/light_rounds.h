@@ -16,7 +16,7 @@
 #include <functional>
 
 #include "renderer/film/film.h"
-#include "renderer/film/pixel_plane.h"
+#include "renderer/film/layer.h"
 #include "renderer/schedule/schedule.h"
 #include "renderer/transport/bdpt.h"
 
@@ -72,7 +72,6 @@ class LightRounds {
     double FindUnit() const;
     // Returns light of a plane that belongs to a pixel's samples from `from` on.
     SplatLight LightOf(const SplatPlane&, const Vec2i& p, uint32_t from) const;
-    void TraceSome(uint32_t sample, uint32_t begin, uint32_t end);
     void Add(const Splat&, bool inHalf);
 
     const Scene& scene;

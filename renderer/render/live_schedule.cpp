@@ -36,7 +36,7 @@ void LiveSchedule::Restart(std::span<const BlockStart> starts, RankTiles given) 
     share = std::move(given);
     schedule = Schedule(context.film->Region(), ScheduleFor(context, options), starts, share);
     if (timeCalled) schedule.CallTime();
-    undo = {};
+    undo.clear();
 }
 
 // Of several ranks, the first has the clock, and looks at it by itself.
@@ -44,8 +44,7 @@ std::optional<Tile> LiveSchedule::Next() {
     if (hasClock && !options.peers && !(context.secondsLeft() > 0)) CallTime();
     std::lock_guard lock(mutex);
     const std::optional<Tile> tile = schedule.Next();
-    if (tile && hasClock && !undo.Has(tile->block))
-        undo.Keep(tile->block, TilesOfRank(tile->block, share.rank), *context.film);
+    if (tile && hasClock && !undo.contains(tile->block)) Keep(tile->block);
     return tile;
 }
 
@@ -59,7 +58,7 @@ int LiveSchedule::Decide(int block, const BlockAnswer& answer) {
     const int readyBefore = schedule.ReadyTiles();
     schedule.Decide(block, answer.stop, answer.noise);
     ShowStops();
-    if (hasClock) undo.Forget(block);
+    undo.erase(block);
     return schedule.ReadyTiles() - readyBefore;
 }
 
@@ -89,7 +88,23 @@ void LiveSchedule::BeginRound(int end) {
     schedule.BeginRound(end);
 }
 
-std::vector<int> LiveSchedule::Undo() { return undo.UndoAll(context.film); }
+void LiveSchedule::Keep(int block) {
+    const std::vector<PixelRect> tiles = TilesOfRank(block, share.rank);
+    StateWriter writer;
+    for (const PixelRect& tile : tiles) PutPlanes(*context.film, tile, &writer);
+    undo[block] = {tiles, std::move(writer.bytes)};
+}
+
+std::vector<int> LiveSchedule::Undo() {
+    std::vector<int> blocks;
+    for (const auto& [block, before] : undo) {
+        StateReader reader(before.planes);
+        for (const PixelRect& tile : before.tiles) GetPlanes(&reader, tile, context.film);
+        blocks.push_back(block);
+    }
+    undo.clear();
+    return blocks;
+}
 
 std::vector<PixelRect> LiveSchedule::TilesOfRank(int block, int rank) const {
     return TilesOf(BlockAt(block).pixels, block, options.schedule.tileSize, {rank, share.deal});
@@ -103,23 +118,6 @@ void LiveSchedule::ShowStops() {
         if (options.display) options.display->ShowStop(blocks[i].pixels);
         if (options.events.onStop) options.events.onStop(int(i), blocks[i]);
     }
-}
-
-void PassUndo::Keep(int block, const std::vector<PixelRect>& tiles, const Film& film) {
-    StateWriter writer;
-    for (const PixelRect& tile : tiles) PutPlanes(film, tile, &writer);
-    kept[block] = {tiles, std::move(writer.bytes)};
-}
-
-std::vector<int> PassUndo::UndoAll(Film* film) {
-    std::vector<int> blocks;
-    for (const auto& [block, pixels] : kept) {
-        StateReader reader(pixels.planes);
-        for (const PixelRect& tile : pixels.tiles) GetPlanes(&reader, tile, film);
-        blocks.push_back(block);
-    }
-    kept.clear();
-    return blocks;
 }
 
 }  // namespace lull

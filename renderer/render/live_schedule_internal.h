@@ -9,26 +9,6 @@
 
 namespace lull {
 
-// The pixels of blocks whose pass is under way. A pass is undone as a whole, so that all
-// pixels of a block have the same samples.
-class PassUndo {
-  public:
-    bool Has(int block) const { return kept.contains(block); }
-    // Copies the pixels of the block that are in these tiles.
-    void Keep(int block, const std::vector<PixelRect>& tiles, const Film&);
-    // The pass has come to its end.
-    void Forget(int block) { kept.erase(block); }
-    // Puts all that is kept back. Returns the blocks.
-    std::vector<int> UndoAll(Film*);
-
-  private:
-    struct Pixels {
-        std::vector<PixelRect> tiles;
-        std::vector<std::byte> planes;  // tile by tile, by PutPlanes()
-    };
-    std::map<int, Pixels> kept;
-};
-
 // Decision on a block after a pass.
 struct BlockAnswer {
     bool stop = false;
@@ -87,6 +67,14 @@ class LiveSchedule {
     std::vector<PixelRect> TilesOfRank(int block, int rank) const;
 
   private:
+    // The pixels of a block whose pass is under way. A pass is undone as a whole, so that all
+    // pixels of a block have the same samples.
+    struct Before {
+        std::vector<PixelRect> tiles;
+        std::vector<std::byte> planes;  // tile by tile, by PutPlanes()
+    };
+
+    void Keep(int block);
     void ShowStops();
 
     const RenderContext& context;
@@ -96,7 +84,7 @@ class LiveSchedule {
 
     std::mutex mutex;  // guards the members below
     Schedule schedule;
-    PassUndo undo;  // for renders that have a clock
+    std::map<int, Before> undo;  // for renders that have a clock
     bool timeCalled = false;
     std::vector<char> shownStops;  // blocks that were said to have stopped
 };

@@ -1,4 +1,4 @@
-#include "renderer/render/progress_ledger_internal.h"
+#include "renderer/render/executor_internal.h"
 
 #include <utility>
 

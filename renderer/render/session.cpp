@@ -6,7 +6,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
 #include "renderer/denoise/denoiser.h"
-#include "renderer/film/pixel_plane.h"
+#include "renderer/film/layer.h"
 #include "renderer/progress/forecast.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/render/light_rounds.h"

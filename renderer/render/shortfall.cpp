@@ -11,16 +11,6 @@ namespace lull {
 
 namespace {
 
-bool CountsSamples(const std::string& text) {
-    const RuleEntry* rule = FindRule(text);
-    return rule && rule->compares == RuleTrend::Samples;
-}
-
-bool ComparesVisibleNoise(const std::string& text) {
-    const RuleEntry* rule = FindRule(text);
-    return rule && rule->name == kLightnessNoiseName;
-}
-
 // Returns the noise of blocks that the rule has stopped.
 double NoiseAtStop(const std::vector<BlockResult>& blocks) {
     std::vector<double> noise;
@@ -35,8 +25,9 @@ double NoiseAtStop(const std::vector<BlockResult>& blocks) {
 double StopSpp(const BlockResult& result, const std::string& rule, double noiseAtStop) {
     if (!result.decisions.empty()) {
         const Decision& last = result.decisions.back().decision;
-        if (CountsSamples(rule)) return last.threshold;
-        if (ComparesVisibleNoise(rule)) noiseAtStop = last.threshold;
+        const RuleEntry* entry = FindRule(rule);
+        if (entry && entry->compares == RuleTrend::Samples) return last.threshold;
+        if (entry && entry->name == kLightnessNoiseName) noiseAtStop = last.threshold;
     }
     const double ratio = result.block.noise / noiseAtStop;
     return result.block.spp * ratio * ratio;

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "renderer/film/matte_layer.h"
+#include "renderer/film/first_hit_layer.h"
 #include "renderer/image/image_io.h"
 #include "renderer/results/layer_channels.h"
 

@@ -5,7 +5,7 @@
 #include "renderer/transport/bdpt_internal.h"
 #include "renderer/transport/integrator_internal.h"
 #include "renderer/transport/path_media.h"
-#include "renderer/transport/recorders_internal.h"
+#include "renderer/transport/path_state.h"
 
 namespace lull {
 namespace {

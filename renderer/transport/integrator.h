@@ -53,8 +53,6 @@ class GroupRadiance {
     std::array<Rgb, kMostLightGroups + 1> radiances;
 };
 
-class GroupRadiance;
-
 // PbrtV3 takes pbrt-v3's strategies as they are: at each vertex one light is chosen and sampled
 // both by the light and by a BSDF ray of its own. Combined has the same mean from fewer rays: the
 // ray that continues the path is the BSDF sample of the direct light as well, weighed against

@@ -3,6 +3,11 @@
 
 #include "renderer/transport/path_state.h"
 
+#include <optional>
+
+#include "renderer/bsdf/subsurface.h"
+#include "renderer/scene/scene.h"
+
 namespace lull {
 
 // Panes: smooth thin sheets (glTF's transmission without a volume), which light goes straight
@@ -203,5 +208,24 @@ class Media {
     const Scene* scene;
     MediumStack media;  // that the path's next ray is in
 };
+
+// Finds where light that has gone into a translucent solid comes out again.
+
+struct SubsurfaceExit {
+    SurfaceInteraction hit;
+    int shape;
+    Rgb weight;  // of the path from there, scattered by the BSDF of an exit
+};
+
+// Chooses a point of the same material near `hit`, whose BSDF `bsdf` has let the path in, as the
+// profile spreads light, by probe rays along the three axes of its frame (King, Kulla, Conty,
+// Fajardo 2013; pbrt 3rd ed., 15.4.1). Returns nothing where none is found or no light goes.
+std::optional<SubsurfaceExit> SampleSubsurface(const Scene& scene, Sampler& sampler,
+                                               const SurfaceInteraction& hit, const Bsdf& bsdf,
+                                               const SubsurfaceProfile& profile, float time);
+
+// Returns how light leaves at such a point: into the outside by Fresnel's law, as if it came from
+// everywhere. Its wo is hit.ns.
+Bsdf ExitBsdf(const SubsurfaceExit& exit, float eta);
 
 }  // namespace lull

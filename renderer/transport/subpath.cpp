@@ -1,6 +1,4 @@
-#include "renderer/transport/subpath.h"
-
-#include "renderer/transport/path_media.h"
+#include "renderer/transport/bdpt_internal.h"
 
 namespace lull {
 namespace {

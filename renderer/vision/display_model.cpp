@@ -1,4 +1,4 @@
-#include "renderer/vision/display_model.h"
+#include "renderer/vision/visible_difference.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,6 @@
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
-#include "renderer/vision/image_pyramid.h"
 
 namespace lull {
 
@@ -150,16 +149,13 @@ ContrastBand TakeBase(Planes planes) {
     return {std::move(planes), std::vector<float>(planes[0].values.size(), mean)};
 }
 
-std::array<SensitivityCurve, kChannels> SensitivityCurves(double frequency) {
-    return {SensitivityCurve(OpponentChannel::Achromatic, frequency),
-            SensitivityCurve(OpponentChannel::RedGreen, frequency),
-            SensitivityCurve(OpponentChannel::YellowViolet, frequency)};
-}
-
 // Returns the sensitivity at luminances around each place, by channel.
 Planes SensitivityPlanes(double frequency, int width, int height,
                          const std::vector<float>& luminance) {
-    const std::array<SensitivityCurve, kChannels> curves = SensitivityCurves(frequency);
+    const std::array<SensitivityCurve, kChannels> curves = {
+        SensitivityCurve(OpponentChannel::Achromatic, frequency),
+        SensitivityCurve(OpponentChannel::RedGreen, frequency),
+        SensitivityCurve(OpponentChannel::YellowViolet, frequency)};
     Planes planes;
     for (Plane& plane : planes) plane = {width, height, std::vector<float>(luminance.size())};
     for (size_t i = 0; i < luminance.size(); ++i) {

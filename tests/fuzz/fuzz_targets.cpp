@@ -15,7 +15,7 @@
 #include "renderer/scene/geometry/shape_table.h"
 #include "renderer/scene/materials/basic.h"
 #include "renderer/scene/media/medium_table.h"
-#include "renderer/vision/display_model.h"
+#include "renderer/vision/visible_difference.h"
 #include "stopping/base/input_file.h"
 #include "stopping/lab/evaluation/answer_scores.h"
 #include "stopping/lab/observers/observers.h"

@@ -17,7 +17,6 @@
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
-#include "renderer/denoise/lightness_error.h"
 #include "renderer/denoise/visible_error.h"
 #include "renderer/vision/visible_difference.h"
 

@@ -5,7 +5,7 @@
 #include "renderer/commands/render_settings.h"
 #include "renderer/files/outputs.h"
 #include "renderer/lab/pages/comparison_page.h"
-#include "renderer/vision/display_model.h"
+#include "renderer/vision/visible_difference.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull::compare {

@@ -9,7 +9,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/files/outputs.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
-#include "renderer/vision/display_model.h"
+#include "renderer/vision/visible_difference.h"
 
 namespace lull {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "renderer/base/math.h"
-#include "renderer/vision/image_pyramid.h"
+#include "renderer/vision/visible_difference.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

@@ -6,7 +6,7 @@
 
 #include "renderer/base/error.h"
 #include "renderer/lab/metrics/flip.h"
-#include "renderer/vision/image_pyramid.h"
+#include "renderer/vision/visible_difference.h"
 #include "stopping/signals/lightness.h"
 
 namespace lull {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/equal_area.h"
 #include "renderer/base/math.h"
 #include "renderer/base/sampling.h"
 #include "renderer/files/file_io.h"

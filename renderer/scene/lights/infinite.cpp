@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "renderer/base/color.h"
-#include "renderer/base/equal_area.h"
 #include "renderer/base/math.h"
 #include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"

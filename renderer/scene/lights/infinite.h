@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "renderer/base/block_distribution.h"
+#include "renderer/base/sampling.h"
 #include "renderer/image/image.h"
 #include "renderer/scene/lights/light_sample.h"
 #include "renderer/scene/textures/imagemap.h"

@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "renderer/base/equal_area.h"
 #include "renderer/base/math.h"
+#include "renderer/base/sampling.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/lights/light_sample.h"
 #include "renderer/scene/textures/imagemap.h"

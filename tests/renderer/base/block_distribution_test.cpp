@@ -1,4 +1,4 @@
-#include "renderer/base/block_distribution.h"
+#include "renderer/base/sampling.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "renderer/denoise/denoiser.h"
-#include "renderer/denoise/fireflies.h"
-#include "renderer/denoise/residual_structure.h"
 #include "tests/renderer/denoise/example_pictures.h"
 
 namespace lull::bands_test {

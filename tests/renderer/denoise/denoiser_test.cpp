@@ -11,21 +11,6 @@ NoisyPicture NoisyExample() {
     return AddNoise(Planes(40, 30, 3, 0.5f), FlatFeatures(40, 30), 0.1, 1);
 }
 
-TEST(RunDenoiser, MeasuresThePictureThatItReturns) {
-    const DenoisedPicture denoised = Denoise(NoisyExample());
-    const PixelRect block{{5, 10}, {35, 30}};
-    const DenoiserResult result = RunDenoiser(NoisyExample(), {&block, 1});
-    EXPECT_EQ(result.rgb, Interleaved(denoised.picture));
-    const EstimatedError error = MeasureError(denoised);
-    EXPECT_TRUE(
-        std::ranges::equal(result.deviation, StandardError(denoised, error.structure).values));
-    const VisibleError expected = MeasureVisibleError(denoised, error, block);
-    ASSERT_TRUE(result.blocks.at(0));
-    EXPECT_GT(expected.upper, 0);
-    EXPECT_EQ(result.blocks[0]->estimate, expected.estimate);
-    EXPECT_EQ(result.blocks[0]->upper, expected.upper);
-}
-
 TEST(RunDenoiser, LeavesOutWhatIsTooSmallAndWhatNobodyAsksFor) {
     const PixelRect blocks[] = {{{0, 0}, {9, 30}}, {{0, 0}, {10, 10}}, {{0, 20}, {40, 29}}};
     const DenoiserResult result = RunDenoiser(NoisyExample(), blocks, {.withDeviation = false});

@@ -1,4 +1,4 @@
-#include "renderer/denoise/dependent_halves.h"
+#include "renderer/denoise/denoiser.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "renderer/denoise/denoise.h"
-#include "renderer/denoise/patch_weights.h"
 
 namespace lull {
 
@@ -85,6 +84,21 @@ inline double Rms(const Planes& a, const Planes& b, int border = 0) {
                 sum += d * d;
             }
     return std::sqrt(sum / count);
+}
+
+inline double Rms(const Planes& image) {
+    return Rms(image, Planes(image.width, image.height, image.count));
+}
+
+// Returns a grey picture of waves, with Gaussian texture of this deviation right of `from`.
+inline Planes TexturedWaves(int side, double deviation, int from) {
+    std::mt19937 generator(1);
+    std::normal_distribution<double> gauss(0, deviation);
+    const Planes texture =
+        MakePlanes(side, side, 1, [&](int, int, int) { return gauss(generator); });
+    return MakePlanes(side, side, 3, [&](int, int x, int y) {
+        return 0.4 + 0.1 * std::sin(x * 0.15) + (x < from ? 0 : texture.Row(0, y)[x]);
+    });
 }
 
 inline double SumOf(const Planes& planes) {

@@ -1,4 +1,4 @@
-#include "renderer/denoise/lightness_error.h"
+#include "renderer/denoise/visible_error.h"
 
 #include <gtest/gtest.h>
 
@@ -19,20 +19,13 @@ double TrueError(const Planes& picture, const Planes& truth) {
     for (size_t i = 0; i < picture.Area(); ++i)
         difference.values[i] = float(LightnessOf(std::min(1.f, picture.values[i])) -
                                      LightnessOf(std::min(1.f, truth.values[i])));
-    double sum = 0;
-    for (const float d : AsSeen(std::move(difference)).values) sum += double(d) * double(d);
-    return std::sqrt(sum / double(picture.Area()));
+    return Rms(AsSeen(std::move(difference)));
 }
 
 // Noise and what is blurred, at noise that falls: the estimate follows the truth, and the bound is
 // seldom exceeded. Flare and detail make what is seen smaller than what there is.
 TEST(LightnessError, IsKnownWithoutAReference) {
-    std::mt19937 generator(1);
-    std::normal_distribution<double> gauss(0, 0.015);
-    const Planes texture = MakePlanes(120, 120, 1, [&](int, int, int) { return gauss(generator); });
-    const Planes truth = MakePlanes(120, 120, 3, [&](int, int x, int y) {
-        return 0.4 + 0.1 * std::sin(x * 0.15) + (x < 60 ? 0 : texture.Row(0, y)[x]);
-    });
+    const Planes truth = TexturedWaves(120, 0.015, 60);
     int above = 0, count = 0;
     for (const double noise : {0.2, 0.1, 0.04})
         for (unsigned seed = 1; seed <= 2; ++seed, ++count) {
@@ -56,12 +49,7 @@ TEST(LightnessError, IsKnownWithoutAReference) {
 // On average the estimate is the truth: the half that judges has no part in what it judges but for
 // the weights.
 TEST(LightnessError, IsEstimatedWithoutBias) {
-    std::mt19937 generator(1);
-    std::normal_distribution<double> gauss(0, 0.02);
-    const Planes texture = MakePlanes(120, 120, 1, [&](int, int, int) { return gauss(generator); });
-    const Planes truth = MakePlanes(120, 120, 3, [&](int, int x, int y) {
-        return 0.4 + 0.1 * std::sin(x * 0.15) + texture.Row(0, y)[x];
-    });
+    const Planes truth = TexturedWaves(120, 0.02, 0);
     double said = 0, real = 0;
     for (unsigned seed = 1; seed <= 6; ++seed) {
         const DenoisedPicture denoised =
@@ -105,14 +93,9 @@ TEST(LightnessError, SeesWhatIsCoarse) {
     std::mt19937 generator(1);
     std::normal_distribution<double> gauss(0, 1);
     const Planes noise = MakePlanes(120, 120, 1, [&](int, int, int) { return gauss(generator); });
-    const auto rms = [](const Planes& image) {
-        double sum = 0;
-        for (const float v : image.values) sum += double(v) * double(v);
-        return std::sqrt(sum / double(image.Area()));
-    };
-    EXPECT_NEAR(rms(AsSeen(noise)) / rms(noise), 1.03, 0.01);
+    EXPECT_NEAR(Rms(AsSeen(noise)) / Rms(noise), 1.03, 0.01);
     const Planes blotches = BoxMean(BoxMean(noise, 5), 5);
-    EXPECT_GT(rms(AsSeen(blotches)) / rms(blotches), 1.8);
+    EXPECT_GT(Rms(AsSeen(blotches)) / Rms(blotches), 1.8);
 }
 
 TEST(LightnessError, IsThatOfTheBlock) {

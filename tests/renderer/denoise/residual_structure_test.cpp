@@ -1,9 +1,8 @@
-#include "renderer/denoise/residual_structure.h"
+#include "renderer/denoise/denoise.h"
 
 #include <gtest/gtest.h>
 
-#include "renderer/denoise/fireflies.h"
-#include "renderer/denoise/lightness_error.h"
+#include "renderer/denoise/visible_error.h"
 #include "tests/renderer/denoise/example_pictures.h"
 
 namespace lull::structure_test {
@@ -116,37 +115,6 @@ TEST(SampleRange, IsThatOfTheNeighbourhood) {
                 ASSERT_EQ(range.least.Row(c, y)[x - 3], least);
                 ASSERT_EQ(range.most.Row(c, y)[x - 3], most);
             }
-}
-
-// Tall pictures are measured in bands, with the bits of a part of them that is measured as a whole.
-TEST(Structure, AndErrorsHaveTheSameBitsInAnyBand) {
-    const int width = 60, height = 400, above = 90, below = 270, margin = 20;
-    const Planes flat(width, height, 3, 0.3f);
-    const Planes truth = MakePlanes(
-        width, height, 3, [&](int, int x, int y) { return (x + y) % 40 < 3 ? 0.2 : 0.3; });
-    const double noise = 0.05;
-    DenoisedPicture tall;
-    tall.picture = flat;
-    tall.noisy = NoisyHalves(truth, noise, 2);
-    tall.halves = NoisyHalves(flat, noise / 10, 3);
-    tall.variance = Variance(truth, noise);
-    tall.returned = Planes(width, height, 1, 0.01f);
-    const ImageTile rows{0, above, width, below};
-    const auto crop = [&](const Planes& image) { return Crop(image, rows); };
-    const auto cropBoth = [&](const Halves& h) { return Halves{crop(h.a), crop(h.b)}; };
-    const DenoisedPicture part{crop(tall.picture),  cropBoth(tall.halves), cropBoth(tall.noisy),
-                               crop(tall.variance), crop(tall.returned),   {}};
-
-    const Planes structure = StructureLeft(tall.noisy, tall.variance, tall.halves);
-    EXPECT_GT(ShareFound(structure), 0.02);
-    const Planes ofPart = StructureLeft(part.noisy, part.variance, part.halves);
-    const Planes error = StandardError(tall, structure),
-                 errorOfPart = StandardError(part, crop(structure));
-    for (int y = margin; y < below - above - margin; ++y)
-        for (int x = 0; x < width; ++x) {
-            ASSERT_EQ(structure.Row(0, above + y)[x], ofPart.Row(0, y)[x]) << x << " " << y;
-            ASSERT_EQ(error.Row(0, above + y)[x], errorOfPart.Row(0, y)[x]) << x << " " << y;
-        }
 }
 
 // A bright edge whose noise depends on a feature, as behind a jug: lines fitted to it go below what

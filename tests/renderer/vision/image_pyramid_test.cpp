@@ -1,4 +1,4 @@
-#include "renderer/vision/image_pyramid.h"
+#include "renderer/vision/visible_difference.h"
 
 #include <gtest/gtest.h>
 
