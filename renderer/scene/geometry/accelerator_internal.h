@@ -149,16 +149,17 @@ std::optional<ShapeHit> IntersectCovered(const ShapeUser& user, uint32_t geometr
     return {};
 }
 
-// The rays that pass a shape: none, those that it is hidden from, or some where parts are missing.
+// The rays that pass a shape: none, those that it is hidden from, or also some where parts are
+// missing.
 enum class Passing { None, Hidden, Uncovered };
 
 // Returns where a ray meets a primitive that `args` of a callback name, unless it passes.
 template <typename S, Passing kPassing>
 std::optional<ShapeHit> Meet(const auto* args, const RTCRay& ray) {
     const auto& user = *static_cast<const ShapeUser*>(args->geometryUserPtr);
+    if (kPassing != Passing::None && IsHidden(user, ray)) return {};
     if constexpr (kPassing == Passing::Uncovered)
         return IntersectCovered<S>(user, args->geomID, args->primID, ray);
-    if (kPassing == Passing::Hidden && IsHidden(user, ray)) return {};
     return IntersectPrimitive(ShapeOf<S>(args->geometryUserPtr), args->primID, RayOf(ray));
 }
 

@@ -314,5 +314,18 @@ TEST(Instances, GiveWhatPlacedShapesGive) {
     EXPECT_LE(differences, 5);
 }
 
+// Shapes that are no meshes, with parts missing or without.
+TEST(Shapes, AreHiddenFromOneKindOfRays) {
+    for (const std::string shape : {"\"disk\"", "\"sphere\""})
+        for (const std::string coverage : {"", "\"float coverage\" .999999"}) {
+            const auto scene = SceneOf(WorldText("Shape " + shape + " " + coverage +
+                                                 "\"bool hiddenfromcamera\" \"true\""));
+            const Ray ray{{.1f, .2f, -5}, Vec3f(.1f, 0, 1).normalized(), kInfinity};
+            Hit hit;
+            EXPECT_FALSE(scene->accelerator.Intersect(ray, &hit, 0, kCameraRay)) << shape;
+            EXPECT_TRUE(scene->accelerator.Intersect(ray, &hit, 0, kOtherRay)) << shape;
+        }
+}
+
 }  // namespace
 }  // namespace lull::shape_test
