@@ -1,7 +1,7 @@
 #!/bin/bash
-# Installs missing packages, checks the format and the phrases, builds and runs all tests; then builds the unit tests
-# once more with address and undefined-behaviour sanitizers and runs them. Fails if anything fails;
-# the last line says how many tests were skipped in both builds, and why.
+# Installs missing packages, checks the format, the phrases and the includes, builds and runs all tests; then builds
+# the tests of readers, states and interfaces once more with address and undefined-behaviour sanitizers and runs them.
+# Fails if anything fails; the last line says how many tests were skipped in both builds, and why.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . cmake/packages.sh

@@ -135,8 +135,8 @@ std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
 
 ExitCode Main(MpiJob* job, int argc, char** argv) {
     CLI::App app(
-        "Path tracer for pbrt-v3 and glTF 2.0 that stops each block of the image once no noise is "
-        "visible.",
+        "Path tracer for pbrt-v3, pbrt-v4 and glTF 2.0 that stops each block of the image once no "
+        "noise is visible.",
         "lull");
     SetProgramHelp(&app);
     app.set_version_flag("--version", "lull " LULL_VERSION);

@@ -137,8 +137,15 @@ inline constexpr std::array kRemoved = {
     Removed{"study", "--procedure", "there is one procedure, adjustment"},
     Removed{"study", "--questions", "ask observers yourself"},
     Removed{"study", "--text", "edit the texts in the page"},
+    Removed{"train", "--batch", "batches have 64 samples"},
     Removed{"train", "--bnorm", "inputs are normalised as in the paper"},
+    Removed{"train", "--m", "entropies are those of 100 sub-blocks"},
+    Removed{"train", "--no-snorm", "entropies and attributes26 are normalised over the window"},
     Removed{"train", "--noisy-weight", "use lull render --caution"},
+    Removed{"train", "--reference", "observers compared with 10000 spp; use --nearness"},
+    Removed{"train", "--snorm", "entropies and attributes26 are normalised over the window"},
+    Removed{"train", "--vote-spacing", "rules vote every --n spp"},
+    Removed{"train", "--votes", "three consecutive votes stop a block"},
 };
 
 // Options whose values are names, or numbers in a range. All options check their numbers by these:

@@ -1,4 +1,4 @@
-// Turns materials at a hit point into Bsdfs. Each kind has a file in materials/.
+// Turns materials at a hit point into Bsdfs. The kinds are in the other files of this folder.
 #pragma once
 
 #include <vector>
