@@ -127,7 +127,7 @@ TEST(Rooms, DoWithoutTheLaboratories) {
                 EXPECT_EQ(header.find("/lab/"), std::string::npos)
                     << file << " includes " << header;
         }
-    EXPECT_GT(count, 400);
+    EXPECT_GT(count, 300);
 }
 
 TEST(Rooms, KnowWhatIsPrivate) {
