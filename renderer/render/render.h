@@ -126,7 +126,7 @@ struct RenderContext {
     // Traces light paths in rounds, for a film that keeps spreads (light_rounds.h). Null: none.
     LightRounds* lightRounds = nullptr;
     // A clock: returns the seconds that are left, and is called before every tile. Can be empty.
-    // While it is positive, the block with the most visible noise (VisibleNoise() of lnoise.h) is
+    // While it is positive, the block with the most visible noise (VisibleNoise()) is
     // given the next pass. Then the render ends after the tiles under way: passes that are not
     // complete by then are undone, but the first of each block is always completed. Decisions of
     // criteria do not depend on the clock.

@@ -38,7 +38,7 @@ inline bool IsNormalized(Feature feature) { return !IsNoise(feature); }
 inline bool HasSubBlocks(Feature feature) { return feature != Feature::Attributes26; }
 
 // How far apart the steps of a window are: n spp, or each at `ratio` times the spp of the
-// previous one, or the nearest that is kept (see history.h).
+// previous one, or the nearest that is kept (History::Nearest()).
 enum class Spacing { Fixed, Geometric };
 std::string SpacingName(Spacing spacing);       // "fixed" or "geometric"
 Spacing ParseSpacing(const std::string& name);  // throws std::invalid_argument

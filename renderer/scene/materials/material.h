@@ -1,4 +1,4 @@
-// Turns materials at a hit point into Bsdfs. Each kind has a file in materials/.
+// Turns materials at a hit point into Bsdfs. The kinds have files of their own beside this one.
 #pragma once
 
 #include <vector>
