@@ -137,8 +137,15 @@ inline constexpr std::array kRemoved = {
     Removed{"study", "--procedure", "there is one procedure, adjustment"},
     Removed{"study", "--questions", "ask observers yourself"},
     Removed{"study", "--text", "edit the texts in the page"},
+    Removed{"train", "--batch", "batches have 64 samples"},
     Removed{"train", "--bnorm", "inputs are normalised as in the paper"},
+    Removed{"train", "--m", "entropies are of 100 sub-blocks"},
+    Removed{"train", "--no-snorm", "inputs are normalised as in the paper"},
     Removed{"train", "--noisy-weight", "use lull render --caution"},
+    Removed{"train", "--reference", "the observers' reference has 10000 spp"},
+    Removed{"train", "--snorm", "inputs are normalised as in the paper"},
+    Removed{"train", "--vote-spacing", "models vote every n spp"},
+    Removed{"train", "--votes", "models stop after three votes in a row"},
 };
 
 // Options whose values are names, or numbers in a range. All options check their numbers by these:
