@@ -46,6 +46,7 @@ class StateReader {
 
     template <typename T>
     T Get() {
+        if constexpr (std::is_same_v<T, bool>) return Get<uint8_t>() != 0;  // damaged bytes as well
         T value;
         GetAll(std::span<T>(&value, 1));
         return value;

@@ -115,8 +115,6 @@ double NoiseOfInput(double input);
 
 // Collects the features of a block over its passes into the sequence that a network reads.
 
-// Collects the features of a block over its passes into the sequence that a network reads.
-
 // Returns (v - min) / (max - min + 2.2e-16) for each value: in [0, 1], and all 0 if they are
 // equal. At least one value; they and their spread must be finite.
 Eigen::ArrayXd Normalize(const Eigen::ArrayXd& values);

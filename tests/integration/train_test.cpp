@@ -66,7 +66,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
 TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     const TrainingDirectory directory;
     const std::string options =
-        "train data.h5 --human human.csv --preset paper --units 4 --k 2 --pool mean --quiet "
+        "train --units 4 data.h5 --human human.csv --preset paper --k 2 --pool mean --quiet "
         "--channels H,visible_drop --learning-rate 0.02 --epochs 30 ";
     const Outcome outcome =
         ExpectSuccess(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
@@ -136,7 +136,7 @@ TEST(Train, SaysWhatIsWrong) {
     ExpectFailure(directory, "train human.csv --human human.csv -o m.h5", {"human.csv"});
     for (const char* bad :
          {"", "-o m.h5 --features Q", "-o m.h5 --pool rms", "-o m.h5 --units none",
-          "-o m.h5 --dropout 1", "-o m.h5 --units 8,0", "--resume",
+          "-o m.h5 --dropout 1", "-o m.h5 --units 8,0", "-o m.h5 --units 8,,4", "--resume",
           "-o m.h5 --cross-validate --leave-out attic-a", "-o m.h5 --split human.csv"})
         EXPECT_EQ(
             RunLull(directory, std::string("train data.h5 --human human.csv ") + bad).exitCode, 2)

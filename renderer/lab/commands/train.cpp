@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "renderer/base/clocks.h"
@@ -89,6 +90,18 @@ bool ParsePool(const std::string& text) {
     return text == "mean";
 }
 
+// CLI11's own lists skip empty values, and take the arguments that follow as well.
+std::vector<int> ParseUnits(const std::string& text) {
+    std::vector<int> units;
+    std::istringstream list(text + ",");
+    for (std::string unit; std::getline(list, unit, ',');) {
+        if (const std::string problem = ProblemOfNumber(unit, 1, 16384); !problem.empty())
+            throw std::invalid_argument(problem);
+        units.push_back(std::stoi(unit));
+    }
+    return units;
+}
+
 std::string DefaultNote(bool isDefault) { return isDefault ? " [the default]" : ""; }
 
 template <typename T>
@@ -131,11 +144,9 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
 }
 
 void AddTraining(CLI::App& app, TrainingOptions* t) {
-    app.add_option("--units", t->units, "Set the units of the LSTM layers")
-        ->delimiter(',')
-        ->check(Between(1, 16384))
-        ->type_name("N,N,...")
-        ->default_str(fmt::format("{}", fmt::join(t->units, ",")));
+    AddNames(app, "--units", ParseUnits, &t->units, "Set the units of the LSTM layers",
+             fmt::format("{}", fmt::join(t->units, ",")));
+    app.get_option("--units")->type_name("N,N,...");
     AddReal(app, "--dropout", &t->dropout, 0.0, 0.99,
             "Drop this fraction of each LSTM layer's inputs");
     app.add_option("--learning-rate", t->learningRate, "Set the learning rate of RMSprop")

@@ -89,6 +89,8 @@ class Follower {
         auto deal = reader->GetVector<int>(kDamagedMessage);
         const auto starts = reader->GetVector<BlockStart>(kDamagedMessage);
         needs = reader->GetVector<ViewNeed>(kDamagedMessage);
+        if (deal.empty() || needs.size() != starts.size())
+            throw std::runtime_error(kDamagedMessage);
         if (starts.size() != schedule.Unlocked().Blocks().size())
             throw std::runtime_error("the ranks have different blocks");
         before = begun ? schedule.Share().deal : std::vector<int>();

@@ -124,6 +124,9 @@ TEST(GltfCompression, DecodesMeshopt) {
     whole["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteLength"] = 3;
     EXPECT_EQ(folder.ErrorOf(whole.dump()),
               "scene.gltf: /bufferViews/0/extensions/EXT_meshopt_compression: its data are broken");
+    whole["images"] = {{{"bufferView", 0}, {"mimeType", "image/png"}}};
+    EXPECT_EQ(folder.ErrorOf(whole.dump()),
+              "scene.gltf: /images/0/bufferView: is compressed, as images cannot be");
 }
 
 }  // namespace

@@ -57,27 +57,31 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
 WorldEnd
 )";
 
-Film Rendered(const Scene& scene, int threads) {
+Film Rendered(const Scene& scene, int threads, int passLength, Estimator estimator) {
     RenderOptions options;
-    options.schedule.cap = 20;
+    options.schedule = {.passLength = passLength, .cap = 20};
     options.sampler = Sampler(SamplerKind::Random, 0);
     options.threads = threads;
     Film film(RegionOf(scene));
-    Render({.source = SamplesOf(scene, Estimator::Combined), .film = &film}, options);
+    Render({.source = SamplesOf(scene, estimator), .film = &film}, options);
     return film;
 }
 
+// With any estimator, and for any threads and passes.
 TEST(SceneRender, GivesACropTheSamePixels) {
     const auto whole = SceneOf(kBox);
     FilmOverrides overrides;
     overrides.crop = {.25f, .75f, .1f, .6f};
     const auto part = SceneOf(kBox, {.film = overrides});
-    const Film wholeFilm = Rendered(*whole, 1), partFilm = Rendered(*part, 2);
     const PixelRect crop = RegionOf(*part);
     EXPECT_EQ(crop, (PixelRect{{24, 8}, {72, 48}}));
-    for (int y = crop.min.y(); y < crop.max.y(); ++y)
-        for (int x = crop.min.x(); x < crop.max.x(); ++x)
-            ASSERT_EQ(partFilm.At({x, y}).sum, wholeFilm.At({x, y}).sum) << x << " " << y;
+    for (const Estimator estimator : {Estimator::Combined, Estimator::PbrtV3}) {
+        const Film wholeFilm = Rendered(*whole, 1, 20, estimator),
+                   partFilm = Rendered(*part, 4, 7, estimator);
+        for (int y = crop.min.y(); y < crop.max.y(); ++y)
+            for (int x = crop.min.x(); x < crop.max.x(); ++x)
+                ASSERT_EQ(partFilm.At({x, y}).sum, wholeFilm.At({x, y}).sum) << x << " " << y;
+    }
 }
 
 // Neighbours across a border differ no more than neighbours elsewhere.

@@ -17,6 +17,7 @@ TEST(State, SaysWhatIsDamaged) {
     EXPECT_EQ(WhatOf([&] { message.Finish(); }), "");
     EXPECT_EQ(WhatOf([&] { StateReader(writer.bytes).Get<uint64_t>(); }),
               "the saved state is cut short");
+    EXPECT_EQ(int(StateReader(writer.bytes).Get<bool>()), 1);
 }
 
 }  // namespace
