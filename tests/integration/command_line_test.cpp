@@ -377,7 +377,7 @@ TEST(CommandLine, HelpsWithWrongUsage) {
     refuses("frobnicate", "there are render, ");
     refuses("render scene.pbrt --aov colour", "no layer \"colour\"");
     refuses("bench scene.pbrt", "no command 'bench' any more; use lull compare --curves");
-    refuses("train data.h5 --votes 2", "no option --votes any more; models stop");
+    refuses("train data.h5 --votes 2", "no option --votes any more; three consecutive");
     refuses("render scene.pbrt --stop lnoize", "--stop: ");
     refuses("render scene.pbrt --stop lnoise:x", "'x'");
     refuses("render scene.pbrt --report a.txt", "a.txt ends neither in .html nor in .json");

@@ -57,10 +57,11 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
 WorldEnd
 )";
 
-Film Rendered(const Scene& scene, int threads, int passLength, Estimator estimator) {
+Film Rendered(const Scene& scene, int threads, int passLength, Estimator estimator,
+              uint64_t seed = 0) {
     RenderOptions options;
     options.schedule = {.passLength = passLength, .cap = 20};
-    options.sampler = Sampler(SamplerKind::Random, 0);
+    options.sampler = Sampler(SamplerKind::Random, seed);
     options.threads = threads;
     Film film(RegionOf(scene));
     Render({.source = SamplesOf(scene, estimator), .film = &film}, options);
@@ -82,6 +83,12 @@ TEST(SceneRender, GivesACropTheSamePixels) {
             for (int x = crop.min.x(); x < crop.max.x(); ++x)
                 ASSERT_EQ(partFilm.At({x, y}).sum, wholeFilm.At({x, y}).sum) << x << " " << y;
     }
+}
+
+TEST(SceneRender, DependsOnTheSeed) {
+    const auto scene = SceneOf(kBox);
+    EXPECT_NE(Rendered(*scene, 2, 20, Estimator::Combined, 1).MeanImage(),
+              Rendered(*scene, 2, 20, Estimator::Combined, 2).MeanImage());
 }
 
 // Neighbours across a border differ no more than neighbours elsewhere.
