@@ -213,7 +213,7 @@ void BindFunctions(py::module_& module) {
         .def_property_readonly(
             "estimate", [](const Denoised& d) { return d.Of(&lull_block_error::estimate); },
             "Visible difference of each block from the true image, an array of rows x columns; "
-            "observers just accept 3.1.")
+            "`lull render` stops below 3.1.")
         .def_property_readonly(
             "upper", [](const Denoised& d) { return d.Of(&lull_block_error::upper); },
             "Upper bound of the visible difference, exceeded in 10 of 100 blocks.")

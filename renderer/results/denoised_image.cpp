@@ -107,7 +107,7 @@ std::string TextOf(const std::vector<std::optional<VisibleError>>& blocks, doubl
     const bool isKnown = estimate.size() == blocks.size();
     std::string text = fmt::format(
         "visible difference from the true image at most about {:.2g} in half of the {}blocks{} and "
-        "{:.2g} in all, probably nowhere above {:.2g} (accepted: {:.2g})",
+        "{:.2g} in all, probably nowhere above {:.2g} (threshold: {:.2g})",
         estimate[estimate.size() / 2], isKnown ? "" : fmt::format("{} ", estimate.size()),
         isKnown ? "" : " of which it is known", estimate.back(), upper, accepted);
     if (worstPixels == 1)

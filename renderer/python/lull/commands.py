@@ -18,7 +18,7 @@ _LAYERS = {"N": "normal", "Z": "depth", "P": "position", "objectID": "object",
 
 @dataclasses.dataclass(repr=False)
 class Rendering:
-    """A picture: arrays of height x width, or height x width x 3, with the upper row first."""
+    """An image: arrays of height x width, or height x width x 3, with the upper row first."""
     image: np.ndarray  # linear
     spp: np.ndarray  # samples of each pixel
     noisy: np.ndarray | None  # with denoise: the means of the samples
@@ -104,10 +104,10 @@ def render(scene, *, progress=None, **options):
 
 
 def compare(scene=None, *, progress=None, **options):
-    """Compares the images of a rule, of people and of the most samples.
+    """Compares the images of a rule, at human thresholds and at the maximum sample count.
 
     Args:
-        scene: a file of pbrt or glTF; None: images=FOLDER names pictures of another renderer,
+        scene: a file of pbrt or glTF; None: images=FOLDER names images of another renderer,
             or automatic=, human= and reference= images that were rendered before.
         progress: as for render().
         **options: those of `lull compare`, with _ for -.
@@ -129,7 +129,7 @@ def compare(scene=None, *, progress=None, **options):
 
 
 def evaluate(*recordings, **options):
-    """Judges stopping rules by the thresholds of people.
+    """Evaluates stopping rules by human thresholds.
 
     Args:
         *recordings: data sets, each by itself or all in a list.
@@ -146,7 +146,7 @@ def evaluate(*recordings, **options):
 
 
 def entropy(*pictures, **options):
-    """Computes the SVD-entropies of pictures, of their blocks and sub-blocks.
+    """Computes the SVD-entropies of images, of their blocks and sub-blocks.
 
     Args:
         *pictures: image files, each by itself or all in a list.
@@ -154,8 +154,8 @@ def entropy(*pictures, **options):
             sub_blocks=100, values=True, attributes=True.
 
     Returns:
-        The rows of its CSV file, for each picture in the order of the samples per pixel: dicts
-        with spp, block (empty: the picture), h, h1, h2, mean_h, ...
+        The rows of its CSV file, for each image in the order of the samples per pixel: dicts
+        with spp, block (empty: the image), h, h1, h2, mean_h, ...
 
     Raises:
         TypeError, ValueError, lull.Error, FileNotFoundError: as render().

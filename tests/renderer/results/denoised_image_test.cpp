@@ -27,7 +27,7 @@ TEST(DenoisedImage, NamesTheWorstPixels) {
     const std::string most =
         "visible difference from the true image at most about 1 in half of the blocks and 1 in "
         "all, "
-        "probably nowhere above 2 (accepted: " +
+        "probably nowhere above 2 (threshold: " +
         fmt::format("{}", kAcceptedDifference) + ")";
     EXPECT_EQ(TextOf({clean, clean}), most);
     EXPECT_EQ(TextOf({clean, one}), most + ", except for a pixel that may be wrong by 7 in L*");

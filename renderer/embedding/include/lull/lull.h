@@ -220,7 +220,7 @@ typedef struct lull_noisy_picture {
 } lull_noisy_picture;
 
 /* Visible difference of a block from the true picture, but for the noise of its worst pixels, one
- * of 5,000, on a display of 100 cd/m2 and 40 pixels per degree; observers just accept 3.1. */
+ * of 5,000, on a display of 100 cd/m2 and 40 pixels per degree; `lull render` stops below 3.1. */
 typedef struct lull_block_error {
     int x, y, width, height; /* set by the caller; at least 10 pixels a side */
     double estimate;         /* estimated visible difference */
@@ -236,7 +236,7 @@ typedef struct lull_denoised_picture {
     int block_count;
 } lull_denoised_picture;
 
-/* Denoises a picture, in about 11 us of CPU time per pixel. Error: LULL_BAD_ARGUMENT. */
+/* Denoises a picture. Error: LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_denoise(const lull_noisy_picture* noisy, lull_denoised_picture* clean);
 
 /* Returns the reason and remedy of the last error in this thread; never NULL; valid until the next
