@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 
 #include "renderer/base/clocks.h"
 #include "renderer/base/error.h"
@@ -107,18 +108,8 @@ std::string DefaultNote(bool isDefault) { return isDefault ? " [the default]" : 
 template <typename T>
 void AddNumber(CLI::App& app, const std::string& name, T* value, T least, T most,
                const std::string& help) {
-    app.add_option(name, *value, help)
-        ->check(Between(least, most))
-        ->type_name("N")
-        ->capture_default_str();
-}
-
-void AddReal(CLI::App& app, const std::string& name, double* value, double least, double most,
-             const std::string& help) {
-    app.add_option(name, *value, help)
-        ->check(Between(least, most))
-        ->type_name("X")
-        ->capture_default_str();
+    AddOption(app, kOptions, name, value, help, std::is_integral_v<T> ? "N" : "X",
+              Between(least, most));
 }
 
 void AddSettings(CLI::App& app, ModelSettings* s) {
@@ -131,33 +122,28 @@ void AddSettings(CLI::App& app, ModelSettings* s) {
              PoolText(s->takesMean));
     AddNames(app, "--spacing", ParseSpacing, &s->spacing,
              "Space steps n spp apart (fixed) or by --ratio (geometric)", SpacingName(s->spacing));
-    AddReal(app, "--ratio", &s->ratio, 1.1, 16.0, "Set the ratio of geometric spacing");
+    AddNumber(app, "--ratio", &s->ratio, 1.1, 16.0, "Set the ratio of geometric spacing");
     NoiseVisibility* v = &s->visibility;
-    AddReal(app, "--mask", &v->mask, 1e-3, 1e9,
-            "visible_drop: mask noise by detail of deviation d, as 1 / (1 + d / X)");
-    AddReal(app, "--flare", &v->flare, 0.0, 1.0,
-            "visible_drop: set the light reflected by the screen, as a fraction of white");
-    AddReal(app, "--nearness", &v->nearness, 0.0, 10.0,
-            "visible_drop: weigh noise by (1 - spp / 10000)^X");
-    AddReal(app, "--peak-limit", &s->peakLimit, 0.0, 100.0,
-            "Do not stop blocks with this much peak noise in L*; 0: no limit");
+    AddNumber(app, "--mask", &v->mask, 1e-3, 1e9,
+              "visible_drop: mask noise by detail of deviation d, as 1 / (1 + d / X)");
+    AddNumber(app, "--flare", &v->flare, 0.0, 1.0,
+              "visible_drop: set the light reflected by the screen, as a fraction of white");
+    AddNumber(app, "--nearness", &v->nearness, 0.0, 10.0,
+              "visible_drop: weigh noise by (1 - spp / 10000)^X");
+    AddNumber(app, "--peak-limit", &s->peakLimit, 0.0, 100.0,
+              "Do not stop blocks with this much peak noise in L*; 0: no limit");
 }
 
 void AddTraining(CLI::App& app, TrainingOptions* t) {
     AddNames(app, "--units", ParseUnits, &t->units, "Set the units of the LSTM layers",
              fmt::format("{}", fmt::join(t->units, ",")));
     app.get_option("--units")->type_name("N,N,...");
-    AddReal(app, "--dropout", &t->dropout, 0.0, 0.99,
-            "Drop this fraction of each LSTM layer's inputs");
-    app.add_option("--learning-rate", t->learningRate, "Set the learning rate of RMSprop")
-        ->check(AboveZero())
-        ->type_name("X")
-        ->capture_default_str();
+    AddNumber(app, "--dropout", &t->dropout, 0.0, 0.99,
+              "Drop this fraction of each LSTM layer's inputs");
+    AddOption(app, kOptions, "--learning-rate", &t->learningRate,
+              "Set the learning rate of RMSprop", "X", AboveZero());
     AddNumber(app, "--epochs", &t->epochs, 1, 1000000, "Set the number of epochs");
-    app.add_option("--seed", t->seed, "Seed the initial weights")
-        ->check(WholeNumber())
-        ->type_name("N")
-        ->capture_default_str();
+    AddOption(app, kOptions, "--seed", &t->seed, "Seed the initial weights", "N", WholeNumber());
     app.add_flag("--balance-viewpoints,!--no-balance-viewpoints", t->balanceViewpoints,
                  "Let each viewpoint count the same, however many blocks of\nit there are" +
                      DefaultNote(t->balanceViewpoints));
