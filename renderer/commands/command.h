@@ -139,7 +139,7 @@ inline constexpr std::array kRemoved = {
     Removed{"study", "--text", "edit the texts in the page"},
     Removed{"train", "--batch", "batches have 64 samples"},
     Removed{"train", "--bnorm", "inputs are normalised as in the paper"},
-    Removed{"train", "--m", "entropies are those of 100 sub-blocks"},
+    Removed{"train", "--m", "entropies are of 100 sub-blocks"},
     Removed{"train", "--no-snorm", "entropies and attributes26 are normalised over the window"},
     Removed{"train", "--noisy-weight", "use lull render --caution"},
     Removed{"train", "--reference", "observers compared with 10000 spp; use --nearness"},

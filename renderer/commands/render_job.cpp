@@ -72,7 +72,7 @@ RenderJob::RenderJob(const RenderSettings& given, MpiJob* ranks, bool withHalf)
       ranks(ranks),
       warnings(MakePrintedWarnings(settings.scene, MessagesOf(settings))),
       description(LoadDescription(settings.scene, warnings)) {
-    Warnings unheard;  // those of the film come when the scene is compiled
+    Warnings unheard;  // compiling the scene tells the film's
     filmSettings = MakeFilmSettings(description, settings.scene.compile.film, unheard);
     region = filmSettings.Region();
     CheckFilmFits(region, {.grid = GridOf(settings.schedule), .withHalf = withHalf});

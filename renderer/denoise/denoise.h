@@ -35,7 +35,7 @@ Planes FilterFeatures(int width, int height, const FeatureReader&,
 // Filters noisy colours: fits in windows of some pixels, the choice among them, and the same at
 // half of the size for wider structure (denoise.h).
 
-// What a denoised picture may cost.
+// The effort of denoising.
 enum class Effort {
     Full,
     Quick  // a little worse, in 60 % of the time: for a look at how far a render is
@@ -183,7 +183,7 @@ Planes WithCoarsePart(Planes fine, const Planes& coarse);
 // largest. So neither fireflies nor the gaps between them nor variances that are too small are
 // taken for structure.
 
-inline constexpr int kStructureReach = 10;  // pixels, from which what is found in one depends
+inline constexpr int kStructureReach = 10;  // pixels that decide on one, to each side
 
 // Adds to the middle of each square, line and bar the mean of its residual where that is structure,
 // round by round. Each half gets the mean of its own samples, and stays within their range

@@ -10,7 +10,7 @@ _READERS = {**READERS, 'MIX_SHADER': mixed, 'ADD_SHADER': added}
 
 
 class Surface:
-    """`parameters` are those of bsdfs.DEFAULTS, and perhaps Normal; None for an unknown surface. `own` are lull's own
+    """`parameters` have the names of bsdfs.DEFAULTS, and perhaps Normal; None for an unknown surface. `own` are lull's own
     properties of the material."""
 
     def __init__(self, material, view, solid, notes, side=None):
