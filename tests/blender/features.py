@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Renders scenes of one feature of Blender each with Cycles and with the add-on, and writes the table of features.
+"""Renders scenes of one feature of Blender each with Cycles and with the add-on, and writes a table of features.
 
     cmake --build --preset release --target lull blender_addon
     tests/blender/features.py blender build/release/share/lull/lull-blender.zip build/release/renderer/lull OUT [NAME...]
@@ -8,8 +8,8 @@ A feature is right if means of R, G, B and alpha are within 2 % of Cycles', bloc
 and each block of 5x5 pixels within 15 % of the mean of the block and the picture, or within four standard errors; refused if there is
 no picture; else warned. One that differs without a warning is silent, and the exit code is 1. Pictures stay in the folder OUT,
 `NAME.png` with Cycles on the left; existing ones are not rendered again, but lull's if it is named, or with `--again`. `--write`
-writes features-VERSION.csv, all features in a version of Blender, and replaces the table in renderer/docs/blender.md, those that are
-not right in any of these files. blender_test.py judges some of the features, for CI.
+writes features-VERSION.csv, all features in a version of Blender, and their counts in renderer/docs/blender.md. blender_test.py judges
+some of the features, for CI.
 """
 import argparse
 import csv
@@ -28,7 +28,7 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(ROOT / "renderer/python/lull"))
 import exr  # noqa: E402
 
-BEGIN, END = "<!-- features.py writes this table -->\n", "<!-- end of the table -->\n"
+BEGIN = "<!-- features.py writes the next line -->\n"
 SIZE, MEANS, BLOCKS, WORST, ERRORS = (60, 40), 0.02, 0.05, 0.15, 4
 
 
@@ -166,23 +166,11 @@ def tables():
     return {path.stem.removeprefix("features-"): {row[0]: row for row in read(path)} for path in sorted(HERE.glob("features-*.csv"))}
 
 
-def table():
-    """Returns the numbers of right features by version, and a table of the others."""
-    versions = tables()
-    titles = dict.fromkeys(title for rows in versions.values() for title in rows)
-    right = {title for title in titles if all(rows.get(title, ["", "right"])[1].startswith("right") for rows in versions.values())}
-
-    def cell(row):
-        if row is None:
-            return "–"
-        return "right" if row[1].startswith("right") else f"{row[2]} %, {row[4]} %" if row[2] else "refused"
-
-    counts = [f"{sum(row[1].startswith('right') for row in rows.values())} of {len(rows)} in Blender {version}"
-              for version, rows in versions.items()]
-    lines = [f"Right are {' and '.join(counts)}. The others, with the difference of the mean and that of a block (–: not rendered):", "",
-             f"| feature | {' | '.join(versions)} |", "|---|" + "---|" * len(versions)]
-    lines += [f"| {title} | {' | '.join(cell(rows.get(title)) for rows in versions.values())} |" for title in titles if title not in right]
-    return "\n" + "\n".join(lines) + "\n\n"
+def counts():
+    """Returns the numbers of right features by version."""
+    parts = [f"{sum(row[1].startswith('right') for row in rows.values())} of {len(rows)} in Blender {version}"
+             for version, rows in tables().items()]
+    return f"Right are {' and '.join(parts)}."
 
 
 def main():
@@ -195,7 +183,7 @@ def main():
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--again", action="store_true", help="render all of lull's pictures again")
     parser.add_argument("--table", action="store_true", help="render nothing, and judge the pictures in OUT")
-    parser.add_argument("--write", action="store_true", help="replace features-VERSION.csv and the table in renderer/docs/blender.md")
+    parser.add_argument("--write", action="store_true", help="replace features-VERSION.csv and the counts in renderer/docs/blender.md")
     o = parser.parse_args()
     os.makedirs(o.out, exist_ok=True)
     if not o.table:
@@ -217,7 +205,7 @@ def main():
         write(rows, HERE / f"features-{(o.out / 'version.txt').read_text(encoding='utf-8')}.csv")
         page = ROOT / "renderer/docs/blender.md"
         before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-        page.write_text(before + BEGIN + table() + END + rest.split(END)[1], encoding="utf-8")
+        page.write_text(before + BEGIN + counts() + rest[rest.index("\n"):], encoding="utf-8")
     if silent:
         sys.exit("silent: " + ", ".join(silent))
 
