@@ -62,7 +62,7 @@ HardCaseResult Bound(const HardCaseOptions& o) {
                 });
             }
     return {0, double(above.count) / double(above.trials), 0.15,
-            "share of pictures that are more wrong than the bound says"};
+            "share of images that are more wrong than the bound says"};
 }
 
 // The distance of a point from the line through (x0, y0) at an angle.

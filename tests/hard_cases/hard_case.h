@@ -1,4 +1,4 @@
-// Inputs built to break a path tracer or a stopping rule, each with a known answer. The page and
+// Inputs built to break a path tracer or a stopping rule, each with a known answer. The tables and
 // the test program run the same cases; neither is known here.
 #pragma once
 

@@ -108,7 +108,7 @@ std::vector<HardCase> SparsePointCases() {
     for (const char* rule : {"entropy:0.64", "lnoise:0.65"})
         cases.push_back(
             {"sparse points", std::string("thin lights, 1 to 1,000 pixels: ") + rule,
-             "a mean over the block does not see what people see first",
+             "a mean over the block misses what observers see first",
              [rule](const HardCaseOptions& options) { return WorstOfPoints(rule, options); }});
     return cases;
 }
