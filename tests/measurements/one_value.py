@@ -73,8 +73,8 @@ QUANTITIES = [
     ('scenes compared with pbrt-v3', RENDERER, 'with those of pbrt-v3, # scenes', 'and on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),
-    ('stop of a block of staircase2, spp', README, 'The same stairs at 20, #, 2,886', 'A quarter of a block; #: stop', '>stop: #<', 'below 1/2 at # spp'),
-    ('human threshold of a block of staircase2, spp', README, 'stairs at 20, 2,380, # and', '; #: human threshold', '>observers: #<',
+    ('stop of a block of staircase2, spp', README, 'The same stairs at 20, #, 2,886', 'trained without this scene, stops at # spp', '>stop: #<', 'below 1/2 at # spp'),
+    ('human threshold of a block of staircase2, spp', README, 'stairs at 20, 2,380, # and', 'observers asked for #.', '>observers: #<',
      'this scene; # spp is the human'),
     ('version of Blender', BLENDER, 'Tested with Blender 3.4.# ', 'with Blender 3.4.#, and', 'Blender 3.4.#, two threads'),
 ]
