@@ -16,8 +16,8 @@ Sample k of a pixel is always the same, so that three renders by this --sampler 
 bits. With --reference instead, each block is rendered to the larger of the two thresholds. Without a
 scene, existing images are compared.
 
-With --images the three images are made of another renderer's pictures. A block comes from the picture
-at which RULE stopped it, or from the first at or above its human threshold; the last picture is the
+With --images the three images are made of another renderer's images. A block comes from the one
+at which RULE stopped it, or from the first at or above its human threshold; the last image is the
 reference. Names contain the samples per pixel, as for lull record --images.
 
 With --denoise there is one more image, "denoised", that stops by the rule `denoised` and is
@@ -45,7 +45,7 @@ Examples:
   lull compare scene.pbrt --snapshots --denoise -o room
   lull compare scene.pbrt --snapshots --curves --cap 2000 -o room --report room.html
   lull compare scene.pbrt --snapshots --stop lnoise:0.5 --cap 2000 --verify 0,1 -o room
-  lull compare --images pictures/kitchen --human human.csv -o kitchen --report kitchen.html
+  lull compare --images images/kitchen --human human.csv -o kitchen --report kitchen.html
   lull compare --automatic a.exr --human h.exr --reference r.exr -o room
   lull compare --automatic a.png --reference photo.jpg -o room
 
@@ -58,7 +58,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     CLI::Option* scene = app.get_option("SCENE")->required(false);
     CLI::Option* images =
         app.add_option("--images", o->images,
-                       "Pictures of another renderer, their spp in the file names, to make the\n"
+                       "Images of another renderer, their spp in the file names, to make the\n"
                        "images of; NAME names the viewpoint [the folder's name]")
             ->type_name("DIR[:NAME]")
             ->excludes(scene);

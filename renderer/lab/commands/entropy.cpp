@@ -25,31 +25,31 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    R"(Computes the SVD-entropy H of the lightness L (0 to 100) of pictures as an 8-bit display shows them,
+    R"(Computes the SVD-entropy H of the lightness L (0 to 100) of images as an 8-bit display shows them,
 and its parts H1, of the first quarter of the singular values, and H2, of the others, all in [0, 1]
-(Buisine et al. 2021, Eqs. 3 to 5): of the picture and of each block as one matrix, and the mean over
+(Buisine et al. 2021, Eqs. 3 to 5): of the image and of each block as one matrix, and the mean over
 the sub-blocks of each block, the inputs of networks.
 
-The table has a row for each block of a single picture. Of several pictures, or of a folder with the
+The table has a row for each block of a single image. Of several images, or of a folder with the
 samples per pixel in the names (--images), it has a row for each, in this order, with means over
 blocks.
 
---csv writes the curves of all blocks, a row for each picture and block:
+--csv writes the curves of all blocks, a row for each image and block:
   viewpoint,picture,spp,block,sub_block,x,y,width,height,h,h1,h2,mean_h,mean_h1,mean_h2
-A row without a block is of the whole picture. spp is empty if it is not in the name. --values adds a
+A row without a block is of the whole image. spp is empty if it is not in the name. --values adds a
 row for each sub-block; --attributes adds the 26 attributes of each block, a1 to a26: differences to
 13 filtered versions, means and then standard deviations.
 
 Examples:
-  lull entropy picture.png
-  lull entropy picture.png --block 100 --sub-blocks 25 --csv entropies.csv --values
-  lull entropy --images pictures/kitchen --csv curves.csv
+  lull entropy image.png
+  lull entropy image.png --block 100 --sub-blocks 25 --csv entropies.csv --values
+  lull entropy --images images/kitchen --csv curves.csv
 
 Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 void AddOptions(CLI::App& app, Options* o) {
-    app.add_option("PICTURE", o->pictures, "Pictures: .png, .exr, ...");
-    app.add_option("--images", o->images, "Folder of pictures, with their spp in the file names")
+    app.add_option("IMAGE", o->pictures, "Images: .png, .exr, ...");
+    app.add_option("--images", o->images, "Folder of images, with their spp in the file names")
         ->type_name("DIR[:NAME]");
     app.add_option("--block", o->blockSize, "Pixels a side of the blocks")
         ->check(Between(5, 1 << 16))
@@ -196,12 +196,12 @@ ExitCode RunEntropy(const Options& options) {
 }  // namespace
 
 void AddCommand(CLI::App& app, Command* command) {
-    CLI::App* entropy = app.add_subcommand("entropy", "Computes SVD-entropies of pictures.");
+    CLI::App* entropy = app.add_subcommand("entropy", "Computes SVD-entropies of images.");
     auto options = std::make_shared<Options>();
     AddOptions(*entropy, options.get());
     entropy->callback([=] {
         if (options->pictures.empty() && options->images.empty())
-            throw CLI::ValidationError("entropy", "a PICTURE is needed, or --images");
+            throw CLI::ValidationError("entropy", "an IMAGE is needed, or --images");
         if (options->csv.empty() && (options->values || options->attributes))
             throw CLI::ValidationError("--values and --attributes", "need --csv");
         *command = [=] { return RunEntropy(*options); };

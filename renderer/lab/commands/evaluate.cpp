@@ -49,8 +49,8 @@ constexpr const char* kFooter =
     R"(Without data sets, the thresholds of --predicted are evaluated on all viewpoints that both files
 have. With data sets (see lull record), only their blocks are evaluated, and rules run on the
 recordings, without rendering: every pass up to 400 spp, every second after.
---images DIR does the same on another renderer's pictures, as lull record --images would record
-them. Rules that need a half buffer (lnoise, dammertz, cycles, luxtile) cannot be run on pictures.
+--images DIR does the same on another renderer's images, as lull record --images would record
+them. Rules that need a half buffer (lnoise, dammertz, cycles, luxtile) cannot be run on images alone.
 
 --stop takes the rules of lull render. --rivals runs the rules with one setting, each with the best
 setting of the other viewpoints (leave one out), which is in the column "setting"; the row of all
@@ -91,7 +91,7 @@ and stops (Buisine et al. 2021, Fig. 13).
 
 --answers evaluates --stop rules by observers' single answers instead, on data sets of one viewpoint.
 The file has a line block,spp,noise_seen and then an answer a line: blocks row by row from 0, the
-spp of the picture that was shown, 1 where noise was seen. Two more columns, observer,track, identify
+spp of the image that was shown, 1 where noise was seen. Two more columns, observer,track, identify
 the steps of one adjustment (lull study --collect): the answers of a track count as one. All rules
 are evaluated on the same answers.
   loglik  log likelihood of the answers if the probability of seeing noise is a probit in the log of
@@ -107,7 +107,7 @@ Examples:
   lull evaluate --human human.csv --predicted predicted.csv --grid 40
   lull evaluate data.h5 more.h5 --human human.csv --stop lnoise:0.5 --stop learned:model.h5
   lull evaluate data.h5 more.h5 --human human.csv --rivals --predicted predicted.csv --brief
-  lull evaluate --images pictures/kitchen --human human.csv --stop learned --stop learned:paper
+  lull evaluate --images images/kitchen --human human.csv --stop learned --stop learned:paper
   lull evaluate data.h5 --human human.csv --stop learned:own.h5 --split paper:training-blocks.csv
   lull evaluate data.h5 --human human.csv --stop learned:paper --curves c.csv
   lull evaluate data.h5 --answers answers.csv --stop entropy --stop learned
@@ -261,7 +261,7 @@ ExitCode RunEvaluate(const Options& options) {
             EvaluateConstants(rules.at(0).viewpoints, options.chooseBy, options.scoring.grid),
             std::back_inserter(rules));
     if (rules.at(0).viewpoints.size() == 1)
-        PrintMessage("one viewpoint: nothing follows for other pictures");
+        PrintMessage("one viewpoint: the results do not generalise to others");
     PrintEvaluation(stdout, rules, options.scoring, !options.brief);
     if (!options.csv.empty())
         WriteFileAtomically(options.csv, EvaluationCsv(rules, options.scoring));

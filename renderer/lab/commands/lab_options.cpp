@@ -62,7 +62,7 @@ void AllowOnly(const CLI::App& app, std::span<const char* const> names, const st
 void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blockSize) {
     CLI::Option* images =
         AddList(app, "--images", folders,
-                "Pictures of another renderer, their spp in the file names, to run rules on;\n"
+                "Images of another renderer, their spp in the file names, to run rules on;\n"
                 "NAME names the viewpoint [the folder's name]; can be given again")
             ->type_name("DIR[:NAME]");
     AddBlockOption(app, blockSize)->needs(images);

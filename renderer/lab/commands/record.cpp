@@ -36,7 +36,7 @@ SVD-entropies, lightness and noise of every block at all passes up to 400 spp an
 after. Thresholds are no part of the file: `lull train` and `lull evaluate` join them by the
 viewpoint's name.
 
-With --images the records are made of another renderer's pictures: all files of a folder, with their
+With --images the records are made of another renderer's images: all files of a folder, with their
 spp in the names (room-40spp.png, or the last number, room_00040.png), at any spp. They contain
 entropies, lightness and the 26 attributes, but no measurements of half buffers (noise, dammertz,
 cycles, luxtile).
@@ -48,7 +48,7 @@ Examples:
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --resolution 800x800 --blocks 0,5,10
   lull record scene.pbrt --name kitchen-view0 -o data.h5 --human human.csv --past 1.5
-  lull record --images pictures/kitchen -o data.h5
+  lull record --images images/kitchen -o data.h5
 
 Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
@@ -56,7 +56,7 @@ void AddOptions(CLI::App& app, Options* o) {
     AddSceneOptions(app, &o->render.scene);
     CLI::Option* scene = app.get_option("SCENE")->required(false);
     app.add_option("--images", o->images,
-                   "Pictures of another renderer, their spp in the file names, not a scene")
+                   "Images of another renderer, their spp in the file names, not a scene")
         ->excludes(scene)
         ->type_name("DIR");
     AddBlockOption(app, &o->render.schedule.blockSize)->group("Stopping");

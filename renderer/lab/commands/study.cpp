@@ -56,7 +56,7 @@ sampler, unless --sampler and --estimator are given.
 Image and reference are side by side: observers point where they differ, and the block gets one level
 better, until both look the same (Buisine et al. 2021). Start levels differ between observers, some
 blocks are asked twice, and some show the reference on both sides, to detect inattentive observers.
-Observers cannot begin in a window that is too small for both pictures.
+Observers cannot begin in a window that is too small for both images.
 
 --collect writes, in one folder:
   HUMAN.csv             mean thresholds over observers, in the format of the published ones
@@ -70,7 +70,7 @@ Damaged, foreign and contradictory files are named and left out.
 Examples:
   lull study scene.pbrt -o study.html --record data.h5
   lull study scene.pbrt -o study.html --resolution 800x800 --cap 2000
-  lull study --images pictures/ --name kitchen-view0 -o study.html
+  lull study --images images/ --name kitchen-view0 -o study.html
   lull study --collect answers/*.json -o human.csv --study study.html --report collected.html
   lull train data.h5 --human human.csv -o model.h5
 

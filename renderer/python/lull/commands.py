@@ -134,7 +134,7 @@ def evaluate(*recordings, **options):
     Args:
         *recordings: data sets, each by itself or all in a list.
         **options: those of `lull evaluate`, with _ for -: human="human.csv", stop=["learned"],
-            images="pictures/kitchen".
+            images="images/kitchen".
 
     Returns:
         The rows of its CSV file: dicts, with numbers where there are such.
@@ -150,7 +150,7 @@ def entropy(*pictures, **options):
 
     Args:
         *pictures: image files, each by itself or all in a list.
-        **options: those of `lull entropy`, with _ for -: images="pictures/kitchen", block=200,
+        **options: those of `lull entropy`, with _ for -: images="images/kitchen", block=200,
             sub_blocks=100, values=True, attributes=True.
 
     Returns:
