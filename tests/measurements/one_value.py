@@ -19,7 +19,7 @@ WORDS = {word: number for number, word in enumerate(
 WORDS['twenty-six'] = 26
 
 README, DATA = 'README.md', 'stopping/data/README.md'
-MODELS, RENDERER = (f'tests/measurements/{name}.md' for name in ('models', 'renderer'))
+MODELS, RENDERER, DENOISER = (f'tests/measurements/{name}.md' for name in ('models', 'renderer', 'denoiser'))
 RULES, PAPER, TRAINING = (f'stopping/docs/{name}.md' for name in ('entropy', 'paper', 'training'))
 REFERENCE, RENDERING, BLENDER = (f'renderer/docs/{name}.md' for name in ('reference', 'rendering', 'blender'))
 SPEED = 'tests/measurements/pbrt_speed.csv', 'samples_per_second'
@@ -68,7 +68,7 @@ QUANTITIES = [
     ('bytes of a pixel', RENDERING, 'A pixel of the film takes # bytes', 'of which the film takes # or 48'),
     ('bytes of a pixel with a half buffer', RENDERING, 'film takes 24 bytes; # with', 'of which the film takes 24 or #'),
     ('shortest time by --denoise, s', (*TIMES, min), 'after # to [0-9]+ s of CPU time', 'takes # to [0-9]+ s of CPU time in'),
-    ('longest of the 13, s', RENDERER, 'after 1 to # s of CPU time', 'takes 1 to # s of CPU time in 13'),
+    ('longest of the 13, s', DENOISER, 'after 1 to # s of CPU time', 'takes 1 to # s of CPU time in 13'),
     ('longest of all, s', (*TIMES, max), ', 135 to # s in seven', 'after 135 to # s in seven'),
     ('scenes compared with pbrt-v3', RENDERER, 'with those of pbrt-v3, # scenes', 'and on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
