@@ -36,14 +36,14 @@ find_package(Python3 QUIET COMPONENTS Interpreter)
 if(Python3_Interpreter_FOUND AND NOT LULL_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
   set(manual ${PROJECT_BINARY_DIR}/manual)
   add_custom_command(
-    OUTPUT ${manual}/lull.1 ${manual}/lull ${manual}/reference.md
+    OUTPUT ${manual}/lull.1 ${manual}/lull ${manual}/reference.md ${manual}/interfaces.md
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/cmake/manual.py $<TARGET_FILE:lull> ${manual}
-    COMMAND Python3::Interpreter -B ${PROJECT_SOURCE_DIR}/cmake/reference.py $<TARGET_FILE:lull> ${manual}/reference.md
+    COMMAND Python3::Interpreter -B ${PROJECT_SOURCE_DIR}/cmake/reference.py $<TARGET_FILE:lull> ${manual}
     DEPENDS lull ${PROJECT_SOURCE_DIR}/cmake/manual.py ${PROJECT_SOURCE_DIR}/cmake/reference.py
     VERBATIM)
-  add_custom_target(manual ALL DEPENDS ${manual}/lull.1 ${manual}/lull ${manual}/reference.md)
+  add_custom_target(manual ALL DEPENDS ${manual}/lull.1 ${manual}/lull ${manual}/reference.md ${manual}/interfaces.md)
   install(FILES ${manual}/lull.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  install(FILES ${manual}/reference.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  install(FILES ${manual}/reference.md ${manual}/interfaces.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
   install(FILES ${manual}/lull DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 else()
   message(STATUS "No manual page and no completion: they need Python")

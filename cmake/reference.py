@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the reference of commands, C and Python in Markdown, from the help, headers and docstrings.
 
-reference.py LULL FILE: runs `LULL COMMAND --help-all`, reads the sources, and writes FILE. With --check, fails if FILE
-differs from that. renderer/docs/reference.md is written in this way.
+reference.py LULL FOLDER: runs `LULL COMMAND --help-all`, reads the sources, and writes reference.md and interfaces.md in
+FOLDER, renderer/docs. With --check, fails if one of them differs from that.
 """
 import ast
 import difflib
@@ -24,16 +24,27 @@ def cell(text):
 
 
 def commands(lull):
+    """Yields the help of each command. An option is described where the first command has it."""
     top = manual.help_of(lull)
-    for command in top.entries["Subcommands"]:
-        page = manual.help_of(lull, command.names[0])
-        yield f"### lull {command.names[0]}\n\n{page.about}\n\n    {page.usage.strip()}\n"
+    first = {}  # command of a row
+    for command in (c.names[0] for c in top.entries["Subcommands"]):
+        page = manual.help_of(lull, command)
+        yield f"## lull {command}\n\n{page.about}\n\n    {page.usage.strip()}\n"
+        shared = {}  # names by command
         for title, options in page.groups().items():
-            rows = "".join(f"| `{cell(', '.join(o.names) + ' ' * bool(o.value) + o.value)}` | {cell(o.text)} |\n"
-                           for o in options)
-            yield f"| {title} | |\n|---|---|\n{rows}"
-        if page.notes:
-            yield f"```\n{page.notes}\n```\n"
+            rows = ""
+            for o in options:
+                row = f"| `{cell(', '.join(o.names) + ' ' * bool(o.value) + o.value)}` | {cell(o.text)} |\n"
+                if first.setdefault(row, command) == command:
+                    rows += row
+                elif not {"--help", "--help-all"} & set(o.names):
+                    shared.setdefault(first[row], []).append(f"`{o.names[0]}`")
+            if rows:
+                yield f"| {title} | |\n|---|---|\n{rows}"
+        for other, names in shared.items():
+            yield f"As in [lull {other}](#lull-{other}): {', '.join(names)}\n"
+        if notes := page.notes.partition("\nExit codes: 0 success")[0].rstrip():
+            yield f"```\n{notes}\n```\n"
 
 
 def c_interface(header):
@@ -80,17 +91,21 @@ def main():
     is_check = sys.argv[3:] == ["--check"]
     if len(sys.argv) != 3 and not is_check:
         raise SystemExit(__doc__)
-    lull, file = sys.argv[1:3]
-    parts = ["# Reference\n", "Written by `cmake/reference.py`, from the help, headers and docstrings.\n", "## Commands\n",
-             *commands(lull), "## C: `lull/lull.h`\n", *c_interface(HEADER), "## Python: `lull`\n"]
-    for source in MODULE:
-        parts += python_interface(source)
-    text = "\n".join(parts)
-    if not is_check:
-        pathlib.Path(file).write_text(text)
-    elif pathlib.Path(file).read_text() != text:
-        difference = difflib.unified_diff(pathlib.Path(file).read_text().split("\n"), text.split("\n"), lineterm="")
-        raise SystemExit("\n".join(difference) + f"\n{file} differs. Write it again: cmake/reference.py {lull} {file}")
+    lull, folder = sys.argv[1:3]
+    python = [part for source in MODULE for part in python_interface(source)]
+    pages = {
+        "reference.md": ["# Commands\n", "Written by `cmake/reference.py` from `lull COMMAND --help-all`. Each option is described where "
+                         "the first command has it; all commands have `-h` and `--help-all`. Exit codes: 0 success, 1 input or "
+                         "environment error, 2 usage error, 130 interrupted.\n", *commands(lull)],
+        "interfaces.md": ["# C and Python\n", "Written by `cmake/reference.py` from the header and docstrings.\n",
+                          "## C: `lull/lull.h`\n", *c_interface(HEADER), "## Python: `lull`\n", *python]}
+    for name, parts in pages.items():
+        file, text = pathlib.Path(folder, name), "\n".join(parts)
+        if not is_check:
+            file.write_text(text)
+        elif file.read_text() != text:
+            difference = difflib.unified_diff(file.read_text().split("\n"), text.split("\n"), lineterm="")
+            raise SystemExit("\n".join(difference) + f"\n{file} differs. Write it again: cmake/reference.py {lull} {folder}")
 
 
 if __name__ == "__main__":

@@ -167,9 +167,9 @@ LULL_API lull_status lull_stopper_answer(const lull_stopper* stopper, int block,
 LULL_API int lull_stopper_done(const lull_stopper* stopper);
 
 /* Returns a warning about the pictures so far, as a line of text; "" if there is none, and for
- * NULL. Valid until the next call for the stopper. Warnings: pictures are too far apart for a rule
- * that compares them, so that it will never stop (spp that double), and pixels seem to have a
- * fourth channel (pixel_stride), which is ignored. */
+ * NULL. Valid until the next call for the stopper. Pictures are too far apart for a rule that
+ * compares them (spp that double): it will never stop. Or pixels seem to have a fourth channel
+ * (pixel_stride), which is ignored. */
 LULL_API const char* lull_stopper_warning(const lull_stopper* stopper);
 
 /* Writes the state of a stopper to `bytes`, for a checkpoint of the renderer. `*size` is the room
@@ -186,9 +186,9 @@ typedef struct lull_entropy {
 } lull_entropy;
 
 /* Computes the SVD-entropy of each of `sub_blocks` parts of a picture, row by row, from the
- * lightness (0 to 100) that an 8-bit display shows of its mean: with the n singular values s_i of a
- * part, the largest first, and p_i = s_i^2 / sum s^2, h = -1 / log(n) sum p_i log p_i, of which h1
- * has the terms of the first n / 4 values and h2 the others (Buisine et al. 2021, Eqs. 3 to 5).
+ * lightness (0 to 100) that an 8-bit display shows of its mean. Let s_i be the n singular values of
+ * a part, the largest first, and p_i = s_i^2 / sum s^2. Then h = -1 / log(n) sum p_i log p_i; h1
+ * has the terms of the first n / 4 values, h2 the others (Buisine et al. 2021, Eqs. 3 to 5).
  * `sub_blocks` is a square number, 1 for the picture as a whole; the picture has at least its root
  * in pixels a side. `entropies` has room for as many. LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_svd_entropy(const lull_picture* picture, int sub_blocks,
@@ -219,8 +219,8 @@ typedef struct lull_noisy_picture {
     lull_halves depth;  /* of first hits: above 0; 0 or infinite without a hit */
 } lull_noisy_picture;
 
-/* Visible difference of a block from the true picture, but for the noise of its worst pixels, one
- * of 5,000, on a display of 100 cd/m2 and 40 pixels per degree; `lull render` stops below 3.1. */
+/* Visible difference of a block from the true picture on a display of 100 cd/m2 and 40 pixels per
+ * degree, without the noise of its worst pixels, one of 5,000. `lull render` stops below 3.1. */
 typedef struct lull_block_error {
     int x, y, width, height; /* set by the caller; at least 10 pixels a side */
     double estimate;         /* estimated visible difference */
