@@ -86,7 +86,7 @@ void PrintAppearance(const Description& description, const Scene& scene) {
     if (!description.media.empty()) Line("media", CountsText(CountKinds(description.media)));
     Counts lights = CountKinds(description.lights);
     const int area = scene.lights.Count() - int(description.lights.size());
-    if (area > 0) lights[area == 1 ? "glowing shape" : "glowing shapes or triangles"] = area;
+    if (area > 0) lights[area == 1 ? "emitting shape" : "emitting shapes or triangles"] = area;
     Line("lights", CountsText(lights));
 }
 

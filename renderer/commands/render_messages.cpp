@@ -146,14 +146,14 @@ std::string WayOf(const PathStep& step) {
                                     ? std::string("as in a mirror or clear glass")
                                     : fmt::format("with density {:.5g} per sr", step.pdf);
     return fmt::format(
-        "     continues {}towards {}, {}\n",
-        step.isTransmission && step.kind == PathStep::Kind::Surface ? "through it " : "",
+        "     {} direction {}, {}\n",
+        step.isTransmission && step.kind == PathStep::Kind::Surface ? "transmitted" : "sampled",
         Numbers(step.direction), density);
 }
 
 // Returns why there is no further step.
 std::string EndOf(const PathLog& log, const Scene& scene) {
-    if (log.steps.empty()) return "It meets nothing that shines or scatters.\n";
+    if (log.steps.empty()) return "It meets nothing that emits or scatters.\n";
     const PathStep& last = log.steps.back();
     if (last.kind == PathStep::Kind::Sky) return "";
     if (const int maxDepth = MaxDepth(scene.integrator); int(log.steps.size()) > maxDepth)
@@ -267,9 +267,9 @@ void PrintPath(const Vec2i& pixel, int index, const RenderSettings& settings,
     int number = 0;
     for (const PathStep& step : log.steps) {
         fmt::print("{:3}  {}\n", ++number, PlaceOf(step, description, scene));
-        if (number > 1) fmt::print("     light from here counts {}\n", Numbers(step.throughput));
-        if (!IsBlack(step.emitted)) fmt::print("     it shines:     + {}\n", Numbers(step.emitted));
-        if (!IsBlack(step.direct)) fmt::print("     lights bring:  + {}\n", Numbers(step.direct));
+        if (number > 1) fmt::print("     throughput:      {}\n", Numbers(step.throughput));
+        if (!IsBlack(step.emitted)) fmt::print("     emitted:       + {}\n", Numbers(step.emitted));
+        if (!IsBlack(step.direct)) fmt::print("     direct light:  + {}\n", Numbers(step.direct));
         fmt::print("{}", WayOf(step));
     }
     fmt::print("{}", EndOf(log, scene));
