@@ -195,7 +195,7 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     AddSplitOption(app, &o->plan.split,
                    "Train on the blocks that FILE lists (name;b0;b1;...),\njudge by the others");
     app.add_flag("--cross-validate", o->plan.crossValidate, "Leave each viewpoint out in turn");
-    app.add_flag("--resume", o->resume, "Go on from MODEL.h5.checkpoint");
+    app.add_flag("--resume", o->resume, "Resume from MODEL.h5.checkpoint");
     app.add_option("--checkpoint-interval", o->checkpointInterval, "Seconds between checkpoints")
         ->check(Between(0.1, 1e6))
         ->capture_default_str();

@@ -22,7 +22,7 @@ function showPractice() {
   practice.isAnswered = false;
   practice.noisySide = Math.random() < 0.5 ? 0 : 1;
   drawPractice(practiceCanvases(), practiceLevels[practice.trial], practice.noisySide);
-  byId("practice-title").textContent = `To try: ${practice.trial + 1} of ${practiceLevels.length}`;
+  byId("practice-title").textContent = `Practice: ${practice.trial + 1} of ${practiceLevels.length}`;
   byId("practice-said").textContent = "Which one is noisier? Click or tap it.";
   for (const caption of document.querySelectorAll("#practice figcaption")) caption.textContent = "\u00a0";
   byId("practice-next").hidden = true;

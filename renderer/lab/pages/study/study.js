@@ -99,7 +99,7 @@ function welcome() {
   session = null;
   byId("known").replaceChildren(...sessions.map(s => make("li", {},
     make("button", {type: "button", click: () => { session = s; s.finished ? finish() : goOn(); }},
-      (s.finished ? "The answers of " : "Go on as ") + s.observer),
+      (s.finished ? "The answers of " : "Continue as ") + s.observer),
     ` begun ${new Date(s.started).toLocaleString("en")}, ${s.events.length} answers`)));
   byId("known-part").hidden = !sessions.length;
   byId("name").value = "";
