@@ -87,7 +87,7 @@ def motion_of_copies(scene):
             scene.collection.objects.link(o)
 
 
-@case("motion blur of what shines, of a lamp and of a shape")
+@case("motion blur of emitters (a lamp, a mesh) and of a shape")
 def motion_of_lamps(scene):
     motion_blur(scene)
     dressed(surface('Emission')[0])

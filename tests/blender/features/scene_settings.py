@@ -179,7 +179,7 @@ def nested(scene):
         empty(of, within, location=(x, y, 0), rotation_euler=(0, 0, x), scale=(1, 1.3, 1))
 
 
-@case("object of no height, with a texture over places, and loose edges")
+@case("flat object with a position-dependent texture and loose edges")
 def flat(scene):
     made, bsdf, tree = principled()
     link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=3).outputs[1], bsdf.inputs['Base Color']))
