@@ -127,7 +127,7 @@ std::string ProgressJson(const ProgressState& state) {
                                   : left              ? fmt::format("{:.3f}", left->seconds)
                                                       : "null";
     return fmt::format(
-        R"({{"event":"progress","percent":{:.2f},"blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
+        R"({{"event":"progress","percent":{:.2f},"blocks":{},"cleanBlocks":{},"blocksAtCap":{},)"
         R"("medianSpp":{},"samples":{},"samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},)"
         R"("remainingSeconds":{},"remainingIsUpperBound":{}}})",
         100 * state.share, p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp,

@@ -33,10 +33,10 @@ def _step(event):
 
 
 def _progress(event):
-    text = "%d of %d blocks stopped, %d spp" % (
-        event["stoppedBlocks"], event["blocks"], event["medianSpp"])
+    text = "%d of %d blocks clean, %d spp" % (
+        event["cleanBlocks"], event["blocks"], event["medianSpp"])
     left, is_bound = event["remainingSeconds"], event["remainingIsUpperBound"]
-    if left is None or is_bound and event["stoppedBlocks"] == 0:  # until then the bound is that of the most samples
+    if left is None or is_bound and event["cleanBlocks"] == 0:  # until then the bound is that of the most samples
         return text
     return "%s, %s%s left" % (text, "at most " if is_bound else "", _duration(left))
 

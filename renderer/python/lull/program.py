@@ -120,8 +120,8 @@ class _Line:
     def __call__(self, event):
         if not self.shows or event["event"] != "progress":
             return
-        text = "%3.0f %%, %d of %d blocks stopped, %d spp, %.0f s left" % (
-            event["percent"], event["stoppedBlocks"], event["blocks"], event["medianSpp"],
+        text = "%3.0f %%, %d of %d blocks clean, %d spp, %.0f s left" % (
+            event["percent"], event["cleanBlocks"], event["blocks"], event["medianSpp"],
             event["remainingSeconds"])
         sys.stderr.write("\r" + text.ljust(self.width))
         sys.stderr.flush()

@@ -91,7 +91,7 @@ TEST(ProgressText, GuessesNothingWithoutARate) {
 TEST(ProgressJson, IsOneLineOfJson) {
     EXPECT_EQ(
         ProgressJson(StateOf(Halfway(), 50000, true)),
-        R"({"event":"progress","percent":50.00,"blocks":16,"stoppedBlocks":9,)"
+        R"({"event":"progress","percent":50.00,"blocks":16,"cleanBlocks":9,)"
         R"("blocksAtCap":0,"medianSpp":1240,"samples":5000000,"samplesPerSecond":50000.0,"elapsedSeconds":100.000,)"
         R"("remainingSeconds":100.000,"remainingIsUpperBound":true})");
     EXPECT_TRUE(Contains(ProgressJson(StateOf(Halfway(), 0, true)), R"("remainingSeconds":null)"));
