@@ -36,7 +36,7 @@ void PrepareRule(PreparedRender* p) {
     RenderSettings& settings = p->settings;
     ScheduleOptions& schedule = settings.schedule;
     const std::string rule = p->request.Rule();
-    // A fixed number of samples is its own cap; with --cap the smaller of both holds.
+    // A fixed number of samples is its own cap; with --max-spp the smaller of both holds.
     if (settings.cap) schedule.cap = *settings.cap;
     if (const int spp = FixedSpp(rule))
         schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;

@@ -292,6 +292,7 @@ ExitCode RunSequence(const RenderRequest& request, MpiJob* ranks) {
         const double time = request.sequence->TimeOf(number - 1);
         frame.frameNumber = number;
         frame.render.scene.view.frame = time;
+        if (!request.sameSeed) frame.render.seed += uint64_t(number);
         CheckpointOptions& checkpoint = frame.render.checkpoint;
         checkpoint.file = NumberedFile(checkpoint.file, number);
         std::string note;

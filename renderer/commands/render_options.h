@@ -41,7 +41,8 @@ struct RenderRequest {
     std::optional<Vec2i> pixel;
     int sample = 0;
     std::optional<Sequence> sequence;
-    int frameNumber = 0;  // in the sequence, from 1; 0: there is none
+    int frameNumber = 0;    // in the sequence, from 1; 0: there is none
+    bool sameSeed = false;  // for all frames; else frame n has the seed of the settings plus n
 
     // Returns the rule of --stop, --spp and --denoise.
     std::string Rule() const;

@@ -181,10 +181,11 @@ void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderSta
     for (BlockResult& result : state->blocks) {
         Block& block = result.block;
         if (block.spp > cap)
-            throw Error(fmt::format(
-                "it has blocks of {} spp, more than the cap of {}; give a larger --cap, or remove "
-                "the file to start again",
-                block.spp, cap));
+            throw Error(
+                fmt::format("it has blocks of {} spp, more than the cap of {}; give a larger "
+                            "--max-spp, or remove "
+                            "the file to start again",
+                            block.spp, cap));
         if (isNewRule) {
             result.decisions.clear();
             block.stopped = block.stoppedByVote = false;
