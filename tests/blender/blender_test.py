@@ -106,8 +106,15 @@ bpy.ops.lull.check()
 strands._LIMIT = 12_000_000""", none),
             ("time", "plastic", """
 from lull_engine.engine import _progress
-event = {'blocks': 4, 'medianSpp': 0, 'remainingSeconds': 20000, 'remainingIsUpperBound': True}
-print(_progress({**event, 'cleanBlocks': 0}), '|', _progress({**event, 'cleanBlocks': 1}))""", none),
+event = {'blocks': 4, 'cleanBlocks': 0, 'medianSpp': 0, 'remainingSeconds': None, 'remainingRange': None, 'remainingIsUpperBound': True}
+bound, known = {'cleanBlocks': 1, 'remainingSeconds': 20000}, {'remainingSeconds': 600, 'remainingRange': [500, 800]}
+print(_progress(event), '|', _progress({**event, **bound}), '|', _progress({**event, **known}))""", none),
+            ("settings", "plastic", """
+s.seed, s.quality, s.stop_by = 5, 'draft', 'DEFAULT'
+scene.frame_set(7)
+print(*s.arguments())
+s.same_seed, s.caution = True, 1.5
+print(*s.arguments())""", none),
             ("no rule", "plastic", "s.stop_by, s.rule = 'RULE', 'nonsense'", lull), ("panoramic", "panorama", "", lull),
             ("nowhere", "plastic", PROGRAM_OF.format("/nowhere/lull"), lull), ("other", "plastic", PROGRAM_OF.format(str(cls.other)), lull),
             ("no program", "plastic", "import os; os.environ['PATH'] = '/nowhere'; " + PROGRAM_OF.format(""), lull)]
@@ -281,8 +288,17 @@ print(_progress({**event, 'cleanBlocks': 0}), '|', _progress({**event, 'cleanBlo
             time.sleep(0.1)
         self.fail("lull runs on")
 
-    def test_gives_no_time_while_all_samples_are_its_bound(self):
-        self.assertIn("0 of 4 blocks clean, 0 spp | 1 of 4 blocks clean, 0 spp, at most 6 h left", self.said("time"))
+    def test_gives_no_time_before_it_is_known(self):
+        self.assertIn("0 of 4 blocks clean, 0 spp | 1 of 4 blocks clean, 0 spp, at most 6 h left | "
+                      "0 of 4 blocks clean, 0 spp, done in 8 min to 13 min (80 %)", self.said("time"))
+
+    def test_has_a_seed_for_each_frame_and_the_caution_of_old_files(self):
+        first, second = [line for line in self.said("settings").split("\n") if line.startswith("--max-spp")]
+        self.assertIn("--seed 12 ", first)
+        self.assertIn("--quality draft", first)
+        self.assertIn("--seed 5 ", second)
+        self.assertIn("--caution 1.5", second)
+        self.assertNotIn("--quality", second)
 
     def test_says_why_there_is_no_picture(self):
         for name, message in (("no rule", "lull: --stop"), ("panoramic", "panoramic"), ("nowhere", "Program not found: /nowhere/lull"),
