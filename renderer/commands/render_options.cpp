@@ -205,6 +205,10 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
         AddOption(app, kCommonOptions, "--stop", &o->stop,
                   "Choose the stopping rule, listed below [learned; --denoise: denoised]", "RULE");
     AddCautionOptions(app, kCommonOptions, &o->render.caution);
+    AddOption(
+        app, "Stopping", "--importance", &o->importance,
+        "Multiply the caution of a block by 1 + the largest value, 0 to 1, of this image in it",
+        "MASK.png");
     AddOption(app, "Stopping", "--graded-by", &o->gradedBy,
               "Judge the image brightened by EV stops as well; the noisier counts", "EV",
               Between(-100.f, 100.f));
