@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -22,19 +23,16 @@ struct Forecast {
     std::string rule, scene;
     double spp = 0;  // samples per pixel when it is made, of the blocks at work
     double taken = 0, left = 0, truth = 0;  // samples of all blocks: taken, predicted, in the end
+    bool isHeld = false;                    // by the range that other scenes give
 
     double Exponent() const { return std::log(truth / taken) / std::log1p(left / taken); }
-    bool IsHeld() const {
-        const auto [least, most] = RangeOfRest(taken, left);
-        return least <= truth - taken && truth - taken <= most;
-    }
 };
 
 // A block that its rule has stopped, or that is recorded to the cap.
 struct Replayed {
     std::vector<int> spp;
-    std::vector<Decision> decisions;
-    std::vector<std::optional<double>> noise;
+    std::vector<Decision> decisions = {};
+    std::vector<std::optional<double>> noise = {};
     int stop = 0;
 };
 
@@ -119,13 +117,13 @@ double QuantileOf(const std::vector<Forecast>& forecasts, double share,
     return exponents.back().first;
 }
 
-template <typename Which, typename Holds>
-int Percent(const std::vector<Forecast>& forecasts, const Which& which, const Holds& holds) {
+template <typename Which>
+int PercentHeld(const std::vector<Forecast>& forecasts, const Which& which) {
     int all = 0, held = 0;
     for (const Forecast& f : forecasts)
         if (which(f)) {
             ++all;
-            held += holds(f);
+            held += f.isHeld;
         }
     return all > 0 ? int(std::lround(100. * held / all)) : 0;
 }
@@ -133,43 +131,37 @@ int Percent(const std::vector<Forecast>& forecasts, const Which& which, const Ho
 // The exponents of RangeOfRest() are these quantiles, and those of other scenes hold a scene as
 // often as tests/measurements/models.md says.
 TEST(RecordedForecasts, AreHeldByTheirRanges) {
-    const std::vector<Forecast> forecasts = ForecastsOfRecordings();
+    std::vector<Forecast> forecasts = ForecastsOfRecordings();
     const auto [least, most] = RangeOfRest(1, std::exp(1.) - 1);  // e^exponent - 1
     EXPECT_NEAR(std::log1p(least), QuantileOf(forecasts, kTail), 0.01);
     EXPECT_NEAR(std::log1p(most), QuantileOf(forecasts, 1 - kTail), 0.01);
 
-    std::map<std::string, std::array<double, 2>> others;  // exponents from the other scenes
+    std::map<std::string, std::array<double, 2>> ranges;  // of exponents, from the other scenes
     for (const Forecast& f : forecasts)
-        if (!others.contains(f.scene))
-            others[f.scene] = {QuantileOf(forecasts, kTail, f.scene),
+        if (!ranges.contains(f.scene))
+            ranges[f.scene] = {QuantileOf(forecasts, kTail, f.scene),
                                QuantileOf(forecasts, 1 - kTail, f.scene)};
-    const auto isHeldOut = [&](const Forecast& f) {
-        const auto& [low, high] = others.at(f.scene);
-        return low <= f.Exponent() && f.Exponent() <= high;
-    };
-    std::string table;
-    for (const char* rule : kRules) {
-        const auto isOf = [&](const Forecast& f) { return f.rule == rule; };
-        table += fmt::format("{} {} {} |", rule, Percent(forecasts, isOf, &Forecast::IsHeld),
-                             Percent(forecasts, isOf, isHeldOut));
-        for (const double from : {60., 120., 240., 480., 960., 1920.})
-            table += fmt::format(" {}", Percent(
-                                            forecasts,
-                                            [&](const Forecast& f) {
-                                                return isOf(f) && from <= f.spp &&
-                                                       f.spp < (from < 1900 ? 2 * from : kCap);
-                                            },
-                                            isHeldOut));
-        table += "\n";
+    for (Forecast& f : forecasts) {
+        const auto& [low, high] = ranges.at(f.scene);
+        f.isHeld = low <= f.Exponent() && f.Exponent() <= high;
     }
-    for (const auto& [scene, range] : others)
-        table += fmt::format(
-            "{} {}\n", scene,
-            Percent(
-                forecasts, [&](const Forecast& f) { return f.scene == scene; }, isHeldOut));
-    const int held = Percent(
-        forecasts, [](const Forecast&) { return true; }, isHeldOut);
-    EXPECT_NEAR(held, 81, 2) << table;
+    std::string table;
+    for (const std::string rule : kRules) {
+        const auto heldFrom = [&](double from, double to) {
+            return PercentHeld(forecasts, [&](const Forecast& f) {
+                return f.rule == rule && from <= f.spp && f.spp < to;
+            });
+        };
+        table += fmt::format("{} {} |", rule, heldFrom(0, kCap));
+        for (const double from : {60., 120., 240., 480., 960.})
+            table += fmt::format(" {}", heldFrom(from, 2 * from));
+        table += fmt::format(" {}\n", heldFrom(1920, kCap));
+    }
+    for (const auto& [scene, range] : ranges)
+        table += fmt::format("{} {}\n", scene, PercentHeld(forecasts, [&](const Forecast& f) {
+                                 return f.scene == scene;
+                             }));
+    EXPECT_NEAR(PercentHeld(forecasts, [](const Forecast&) { return true; }), 81, 2) << table;
 }
 
 }  // namespace
