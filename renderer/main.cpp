@@ -90,9 +90,11 @@ std::string ProblemOfRemoved(std::span<const char* const> words) {
 }
 
 // Names that other programs have for options.
-constexpr std::pair<const char*, const char*> kElsewhere[] = {
-    {"--samples", "--spp"}, {"--res", "--resolution"}, {"--size", "--resolution"},
-    {"--max-spp", "--cap"}, {"--tile", "--block"},     {"--noise-threshold", "--caution"}};
+constexpr std::pair<const char*, const char*> kElsewhere[] = {{"--samples", "--spp"},
+                                                              {"--res", "--resolution"},
+                                                              {"--size", "--resolution"},
+                                                              {"--tile", "--block"},
+                                                              {"--noise-threshold", "--caution"}};
 
 // Returns which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {

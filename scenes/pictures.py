@@ -88,7 +88,7 @@ TITLES = {  # of the gallery, in its order
     "direct": "direct light stops early", "textured": "texture hides noise", "gltf": "a glTF model", "many-lights": "67 lamps",
     "cornell": "light by way of walls", "glossy": "metal that sees metal", "dark": "a dark room, a door",
     "caustic": "light through glass"}
-GALLERY = dict(resolution="400x400", block=200, cap=2000)
+GALLERY = dict(resolution="400x400", block=200, max_spp=2000)
 # Viridis at equal steps: as the program's own map of samples.
 VIRIDIS = [(68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137), (53, 183, 121),
            (110, 206, 88), (181, 222, 43), (253, 231, 37)]
@@ -125,7 +125,7 @@ def gallery():
     for place, (name, (report, image)) in enumerate(renders.items()):
         x = gap + place % columns * (pair + gap)
         y = gap + place // columns * (side + text + gap)
-        mean, cap = report["totals"]["samples"] / (image.width * image.height), GALLERY["cap"]
+        mean, cap = report["totals"]["samples"] / (image.width * image.height), GALLERY["max_spp"]
         draw.text((x, y + 4), name, fill=INK, font=bold)
         draw.text((x, y + 24), TITLES[name], fill=FAINT, font=plain)
         draw.text((x + pair, y + 4), f"{100 * (1 - mean / cap):.0f} % saved", fill=INK, font=bold, anchor="ra")

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <numeric>
@@ -31,12 +33,52 @@ int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule)
     return std::max(1, length);
 }
 
+// Returns the largest value in [0, 1] of a mask, stretched over an image of `size`, in these
+// pixels.
+float LargestIn(const Image& mask, const PixelRect& pixels, const Vec2i& size) {
+    const std::array<int64_t, 2> extent = {mask.width, mask.height};
+    const auto begin = [&](int i) { return pixels.min[i] * extent[size_t(i)] / size[i]; };
+    const auto end = [&](int i) { return (pixels.max[i] * extent[size_t(i)] - 1) / size[i] + 1; };
+    const int colours = mask.channels < 3 ? 1 : 3;
+    float largest = 0;
+    const auto visit = [&]<typename T>(const std::vector<T>& texels) {
+        const float scale = std::is_same_v<T, uint8_t> ? 255 : 1;
+        for (int64_t y = begin(1); y < end(1); ++y)
+            for (int64_t x = begin(0); x < end(0); ++x)
+                for (int c = 0; c < colours; ++c)
+                    largest = std::max(
+                        largest,
+                        float(texels[size_t((y * extent[0] + x) * mask.channels + c)]) / scale);
+    };
+    std::visit(visit, mask.texels);
+    return std::min(largest, 1.f);
+}
+
+// Returns the caution of each block by the mask, in eighths of that of the settings: there are nine
+// rules at the most. Blocks that do not vote add theirs to their leader.
+std::vector<double> ReadCautions(const PreparedRender& p) {
+    const Image mask = ReadImage(p.request.importance);
+    const FilmSettings& film = p.filmSettings;
+    std::vector<double> cautions;
+    for (const Block& block : p.blocks) {
+        PixelRect pixels = block.pixels;
+        if (pixels.min.x() >= film.cropMax.x())  // of the right eye
+            for (Vec2i* corner : {&pixels.min, &pixels.max}) corner->x() -= film.Size().x();
+        const double largest = std::round(8 * LargestIn(mask, pixels, film.resolution)) / 8;
+        cautions.push_back(p.settings.caution * (1 + largest));
+    }
+    for (size_t i = 0; i < p.blocks.size(); ++i)
+        if (const int leader = p.blocks[i].leader; leader >= 0)
+            cautions[size_t(leader)] = std::max(cautions[size_t(leader)], cautions[i]);
+    return cautions;
+}
+
 // Reads the rule, lets the schedule suit it, and cuts the blocks.
 void PrepareRule(PreparedRender* p) {
     RenderSettings& settings = p->settings;
     ScheduleOptions& schedule = settings.schedule;
     const std::string rule = p->request.Rule();
-    // A fixed number of samples is its own cap; with --cap the smaller of both holds.
+    // A fixed number of samples is its own cap; with --max-spp the smaller of both holds.
     if (settings.cap) schedule.cap = *settings.cap;
     if (const int spp = FixedSpp(rule))
         schedule.cap = settings.cap ? std::min(*settings.cap, spp) : spp;
@@ -51,6 +93,10 @@ void PrepareRule(PreparedRender* p) {
     schedule.smallestSide = p->rule.smallestSide;
     p->blocks = MakeBlocks(p->region, schedule);
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
+    if (p->request.importance.empty()) return;
+    p->ReadRule("--importance", rule, 2 * settings.caution);  // has to be one that takes caution
+    p->cautions = ReadCautions(*p);
+    p->rule.text += ", importance " + FileChecksum(p->request.importance);
 }
 
 // Warns of blocks that no criterion will ever stop.
@@ -159,7 +205,8 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     CheckFilmFits(region, p->film, BytesBeside(request));
     p->files = NameFilesOf(request, p->filmSettings);
     std::vector<NamedFile> inputs;
-    AddFileOfRule(p->rule.text, &inputs);
+    AddFileOfRule(request.Rule(), &inputs);
+    inputs.push_back({"--importance", request.importance});
     p->CheckFiles(OutputsOf(p->files), std::move(inputs));
     p->LockResults(p->files.exr);
     p->display = MakeDisplay(request, std::filesystem::path(p->files.exr).filename(), region,

@@ -27,7 +27,8 @@ struct PreparedRender : RenderJob {
     const std::function<double()> clock;  // started before the scene was read
     const std::vector<Grade> grades;
     Rule rule;
-    std::vector<Block> blocks;  // without samples
+    std::vector<Block> blocks;     // without samples
+    std::vector<double> cautions;  // of the blocks, by --importance; empty: that of the settings
     FilmOptions film;
     RenderFiles files;
     std::unique_ptr<Display> display;  // null: none

@@ -31,9 +31,22 @@ CriterionMaker MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& gr
     };
 }
 
+// Returns the maker of criteria by the caution of each block.
+CriterionMaker MakeCautiousCriteria(const PreparedRender& p) {
+    if (p.cautions.empty()) return MakeGradedCriteria(p.rule, p.grades);
+    std::map<double, CriterionMaker> makers;
+    for (const double caution : p.cautions)
+        if (CriterionMaker& maker = makers[caution]; !maker)
+            maker =
+                MakeGradedCriteria(p.ReadRule("--importance", p.request.Rule(), caution), p.grades);
+    return [makers, cautions = p.cautions](const BlockInfo& info) {
+        return makers.at(cautions[size_t(info.index)])(info);
+    };
+}
+
 // Returns the maker of the criteria; for a page, they also keep the curves of each block.
 CriterionMaker MakeCriterionMaker(PreparedRender* p) {
-    CriterionMaker criteriaOf = MakeGradedCriteria(p->rule, p->grades);
+    CriterionMaker criteriaOf = MakeCautiousCriteria(*p);
     if (!p->request.HasPage()) return criteriaOf;
     return [criteriaOf, p](const BlockInfo& info) {
         std::vector<std::unique_ptr<Criterion>> rules;
@@ -292,6 +305,7 @@ ExitCode RunSequence(const RenderRequest& request, MpiJob* ranks) {
         const double time = request.sequence->TimeOf(number - 1);
         frame.frameNumber = number;
         frame.render.scene.view.frame = time;
+        if (!request.sameSeed) frame.render.seed += uint64_t(number);
         CheckpointOptions& checkpoint = frame.render.checkpoint;
         checkpoint.file = NumberedFile(checkpoint.file, number);
         std::string note;

@@ -23,8 +23,8 @@ std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     if (kind == RuleTrend::Samples)
         return fmt::format("{} of {} blocks done", p.stoppedBlocks, p.blocks);
     std::string text =
-        fmt::format("{} of {} blocks stopped", p.stoppedBlocks - p.blocksAtCap, p.blocks);
-    if (p.blocksAtCap > 0) text += fmt::format(", {} at the cap and not stopped", p.blocksAtCap);
+        fmt::format("{} of {} blocks clean", p.stoppedBlocks - p.blocksAtCap, p.blocks);
+    if (p.blocksAtCap > 0) text += fmt::format(", {} at the cap and not clean", p.blocksAtCap);
     return text;
 }
 
@@ -85,9 +85,10 @@ std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
     }
     if (capped.size() > kShown) text += fmt::format("  and {} more\n", capped.size() - kShown);
     const int cap = CapFor(capped, provenance.schedule.cap);
-    return text + (cap > 0 ? fmt::format("estimated sufficient --cap: {}\n", cap)
-                           : fmt::format("cannot estimate a sufficient --cap yet; try --cap {}\n",
-                                         2 * provenance.schedule.cap));
+    return text +
+           (cap > 0 ? fmt::format("estimated sufficient --max-spp: {}\n", cap)
+                    : fmt::format("cannot estimate a sufficient --max-spp yet; try --max-spp {}\n",
+                                  2 * provenance.schedule.cap));
 }
 
 // Returns the shortfall at the deadline. The noise of blocks is not known within their first pass,
@@ -103,7 +104,7 @@ std::string ShortfallOf(const Provenance& provenance, const RenderResult& result
             "{} block{} without a noise estimate: no pass of {} spp ended in this run\n", unknown,
             unknown == 1 ? "" : "s", provenance.schedule.passLength);
     if (noisy.empty()) return text;
-    text += "blocks not stopped, with their masked noise in L*:\n";
+    text += "blocks not clean, with their masked noise in L*:\n";
     for (size_t i = 0; i < std::min(kShown, noisy.size()); ++i) {
         const Block& block = result.blocks[size_t(noisy[i].block)].block;
         text += fmt::format(
@@ -217,7 +218,7 @@ std::function<void(int, const Block&)> StopEvents(RuleTrend::Kind kind) {
         PrintToStderr(R"({{"event":"stop","block":{},"x":{},"y":{},"spp":{},"end":"{}"}})"
                       "\n",
                       index, block.pixels.min.x(), block.pixels.min.y(), block.spp,
-                      atCap ? "cap" : "stopped");
+                      atCap ? "cap" : "clean");
     };
 }
 
@@ -225,7 +226,7 @@ void SayEnd(const ResultFiles& files, const RenderResult& result, int64_t reject
     for (const std::string& name : files.Names())
         PrintToStderr("{}", JsonEvent("file", name, "path"));
     const RenderProgress& p = result.progress;
-    PrintToStderr(R"({{"event":"end","end":"{}","blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
+    PrintToStderr(R"({{"event":"end","end":"{}","blocks":{},"cleanBlocks":{},"blocksAtCap":{},)"
                   R"("medianSpp":{},"samples":{},"rejectedSamples":{},"seconds":{:.3f}}})"
                   "\n",
                   result.cancelled ? "interrupted"

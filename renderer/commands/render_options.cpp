@@ -32,10 +32,10 @@ constexpr const char* kFooter =
 
 Examples:
   lull render scene.pbrt -o image.exr
-  lull render scene.pbrt --stop lnoise:0.3 --cap 2000 --report report.html
+  lull render scene.pbrt --stop lnoise:0.3 --max-spp 2000 --report report.html
   lull render scene.pbrt --spp 64 --resolution 400x300
   lull render scene.pbrt --checkpoint c.h5 --resume    # the same again after an interruption
-  lull render scene.pbrt --checkpoint c.h5 --resume --keep-checkpoint --cap 20000    # and more
+  lull render scene.pbrt --checkpoint c.h5 --resume --keep-checkpoint --max-spp 20000
   lull render scene.pbrt --preview 60                  # writes the current image every minute
   lull render scene.pbrt --until 09:00                 # ends then, noisiest blocks first
   mpirun -n 4 lull render scene.pbrt                   # on several machines, if built with MPI
@@ -149,18 +149,22 @@ void AddWorkOptions(CLI::App& app, RenderRequest* o) {
               CheckBy([](const std::string& text) { NextTimeOfDay(text, 0); }))
         ->excludes(time);
     CLI::Option* frame = app.get_option("--frame");
-    AddOption(app, "Scene", "--frames", ParseSequence, &o->sequence,
-              "FROM:TO:FPS such as 0:2:24fps, with 0 <= FROM <= TO and at most 99999 frames",
-              "glTF: render the frames from FROM to TO seconds, as OUT.0001.exr, ...",
-              "FROM:TO:FPS")
-        ->excludes(frame);
+    auto* frames =
+        AddOption(app, "Scene", "--frames", ParseSequence, &o->sequence,
+                  "FROM:TO:FPS such as 0:2:24fps, with 0 <= FROM <= TO and at most 99999 frames",
+                  "glTF: render the frames from FROM to TO seconds, as OUT.0001.exr, ...",
+                  "FROM:TO:FPS")
+            ->excludes(frame);
+    AddOption(app, "Scene", "--same-seed", &o->sameSeed,
+              "Render all frames with --seed S; else OUT.000n.exr has the seed S + n")
+        ->needs(frames);
     // --frames satisfies these as well.
     for (const char* name : {"--animation", "--shutter"}) app.get_option(name)->remove_needs(frame);
     CheckpointOptions* checkpoint = &o->render.checkpoint;
     AddCheckpointOptions(app, checkpoint);
     checkpoint->mayDiffer = MayDiffer::Stops;
     AddOption(app, "Interruption", "--keep-checkpoint", &checkpoint->isKept,
-              "Keep the checkpoint at the end, for a larger --cap or another rule")
+              "Keep the checkpoint at the end, for a larger --max-spp or another rule")
         ->needs(app.get_option("--checkpoint"));
 }
 
@@ -200,7 +204,11 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     auto* stop =
         AddOption(app, kCommonOptions, "--stop", &o->stop,
                   "Choose the stopping rule, listed below [learned; --denoise: denoised]", "RULE");
-    AddCautionOption(app, &o->render.caution)->group(kCommonOptions);
+    AddCautionOptions(app, kCommonOptions, &o->render.caution);
+    AddOption(
+        app, "Stopping", "--importance", &o->importance,
+        "Multiply the caution of a block by 1 + the largest value, 0 to 1, of this image in it",
+        "MASK.png");
     AddOption(app, "Stopping", "--graded-by", &o->gradedBy,
               "Judge the image brightened by EV stops as well; the noisier counts", "EV",
               Between(-100.f, 100.f));
@@ -239,7 +247,7 @@ void CheckRequest(const RenderRequest& request) {
         request.denoiseLayers && spp < int(kLeastDenoisedSpp))
         throw UsageError(fmt::format(
             "--{}{}: --denoise-layers needs at least {}, to estimate the noise",
-            isFixed ? (request.spp ? "spp " : "stop fixed:") : "cap ", spp, kLeastDenoisedSpp));
+            isFixed ? (request.spp ? "spp " : "stop fixed:") : "max-spp ", spp, kLeastDenoisedSpp));
 }
 
 std::function<double()> StartClock(const RenderRequest& request) {

@@ -27,6 +27,7 @@ struct RenderRequest {
     std::string time, until;     // of a clock, as given; both empty: none
     std::string output, report;  // empty: as the scene says; none
     std::optional<std::string> stop;
+    std::string importance;  // file of the mask that raises the caution of blocks; empty: none
     std::optional<int> spp;  // nothing: as the rule says
     AovSet aovs;
     std::vector<std::string> lightGroups;  // their names; empty: none
@@ -41,7 +42,8 @@ struct RenderRequest {
     std::optional<Vec2i> pixel;
     int sample = 0;
     std::optional<Sequence> sequence;
-    int frameNumber = 0;  // in the sequence, from 1; 0: there is none
+    int frameNumber = 0;    // in the sequence, from 1; 0: there is none
+    bool sameSeed = false;  // for all frames; else frame n has the seed of the settings plus n
 
     // Returns the rule of --stop, --spp and --denoise.
     std::string Rule() const;

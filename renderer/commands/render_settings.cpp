@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 
@@ -85,6 +86,13 @@ void AddGltfOptions(CLI::App& app, GltfOptions* view) {
     AddOption(app, "Scene", "--solid-glass", &view->solidGlass,
               "glTF: treat transmissive surfaces without a volume as solid");
 }
+
+struct Quality {
+    std::string_view name;
+    double caution;
+};
+
+constexpr Quality kQualities[] = {{"draft", 0.5}, {"good", 1}, {"final", 2}};
 
 }  // namespace
 
@@ -178,17 +186,30 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator) {
         ->group("Advanced");
 }
 
-CLI::Option* AddCautionOption(CLI::App& app, double* caution) {
+void AddCautionOptions(CLI::App& app, const char* group, double* caution) {
     const std::string rules = RuleNames([](const RuleEntry& rule) { return rule.takesCaution; });
-    return AddOption(app, kOptions, "--caution", caution,
-                     "Allow 1/X of the noise with " + rules +
-                         ": multiply the noise that networks receive by X, divide limits by X",
-                     "X", Between(0.01, 100.0));
+    auto* number =
+        AddOption(app, group, "--caution", caution,
+                  "Allow 1/X of the noise with " + rules +
+                      ": multiply the noise that networks receive by X, divide limits by X",
+                  "X", Between(0.01, 100.0));
+    std::vector<std::string> names;
+    for (const auto& [name, value] : kQualities) names.emplace_back(name);
+    app.add_option_function<std::string>(
+           "--quality",
+           [caution](const std::string& name) {
+               *caution = std::ranges::find(kQualities, name, &Quality::name)->caution;
+           },
+           "Allow twice the noise of good, the default, or half: --caution 0.5, 1 or 2")
+        ->group(group)
+        ->check(OneOf(names))
+        ->type_name(fmt::format("{}", fmt::join(names, "|")))
+        ->excludes(number);
 }
 
 void AddRenderSettings(CLI::App& app, RenderSettings* s) {
     AddSceneOptions(app, &s->scene);
-    AddOption(app, kCommonOptions, "--cap", &s->cap,
+    AddOption(app, kCommonOptions, kCapOption, &s->cap,
               "Stop every block at N spp at the latest [10000]", "N", Between(1, 1 << 24));
     AddOption(app, "Stopping", "--pass", &s->schedule.passLength, "Decide every N spp", "N",
               Between(1, 1 << 20));

@@ -58,15 +58,18 @@ struct RenderSettings {
     bool quiet = false, jsonProgress = false;
 };
 
-// Adds the options of the scene, --cap, --pass, --block, --sampler, --estimator, --seed, --quiet
-// and --json-progress.
+// The cap by its name and by a shorter one.
+inline constexpr const char* kCapOption = "--max-spp,--cap";
+
+// Adds the options of the scene, --max-spp, --pass, --block, --sampler, --estimator, --seed,
+// --quiet and --json-progress.
 void AddRenderSettings(CLI::App& app, RenderSettings* settings);
 
 // Adds --estimator, which stays as it is where the user says nothing.
 void AddEstimatorOption(CLI::App& app, Estimator* estimator);
 
-// Adds --caution.
-CLI::Option* AddCautionOption(CLI::App& app, double* caution);
+// Adds --caution, and its names, --quality, to a group of the help.
+void AddCautionOptions(CLI::App& app, const char* group, double* caution);
 
 // Adds --checkpoint, --checkpoint-interval and --resume.
 void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options);

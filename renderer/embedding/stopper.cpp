@@ -125,7 +125,7 @@ Stopper::BlockState Stopper::MakeState(int block) const {
                          MakeCriterion(rule, {block, rect.width * double(rect.height) / pixels})};
     state.answer.next_spp = firstCheck;
     state.answer.probability = rule->trend.kind == RuleTrend::Probability ? 1 : -1;
-    state.answer.visible_noise = -1;
+    state.answer.masked_noise = -1;
     state.answer.votes_needed = rule->trend.votes;
     return state;
 }
@@ -256,7 +256,7 @@ void Stopper::Check(int block, const lull_picture& picture, const lull_rect& par
     answer.value = decision.value;
     answer.threshold = decision.threshold;
     if (rule->trend.kind == RuleTrend::Probability) answer.probability = decision.value;
-    if (!half.empty()) answer.visible_noise = VisibleNoise(view);
+    if (!half.empty()) answer.masked_noise = VisibleNoise(view);
     answer.next_spp = answer.stop || spp == std::numeric_limits<int>::max()
                           ? 0
                           : NextCheck(*state.criterion, spp + 1);

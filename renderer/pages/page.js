@@ -50,7 +50,7 @@ function startPage(kind, sentence, facts, parts) {
 
 // The figures and curves of a block, and the tables.
 
-const blockEnds = {stopped: "clean: stopped by the rule", cap: "at the cap, still noisy", interrupted: "interrupted", time: "out of time"};
+const blockEnds = {clean: "clean: stopped by the rule", cap: "at the cap, still noisy", interrupted: "interrupted", time: "out of time"};
 
 function showBlock(data, i) {
   const block = data.blocks[i];
@@ -65,7 +65,7 @@ function showBlock(data, i) {
   add("CPU time of the rule", b => b.ruleSeconds > 0, b => showSeconds(b.ruleSeconds));
   if (page.blockRows) page.blockRows(i, images, add, rows);
   if (block.end) rows.push(["end", blockEnds[block.end]]);
-  if (isNumber(block.visibleNoise)) rows.push(["masked noise, L*", block.visibleNoise.toFixed(2)]);
+  if (isNumber(block.maskedNoise)) rows.push(["masked noise, L*", block.maskedNoise.toFixed(2)]);
   const error = block.visibleDifference;
   if (error) rows.push(["visible difference, denoised", `${error.estimate.toFixed(1)}, upper bound ${error.upper.toFixed(1)}`]);
   if (error && error.worstPixels) rows.push(["worst pixels, not in it", `${showCount(error.worstPixels)}, by up to ${error.worst.toFixed(0)} in L*`]);

@@ -4,13 +4,13 @@
 const countOfBlocks = n => n === 1 ? "1 block" : `${showCount(n)} blocks`;
 
 function sayRender(data) {
-  const t = data.totals, all = t.blocks, open = all - t.stoppedBlocks - t.blocksAtCap;
+  const t = data.totals, all = t.blocks, open = all - t.cleanBlocks - t.blocksAtCap;
   const spp = data.images[0].blocks.map(b => b.spp), [least, most] = [Math.min(...spp), Math.max(...spp)];
   const each = (least === most ? showCount(least) : `${showCount(least)} to ${showCount(most)}`) + " samples per pixel";
   const start = `${t.interrupted ? "Interrupted after" : "Rendered in"} ${showSeconds(t.seconds)}: `;
   if (/^(fixed|thresholds)/.test(data.provenance.criterion)) return `${start}${each}, without a stopping rule.`;
-  if (t.stoppedBlocks === all) return `${start}${all === 1 ? "its only block is" : `all ${showCount(all)} blocks are`} clean, at ${each}.`;
-  return start + [`${showCount(t.stoppedBlocks)} of ${countOfBlocks(all)} ${t.stoppedBlocks === 1 ? "is" : "are"} clean`,
+  if (t.cleanBlocks === all) return `${start}${all === 1 ? "its only block is" : `all ${showCount(all)} blocks are`} clean, at ${each}.`;
+  return start + [`${showCount(t.cleanBlocks)} of ${countOfBlocks(all)} ${t.cleanBlocks === 1 ? "is" : "are"} clean`,
     t.blocksAtCap ? `${showCount(t.blocksAtCap)} at the cap of ${showCount(data.cap)} samples per pixel, still noisy` : "",
     open ? `${showCount(open)} not finished` + (t.timeUp ? " in time" : "") : ""].filter(s => s).join("; ") + ".";
 }
@@ -21,7 +21,7 @@ function showTotals(data) {
   if (!t) return;
   byId("summary").hidden = false;
   byId("summary-tables").append(makeTable("", null, [
-    ["clean blocks", `${t.stoppedBlocks} of ${t.blocks}`],
+    ["clean blocks", `${t.cleanBlocks} of ${t.blocks}`],
     ...(t.blocksAtCap ? [["at the cap, still noisy", String(t.blocksAtCap)]] : []),
     ...(isNumber(t.neededCap) ? [["estimated maximum spp needed", showCount(t.neededCap) + " spp"]] : []),
     ["median sample count", showCount(t.medianSpp) + " spp"],

@@ -17,6 +17,9 @@ constexpr double kMostLevel = 12;  // of numbers that are 0, infinite or certain
 // Above this share of the highest level of all blocks, a network counts as sure as it can be: the
 // layers of an LSTM are bounded, and so are its odds.
 constexpr double kCertain = 0.85;
+// Of numbers that saturate, before there is a slope to be seen: the mean of this and -0.5 is that
+// of recordings from 60 to 140 spp on.
+constexpr double kFirstSlope = -0.36;
 // A slope that this many points show counts as much as that of the other blocks.
 constexpr double kPointsOfOthers = 4;
 
@@ -55,19 +58,17 @@ double CertainLevel(std::span<const StopTrend> trends) {
 // Returns the median of the slopes that the blocks show; 0 if there is none.
 double UsualSlope(std::span<const StopTrend> trends, double certain) {
     std::vector<double> slopes;
-    bool isPower = false;
+    bool isPower = false, saturates = false;
     for (const StopTrend& trend : trends) {
         const StopTrend::Line line = trend.Fit(certain);
         isPower |=
             trend.LastSpp() > 0 && trend.Rule().kind != RuleTrend::Samples && !trend.IsOfOdds();
+        saturates |= trend.Rule().saturates;
         if (line.slope != 0) slopes.push_back(Bounded(trend, line.slope));
     }
-    if (slopes.empty()) return isPower ? -0.5 : 0;
+    if (slopes.empty()) return saturates ? kFirstSlope : isPower ? -0.5 : 0;
     return MedianOf(&slopes);
 }
-
-// Returns 1/N, and 0 where there is no picture at N spp that noise is compared with.
-double InverseOf(double reference) { return reference > 0 ? 1.0 / reference : 0; }
 
 // At which spp a block stops, without regard to the cap.
 struct Stop {
@@ -95,11 +96,18 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
 }  // namespace
 
 double StopTrend::Abscissa(double spp) const {
-    return -std::log(std::max(1 / spp - InverseOf(rule.reference), 1e-9));
+    if (rule.reference == 0) return std::log(spp);
+    return std::log(spp) - 2 * rule.nearness * std::log(std::max(1 - spp / rule.reference, 1e-6));
 }
 
 double StopTrend::SppAt(double abscissa) const {
-    return 1 / (std::exp(-abscissa) + InverseOf(rule.reference));
+    if (rule.reference == 0) return std::exp(abscissa);
+    double below = 0, above = rule.reference;
+    for (int i = 0; i < 50; ++i) {
+        const double middle = (below + above) / 2;
+        (Abscissa(middle) < abscissa ? below : above) = middle;
+    }
+    return above;
 }
 
 void StopTrend::Add(int spp, const Decision& decision, std::optional<double> noise) {
@@ -174,6 +182,14 @@ std::optional<std::vector<double>> PredictStops(std::span<const StopTrend> trend
         if (const int leader = blocks[i].leader; !blocks[i].votes)
             stops[i] = bounded(i, leader < 0 ? double(cap) : stops[size_t(leader)]);
     return stops;
+}
+
+std::array<double, 2> RangeOfRest(double taken, double left) {
+    constexpr double kLeastExponent = 0.86, kMostExponent = 1.19;
+    const auto rest = [=](double exponent) {
+        return taken * (std::pow(1 + left / taken, exponent) - 1);
+    };
+    return {rest(kLeastExponent), rest(kMostExponent)};
 }
 
 double ParseDuration(const std::string& text) {

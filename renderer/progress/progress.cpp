@@ -21,6 +21,7 @@ struct TimeLeft {
 
     double seconds;
     End end;
+    std::optional<std::array<double, 2>> range = {};  // of a prediction, in seconds
 
     bool IsBound() const { return end == End::Cap || end == End::Limit; }
 };
@@ -32,17 +33,20 @@ std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool ada
     if (p.samplesToCap == 0)
         left = {0, adaptive ? End::Cap : End::Work};
     else if (adaptive && p.predictedSeconds)
-        left = {*p.predictedSeconds, End::Prediction};
-    else if (rate > 0)
+        left = {*p.predictedSeconds, End::Prediction, p.secondsRange};
+    else if (rate > 0 && (!adaptive || p.stoppedBlocks > 0))
         left = {double(p.samplesToCap) / rate, adaptive ? End::Cap : End::Work};
     if (!p.secondsLeft) return left;
     const double clock = std::max(0.0, *p.secondsLeft);
+    if (left && left->range)
+        for (double& end : *left->range) end = std::min(end, clock);
     if (!left || clock < left->seconds) left = {clock, adaptive ? End::Limit : End::Work};
     return left;
 }
 
 std::string TextOf(const TimeLeft& left) {
     const std::string time = FormatDuration(left.seconds);
+    if (left.range) return "done in " + FormatRange(*left.range) + " (80 %)";
     return left.end == TimeLeft::End::Prediction ? "about " + time + " left"
            : left.end == TimeLeft::End::Cap      ? time + " to the cap"
            : left.end == TimeLeft::End::Limit    ? "at most " + time + " left"
@@ -81,6 +85,14 @@ std::string FormatDuration(double seconds) {
     const int64_t s = int64_t(std::min(seconds, 1e15) + 0.5);
     if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
     return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+std::string FormatRange(const std::array<double, 2>& seconds) {
+    const auto [unit, name] = seconds[1] < 120    ? std::pair(1, "s")
+                              : seconds[1] < 7200 ? std::pair(60, "min")
+                                                  : std::pair(3600, "h");
+    return fmt::format("{:.0f} to {:.0f} {}", std::floor(seconds[0] / unit),
+                       std::ceil(seconds[1] / unit), name);
 }
 
 std::string FormatCount(double count) {
@@ -126,12 +138,16 @@ std::string ProgressJson(const ProgressState& state) {
     const std::string remaining = p.samplesToCap == 0 ? "0"
                                   : left              ? fmt::format("{:.3f}", left->seconds)
                                                       : "null";
+    const std::string range =
+        left && left->range ? fmt::format("[{:.3f},{:.3f}]", (*left->range)[0], (*left->range)[1])
+                            : "null";
     return fmt::format(
-        R"({{"event":"progress","percent":{:.2f},"blocks":{},"stoppedBlocks":{},"blocksAtCap":{},)"
+        R"({{"event":"progress","percent":{:.2f},"blocks":{},"cleanBlocks":{},"blocksAtCap":{},)"
         R"("medianSpp":{},"samples":{},"samplesPerSecond":{:.1f},"elapsedSeconds":{:.3f},)"
-        R"("remainingSeconds":{},"remainingIsUpperBound":{}}})",
+        R"("remainingSeconds":{},"remainingRange":{},"remainingIsUpperBound":{}}})",
         100 * state.share, p.blocks, p.stoppedBlocks - p.blocksAtCap, p.blocksAtCap, p.medianSpp,
-        p.samples, state.rate, p.seconds, remaining, left ? left->IsBound() : state.adaptive);
+        p.samples, state.rate, p.seconds, remaining, range,
+        left ? left->IsBound() : state.adaptive);
 }
 
 ProgressStyle StyleOfReports(bool json, bool quiet) {
@@ -156,7 +172,10 @@ void ProgressPrinter::Print(const RenderProgress& p) {
     rate.Add(p);
     share = std::max(share, ShareDone(p));
     const ProgressState state{p, share, rate.SamplesPerSecond(), adaptive};
-    if (style == ProgressStyle::Plain && p.seconds < nextPlainLine) return;
+    // The first forecast of a long render does not wait for its turn.
+    const bool isNews = !hasForecast && p.secondsRange && (*p.secondsRange)[1] > 30;
+    if (style == ProgressStyle::Plain && p.seconds < nextPlainLine && !isNews) return;
+    hasForecast |= p.secondsRange.has_value();
     last = p;
     if (style == ProgressStyle::Plain) nextPlainLine = p.seconds + 30;
     // A line that is full would continue in the next.

@@ -1,6 +1,7 @@
 // Progress of a render: a line on a terminal, plain lines in a log, or JSON for programs.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -19,8 +20,9 @@ struct RenderProgress {
     double seconds = 0;                      // since the start
     std::optional<double> secondsLeft = {};  // of a clock that ends the render
     // Still to take until the rule has stopped all blocks, and how long that takes, if it can be
-    // predicted.
+    // predicted; and the range that holds the seconds in 80 of 100 renders (RangeOfRest()).
     std::optional<double> predictedSamples = {}, predictedSeconds = {};
+    std::optional<std::array<double, 2>> secondsRange = {};
 
     bool operator==(const RenderProgress&) const = default;
 };
@@ -41,7 +43,8 @@ class RateMeter {
 double ShareDone(const RenderProgress&);
 
 // Contents of a progress report. If blocks stop by themselves (`adaptive`) the time left is a
-// prediction or, while there is none, an upper bound, which the text says.
+// prediction; while there is none, an upper bound, as the text says, or before the first block has
+// stopped nothing.
 struct ProgressState {
     RenderProgress progress;
     double share = 0;  // done, in [0, 1]
@@ -54,6 +57,8 @@ struct ProgressState {
 std::string ProgressText(const ProgressState&, int columns = 0);
 std::string ProgressJson(const ProgressState&);
 
+// Formats a range of seconds as "9 to 14 min": seconds, minutes or hours, rounded outwards.
+std::string FormatRange(const std::array<double, 2>& seconds);
 // Formats seconds as "12.3s", "4:05" or "1:02:03".
 std::string FormatDuration(double seconds);
 // Formats a count with three digits and k, M, G or T.
@@ -90,6 +95,7 @@ class ProgressPrinter {
     RateMeter rate;
     double share = 0;                    // the most that was printed
     std::optional<RenderProgress> last;  // that was printed
+    bool hasForecast = false;            // was printed in a plain line
     double nextPlainLine = 30;           // seconds since the start
 };
 

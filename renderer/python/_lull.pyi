@@ -12,7 +12,7 @@ class BlockAnswer:
     """State of one block.
 
     `value` is compared with `threshold`; `probability` (models) is that of an observer seeing noise;
-    `visible_noise` is in L*.
+    `masked_noise` is in L*.
     """
     stop: bool
     checked: bool
@@ -23,14 +23,14 @@ class BlockAnswer:
     value: float
     threshold: float
     probability: float | None
-    visible_noise: float | None
+    masked_noise: float | None
 
 
 class Answer:
     """State of all blocks: arrays of rows x columns, with the fields of BlockAnswer.
 
-    `stop` is True if all blocks have stopped. `probability` is None for rules without one,
-    `visible_noise` without half buffers.
+    `stop` is True if all blocks are clean. `probability` is None for rules without one,
+    `masked_noise` without half buffers.
     """
     stop: bool
     stopped: np.ndarray
@@ -41,14 +41,14 @@ class Answer:
     value: np.ndarray
     threshold: np.ndarray
     probability: np.ndarray | None
-    visible_noise: np.ndarray | None
+    masked_noise: np.ndarray | None
 
 
 class Stopper:
     """Decides which blocks of one image need more samples, from its first samples to its last.
 
     `blocks` are (x, y, width, height), row by row. `active` is a height x width array, True where more
-    samples are needed. `done` is True if all blocks have stopped, `needs_half` if the rule reads `half`.
+    samples are needed. `done` is True if all blocks are clean, `needs_half` if the rule reads `half`.
     """
     width: int
     height: int

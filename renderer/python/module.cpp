@@ -45,7 +45,7 @@ std::string ReprOf(const lull_answer& a) {
                                   ? py::str("{} of {} votes, ").format(a.votes, a.votes_needed)
                                   : py::str();
     return py::str("<lull.BlockAnswer: {} at {} spp, {}value {:.3g}, threshold {:.3g}>")
-        .format(a.stop ? "stopped" : "active", a.spp, votes, a.value, a.threshold);
+        .format(a.stop ? "clean" : "active", a.spp, votes, a.value, a.threshold);
 }
 
 constexpr int kDebug = 10, kInfo = 20;  // levels of Python's logging
@@ -170,8 +170,8 @@ class Stopper {
     }
     void Log(const Answer& answer, int spp) const {
         if (IsLogged(kInfo))
-            Logger().attr("info")("%d spp: %d of %d blocks have stopped", spp,
-                                  answer.StoppedCount(), answer.blocks.size());
+            Logger().attr("info")("%d spp: %d of %d blocks are clean", spp, answer.StoppedCount(),
+                                  answer.blocks.size());
         if (!IsLogged(kDebug)) return;
         for (size_t i = 0; i < answer.blocks.size(); ++i)
             if (answer.blocks[i].spp == spp) LogBlock(int(i), answer.blocks[i]);
@@ -199,13 +199,13 @@ std::optional<double> Known(double value) {
 
 std::string ReprOf(const Answer& answer) {
     const auto [least, most] = std::ranges::minmax(answer.blocks, {}, &lull_answer::spp);
-    return py::str("<lull.Answer: {} of {} blocks stopped, at {} to {} spp>")
+    return py::str("<lull.Answer: {} of {} blocks clean, at {} to {} spp>")
         .format(answer.StoppedCount(), answer.blocks.size(), least.spp, most.spp);
 }
 
 std::string ReprOf(const Stopper& stopper) {
     const Answer answer = stopper.Last();
-    return py::str("<lull.Stopper of {} x {} pixels: {} of {} blocks stopped>")
+    return py::str("<lull.Stopper of {} x {} pixels: {} of {} blocks clean>")
         .format(stopper.width, stopper.height, answer.StoppedCount(), answer.blocks.size());
 }
 
@@ -221,16 +221,16 @@ void BindBlockAnswer(py::module_& module) {
         .def_readonly("threshold", &lull_answer::threshold)
         .def_property_readonly("probability",
                                [](const lull_answer& a) { return Known(a.probability); })
-        .def_property_readonly("visible_noise",
-                               [](const lull_answer& a) { return Known(a.visible_noise); })
+        .def_property_readonly("masked_noise",
+                               [](const lull_answer& a) { return Known(a.masked_noise); })
         .def("__repr__", [](const lull_answer& a) { return ReprOf(a); });
 }
 
 void BindAnswer(py::module_& module) {
     py::class_<Answer>(module, "Answer",
                        "How it stands with all blocks: arrays of rows x columns. `probability` is "
-                       "None for rules that know none, `visible_noise` where no half was shown.")
-        .def_property_readonly("stop", &Answer::Stop, "Whether all blocks have stopped.")
+                       "None for rules that know none, `masked_noise` where no half was shown.")
+        .def_property_readonly("stop", &Answer::Stop, "Whether all blocks are clean.")
         .def_property_readonly("stopped",
                                [](const Answer& a) { return a.Of<bool>(&lull_answer::stop); })
         .def_property_readonly("checked",
@@ -246,8 +246,8 @@ void BindAnswer(py::module_& module) {
             "threshold", [](const Answer& a) { return a.Of<double>(&lull_answer::threshold); })
         .def_property_readonly("probability",
                                [](const Answer& a) { return a.Known(&lull_answer::probability); })
-        .def_property_readonly("visible_noise",
-                               [](const Answer& a) { return a.Known(&lull_answer::visible_noise); })
+        .def_property_readonly("masked_noise",
+                               [](const Answer& a) { return a.Known(&lull_answer::masked_noise); })
         .def("__repr__", [](const Answer& a) { return ReprOf(a); });
 }
 
@@ -308,7 +308,7 @@ void BindStopper(py::module_& module) {
                                "The rectangles of the blocks: (x, y, width, height), row by row.")
         .def_property_readonly("active", &Stopper::Active,
                                "An array of height x width: True where more samples are needed.")
-        .def_property_readonly("done", &Stopper::Done, "Whether all blocks have stopped.")
+        .def_property_readonly("done", &Stopper::Done, "Whether all blocks are clean.")
         .def_property_readonly("needs_half", &Stopper::NeedsHalf,
                                "Whether the rule needs a half buffer.")
         .def("save", &Stopper::Save,

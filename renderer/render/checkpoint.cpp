@@ -17,9 +17,10 @@ namespace lull {
 
 namespace {
 
-constexpr std::string_view kFormat = "lull checkpoint 5";
-constexpr std::array<std::string_view, 4> kOlderFormats = {
-    "lull checkpoint 1", "lull checkpoint 2", "lull checkpoint 3", "lull checkpoint 4"};
+constexpr std::string_view kFormat = "lull checkpoint 6";
+constexpr std::array<std::string_view, 5> kOlderFormats = {"lull checkpoint 1", "lull checkpoint 2",
+                                                           "lull checkpoint 3", "lull checkpoint 4",
+                                                           "lull checkpoint 5"};
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 
@@ -45,6 +46,9 @@ void ForEachValue(BlockDecision& record, const Visit& visit) {
     visit(record.decision.value);
     visit(record.decision.threshold);
     visit(record.decision.votes);
+    double noise = record.networkNoise.value_or(-1);  // negative: none
+    visit(noise);
+    if (noise >= 0) record.networkNoise = noise;
 }
 
 // Packs the block's state: its samples, its cost, and its criterion's decisions.
@@ -181,10 +185,11 @@ void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderSta
     for (BlockResult& result : state->blocks) {
         Block& block = result.block;
         if (block.spp > cap)
-            throw Error(fmt::format(
-                "it has blocks of {} spp, more than the cap of {}; give a larger --cap, or remove "
-                "the file to start again",
-                block.spp, cap));
+            throw Error(
+                fmt::format("it has blocks of {} spp, more than the cap of {}; give a larger "
+                            "--max-spp, or remove "
+                            "the file to start again",
+                            block.spp, cap));
         if (isNewRule) {
             result.decisions.clear();
             block.stopped = block.stoppedByVote = false;

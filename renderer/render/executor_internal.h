@@ -59,7 +59,9 @@ class ProgressLedger {
     const RenderContext& context;
     const RenderOptions& options;
     const Clock::time_point start = Clock::now();
-    const double secondsBefore;  // of the runs before this one
+    // Of the runs before this one: wall-clock time, CPU time of samples, and samples.
+    const double secondsBefore, spentBefore;
+    const int64_t samplesBefore;
 
     // Guards the members below, except for criteria's seconds and decisions in `results`, which
     // belong to one thread at a time.

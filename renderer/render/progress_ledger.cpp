@@ -19,6 +19,15 @@ std::vector<StopTrend> MakeTrends(const RenderOptions& options,
     return made;
 }
 
+double SecondsOfAll(const std::vector<BlockResult>& results) {
+    double seconds = 0;
+    for (const BlockResult& result : results) seconds += result.seconds;
+    return seconds;
+}
+
+// Passes of 20 spp whose blocks a forecast begins with, as it needs three checks for a trend.
+constexpr int kLeastForecastSpp = 60;
+
 }  // namespace
 
 ProgressLedger::ProgressLedger(const RenderContext& context, const RenderOptions& options,
@@ -26,9 +35,11 @@ ProgressLedger::ProgressLedger(const RenderContext& context, const RenderOptions
     : context(context),
       options(options),
       secondsBefore(context.interrupted ? context.interrupted->seconds : 0),
+      spentBefore(context.interrupted ? SecondsOfAll(context.interrupted->blocks) : 0),
+      samplesBefore(context.film->SampleCount()),
       results(context.interrupted ? context.interrupted->blocks : std::vector<BlockResult>(blocks)),
       trends(MakeTrends(options, results)),
-      samples(context.film->SampleCount()) {}
+      samples(samplesBefore) {}
 
 double ProgressLedger::Seconds() const { return secondsBefore + SecondsSince(start); }
 
@@ -121,22 +132,32 @@ RenderProgress ProgressLedger::Progress(const Schedule& schedule) {
 }
 
 // Predicts the remaining time. A sample of a block costs as much as its samples so far, and CPU
-// time passes at the same rate.
+// time passes at the rate of this run, of which each block at work must have a sample per pixel.
 void ProgressLedger::Predict(const Schedule& schedule, RenderProgress* progress) const {
     const std::span<const Block> blocks = schedule.Blocks();
+    const bool isCounted = options.trend->kind == RuleTrend::Samples;
+    if (!isCounted && schedule.MedianSpp() < kLeastForecastSpp) return;
     const auto stops = PredictStops(trends, blocks, options.schedule.cap);
     if (!stops) return;
-    double spent = 0;
-    for (const BlockResult& result : results) spent += result.seconds;
-    double left = 0, secondsLeft = 0;
+    const double spent = SecondsOfAll(results), spentHere = spent - spentBefore;
+    double left = 0, secondsLeft = 0, active = 0;
     for (size_t i = 0; i < blocks.size(); ++i) {
         const double area = double(blocks[i].pixels.Area()), had = area * blocks[i].spp;
         const double missing = area * ((*stops)[i] - blocks[i].spp);
+        if (!blocks[i].stopped) active += area;
         left += missing;
         secondsLeft += missing * (had > 0 ? results[i].seconds / had : spent / double(samples));
     }
+    if (double(samples - samplesBefore) < active) return;
     progress->predictedSamples = left;
-    if (spent > 0) progress->predictedSeconds = secondsLeft / spent * progress->seconds;
+    if (!(spentHere > 0)) return;
+    const double seconds = secondsLeft / spentHere * SecondsSince(start);
+    progress->predictedSeconds = seconds;
+    if (isCounted) return;
+    std::array<double, 2> range = RangeOfRest(double(samples), left);
+    for (double& rest : range)
+        rest = left > 0 ? seconds * std::min(rest, double(progress->samplesToCap)) / left : 0;
+    progress->secondsRange = range;
 }
 
 }  // namespace lull

@@ -49,19 +49,19 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
     const int atCap = result.progress.blocksAtCap, stopped = result.progress.stoppedBlocks - atCap;
     exr.attributes["rejectedSamples"] = std::to_string(film.RejectedCount());
     exr.attributes["blocks"] = std::to_string(result.progress.blocks);
-    exr.attributes["stoppedBlocks"] = std::to_string(stopped);
+    exr.attributes["cleanBlocks"] = std::to_string(stopped);
     exr.attributes["blocksAtCap"] = std::to_string(atCap);
     if (result.cancelled)
-        exr.attributes["note"] = "interrupted: blocks had not all stopped; see the spp channel";
+        exr.attributes["note"] = "interrupted: not all blocks were clean; see the spp channel";
     if (result.timeUp)
         exr.attributes["note"] = fmt::format(
-            "the time was up when {} of {} blocks had stopped and {} were at the cap: the samples "
+            "the time was up when {} of {} blocks were clean and {} were at the cap: the samples "
             "of the others depend on the machine; --stop thresholds: with the file beside the "
             "image repeats it",
             stopped, result.progress.blocks, atCap);
     else if (atCap > 0 && result.trend.kind != RuleTrend::Samples)
         exr.attributes["note"] =
-            fmt::format("{} of {} blocks went to the cap of {} spp, and had not stopped there",
+            fmt::format("{} of {} blocks went to the cap of {} spp, and were not clean there",
                         atCap, result.progress.blocks, provenance.schedule.cap);
     return exr;
 }

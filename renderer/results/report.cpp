@@ -15,7 +15,7 @@ namespace {
 
 const char* EndOf(const Block& block, bool timeUp) {
     if (!block.stopped) return timeUp ? "time" : "interrupted";
-    return block.stoppedByVote ? "stopped" : "cap";
+    return block.stoppedByVote ? "clean" : "cap";
 }
 
 Json BlockJson(const BlockResult& result, int cap, bool timeUp) {
@@ -24,7 +24,7 @@ Json BlockJson(const BlockResult& result, int cap, bool timeUp) {
     json["spp"] = block.spp;
     json["threshold"] = block.stoppedByVote || (timeUp && !block.stopped) ? block.spp : cap;
     json["end"] = EndOf(block, timeUp);
-    if (std::isfinite(block.noise)) json["visibleNoise"] = block.noise;
+    if (std::isfinite(block.noise)) json["maskedNoise"] = block.noise;
     if (!block.votes) json["follows"] = block.leader < 0 ? Json(nullptr) : Json(block.leader);
     json["seconds"] = result.seconds;
     json["criterionSeconds"] = result.criterionSeconds;
@@ -59,7 +59,7 @@ void AddCapped(const Provenance& provenance, const RenderResult& result, Json* r
 Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_t rejected) {
     const Savings savings = ComputeSavings(result, provenance.schedule.cap);
     return {{"blocks", result.blocks.size()},
-            {"stoppedBlocks", result.progress.stoppedBlocks - result.progress.blocksAtCap},
+            {"cleanBlocks", result.progress.stoppedBlocks - result.progress.blocksAtCap},
             {"blocksAtCap", result.progress.blocksAtCap},
             {"medianSpp", result.progress.medianSpp},
             {"seconds", result.progress.seconds},

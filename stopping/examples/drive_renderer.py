@@ -20,7 +20,7 @@ import numpy as np
 def report(spp, answer):
     share = answer.stopped.mean()
     noisy = "" if answer.probability is None else f", noise seen in {(answer.probability >= 0.5).sum()}"
-    print(f"{spp:6} spp: {share:4.0%} of {answer.stopped.size} blocks have stopped{noisy}")
+    print(f"{spp:6} spp: {share:4.0%} of {answer.stopped.size} blocks are clean{noisy}")
 
 
 def by_spp(files):

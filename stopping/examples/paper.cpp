@@ -33,7 +33,7 @@ static void Report(int spp, const std::vector<lull_answer>& answers) {
         stopped += a.stop, checked += a.checked;
         sum += a.checked ? a.probability : 0;
     }
-    std::printf("%d spp: %d of %zu blocks have stopped", spp, stopped, answers.size());
+    std::printf("%d spp: %d of %zu blocks are clean", spp, stopped, answers.size());
     if (checked > 0) std::printf(", P(noise) %.2f on average", sum / checked);
     std::printf("\n");
 }

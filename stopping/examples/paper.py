@@ -45,7 +45,7 @@ def thresholds_of(pictures, model="paper", block=200):
         answer = stopper.observe(image, spp)
         checked = answer.probability[answer.checked]
         text = f", P(noise) {checked.mean():.2f} on average" if checked.size else ""
-        print(f"{spp:6} spp: {answer.stopped.sum()} of {answer.stopped.size} blocks have stopped{text}")
+        print(f"{spp:6} spp: {answer.stopped.sum()} of {answer.stopped.size} blocks are clean{text}")
         if answer.stop:
             break
     return np.where(answer.stopped, answer.spp, CAP).ravel()

@@ -17,8 +17,7 @@ void Criterion::Restore(std::span<const std::byte> state) {
 }
 
 RuleTrend TrendOfFalls(const NoiseVisibility& visibility) {
-    // Noise vanishes at N with the root of 1/n - 1/N where that is how near the picture is to it.
-    return {.reference = visibility.nearness == 0.5 ? visibility.reference : 0, .saturates = true};
+    return {.reference = visibility.reference, .nearness = visibility.nearness, .saturates = true};
 }
 
 RuleTrend TrendOf(const Model& model) {

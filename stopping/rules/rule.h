@@ -109,9 +109,10 @@ struct RuleTrend {
     // Noise at which a network with no other input is undecided. Predictions follow the noise then,
     // as a probability is no power of the spp. 0: not known.
     double undecided = 0;
-    // Spp of the picture that noise is compared with: it falls as a power of 1/spp - 1/reference.
-    // 0: none.
+    // Spp of the picture that noise is compared with, 0: none: it counts (1 - spp /
+    // reference)^nearness.
     int reference = 0;
+    double nearness = 0.5;
     // Whether it falls more slowly where there is much noise, as falls of entropies do, and
     // approaches the power -1/2 with less.
     bool saturates = false;

@@ -106,8 +106,15 @@ bpy.ops.lull.check()
 strands._LIMIT = 12_000_000""", none),
             ("time", "plastic", """
 from lull_engine.engine import _progress
-event = {'blocks': 4, 'medianSpp': 0, 'remainingSeconds': 20000, 'remainingIsUpperBound': True}
-print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppedBlocks': 1}))""", none),
+event = {'blocks': 4, 'cleanBlocks': 0, 'medianSpp': 0, 'remainingSeconds': None, 'remainingRange': None, 'remainingIsUpperBound': True}
+bound, known = {'cleanBlocks': 1, 'remainingSeconds': 20000}, {'remainingSeconds': 600, 'remainingRange': [500, 800]}
+print(_progress(event), '|', _progress({**event, **bound}), '|', _progress({**event, **known}))""", none),
+            ("settings", "plastic", """
+s.seed, s.quality, s.stop_by = 5, 'draft', 'DEFAULT'
+scene.frame_set(7)
+print(*s.arguments())
+s.same_seed, s.caution = True, 1.5
+print(*s.arguments())""", none),
             ("no rule", "plastic", "s.stop_by, s.rule = 'RULE', 'nonsense'", lull), ("panoramic", "panorama", "", lull),
             ("nowhere", "plastic", PROGRAM_OF.format("/nowhere/lull"), lull), ("other", "plastic", PROGRAM_OF.format(str(cls.other)), lull),
             ("no program", "plastic", "import os; os.environ['PATH'] = '/nowhere'; " + PROGRAM_OF.format(""), lull)]
@@ -169,7 +176,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
     def test_passes_of_view_layers(self):
         passes, cycles, said = self.read("passes.lull"), self.read("passes.cycles"), self.said("passes")
         self.assertIn("passes that lull lacks are missing: uv, cryptomatte above 6 levels", said)
-        self.assertIn("blocks stopped", said)
+        self.assertIn("blocks clean", said)
         seen = cycles["Depth.Z"] < 1e9
         for name, near in (("Depth.Z", 0.01), ("Normal.X", 0.01), ("Normal.Y", 0.01), ("Normal.Z", 0.01), ("Mist.Z", 0.01),
                            ("Position.X", 0.02), ("Position.Y", 0.02), ("Position.Z", 0.02)):
@@ -229,7 +236,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
         passes = self.read("default.lull")
         self.assertIn("Noisy.R", passes)
         self.assertLess(passes["Samples.X"].max(), 1000)
-        self.assertLess(self.said("default").count("blocks stopped, "), 20)
+        self.assertLess(self.said("default").count("blocks clean, "), 20)
 
     def test_ends_early_with_the_picture_so_far(self):
         # Of a frame that is ended, Blender's own -f writes nothing.
@@ -240,7 +247,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
             said = ""
             for line in process.stdout:
                 said += line
-                if "blocks stopped, " in line and "stopped, 0 spp" not in line:
+                if "blocks clean, " in line and "clean, 0 spp" not in line:
                     process.send_signal(signal.SIGINT)
                     break
             said += process.communicate(timeout=100)[0]
@@ -271,7 +278,7 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
     def test_lull_ends_with_blender(self):
         render = "import bpy; s = bpy.context.scene.lull; s.stop_by, s.spp, s.cap = 'SAMPLES', 1000000, 1000000; bpy.ops.render.render()"
         with self.blender.start(*self.stored(), "--python-expr", render) as process:
-            while "blocks stopped, " not in process.stdout.readline():
+            while "blocks clean, " not in process.stdout.readline():
                 pass
             child, = subprocess.run(["pgrep", "-P", str(process.pid)], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
             process.kill()
@@ -281,8 +288,17 @@ print(_progress({**event, 'stoppedBlocks': 0}), '|', _progress({**event, 'stoppe
             time.sleep(0.1)
         self.fail("lull runs on")
 
-    def test_gives_no_time_while_all_samples_are_its_bound(self):
-        self.assertIn("0 of 4 blocks stopped, 0 spp | 1 of 4 blocks stopped, 0 spp, at most 6 h left", self.said("time"))
+    def test_gives_no_time_before_it_is_known(self):
+        self.assertIn("0 of 4 blocks clean, 0 spp | 1 of 4 blocks clean, 0 spp, at most 6 h left | "
+                      "0 of 4 blocks clean, 0 spp, done in 8 min to 13 min (80 %)", self.said("time"))
+
+    def test_has_a_seed_for_each_frame_and_the_caution_of_old_files(self):
+        first, second = [line for line in self.said("settings").split("\n") if line.startswith("--max-spp")]
+        self.assertIn("--seed 12 ", first)
+        self.assertIn("--quality draft", first)
+        self.assertIn("--seed 5 ", second)
+        self.assertIn("--caution 1.5", second)
+        self.assertNotIn("--quality", second)
 
     def test_says_why_there_is_no_picture(self):
         for name, message in (("no rule", "lull: --stop"), ("panoramic", "panoramic"), ("nowhere", "Program not found: /nowhere/lull"),

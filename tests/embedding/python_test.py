@@ -51,14 +51,14 @@ class StopperTest(unittest.TestCase):
         self.assertTrue(answer.stop)
         self.assertLess(answer.probability[0, 0], 0.5)
         self.assertEqual(answer.spp[0, 0], spp)
-        self.assertIsNone(answer.visible_noise)
+        self.assertIsNone(answer.masked_noise)
         self.assertFalse(stopper.active.any())
         self.assertEqual(numbers(stopper.answer())[3:], numbers(answer)[3:])
 
     def test_reads_any_layout(self):
         image, half = picture(40)
         plain = lull.Stopper(WIDTH, HEIGHT, rule="lnoise:0.1").observe(image, 40, half)
-        self.assertGreater(plain.visible_noise[0, 0], 1)
+        self.assertGreater(plain.masked_noise[0, 0], 1)
         self.assertIsNone(plain.probability)
         with_alpha = np.concatenate([image, np.ones((HEIGHT, WIDTH, 1), np.float32)], axis=2)
         wide = np.zeros((2 * HEIGHT, 3 * WIDTH, 3), np.float32)
@@ -110,7 +110,7 @@ class StopperTest(unittest.TestCase):
         self.assertTrue(stopper.active[:, 70:].all())
         one = stopper.observe_block(1, noisy[0], 12500, half=noisy[1])
         self.assertEqual((one.stop, one.checked, one.spp, one.probability), (False, True, 12500, None))
-        self.assertGreater(one.visible_noise, 1.5)
+        self.assertGreater(one.masked_noise, 1.5)
 
     def test_goes_on_from_saved_states(self):
         stopper, whole = (lull.Stopper(WIDTH, HEIGHT) for _ in "ab")
@@ -243,9 +243,9 @@ class StopperTest(unittest.TestCase):
         with self.assertLogs("lull.stopper", "DEBUG") as log:
             stopper.observe(image, 40)
             stopper.observe_block(0, picture(40)[0], 80)
-        self.assertEqual(log.output[0], "INFO:lull.stopper:40 spp: 0 of 2 blocks have stopped")
+        self.assertEqual(log.output[0], "INFO:lull.stopper:40 spp: 0 of 2 blocks are clean")
         self.assertEqual(log.output[1], "DEBUG:lull.stopper:block 0: <lull.BlockAnswer: active at 40 spp, value 40, threshold 80>")
-        self.assertIn("block 0: <lull.BlockAnswer: stopped at 80 spp", log.output[-1])
+        self.assertIn("block 0: <lull.BlockAnswer: clean at 80 spp", log.output[-1])
         with self.assertNoLogs("lull.stopper", "INFO"):
             stopper.observe_block(1, picture(40)[0], 80)
 
@@ -258,12 +258,12 @@ class StopperTest(unittest.TestCase):
 
     def test_says_what_it_is(self):
         stopper = lull.Stopper(WIDTH, HEIGHT, rule="fixed:80")
-        self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 0 of 1 blocks stopped>")
+        self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 0 of 1 blocks clean>")
         image, _ = picture(40)
-        self.assertEqual(repr(stopper.observe(image, 40)), "<lull.Answer: 0 of 1 blocks stopped, at 40 to 40 spp>")
+        self.assertEqual(repr(stopper.observe(image, 40)), "<lull.Answer: 0 of 1 blocks clean, at 40 to 40 spp>")
         self.assertEqual(repr(stopper.observe_block(0, image, 80)),
-                         "<lull.BlockAnswer: stopped at 80 spp, value 80, threshold 80>")
-        self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 1 of 1 blocks stopped>")
+                         "<lull.BlockAnswer: clean at 80 spp, value 80, threshold 80>")
+        self.assertEqual(repr(stopper), "<lull.Stopper of 70 x 60 pixels: 1 of 1 blocks clean>")
 
     def test_stub_names_all_there_is(self):
         stub = ast.parse(pathlib.Path(lull.__file__).with_name("_lull.pyi").read_text())
@@ -298,7 +298,7 @@ class StopperTest(unittest.TestCase):
         self.assertEqual(spp.shape, (1, 2))
         self.assertLess(2 * spp[0, 0], spp[0, 1])  # less noise on the left
         self.assertLess(spp[0, 1], 10000)
-        self.assertIn("100% of 2 blocks have stopped", out.getvalue())
+        self.assertIn("100% of 2 blocks are clean", out.getvalue())
         self.assertTrue(np.isfinite(image).all())
 
     def test_example_watches_pictures_by_their_spp(self):
@@ -330,7 +330,7 @@ class StopperTest(unittest.TestCase):
         last = max(answers)
         self.assertEqual(stops.tolist(), [answers[last].spp[0, 0] if answers[last].stop else paper.CAP])
         lines = out.getvalue().splitlines()
-        self.assertEqual(lines[0], "    20 spp: 0 of 1 blocks have stopped")
+        self.assertEqual(lines[0], "    20 spp: 0 of 1 blocks are clean")
         # Eight pictures 40 spp apart make the first window.
         self.assertEqual([int(line.split()[0]) for line in lines if "P(noise)" in line][:3], [300, 340, 380])
         self.assertIn(f"P(noise) {answers[300].probability[0, 0]:.2f}", lines[14])

@@ -58,7 +58,7 @@ inline bool SameAnswer(const lull_answer& a, const lull_answer& b) {
     return a.stop == b.stop && a.checked == b.checked && a.spp == b.spp &&
            a.next_spp == b.next_spp && a.votes == b.votes && a.votes_needed == b.votes_needed &&
            a.value == b.value && a.threshold == b.threshold && a.probability == b.probability &&
-           a.visible_noise == b.visible_noise;
+           a.masked_noise == b.masked_noise;
 }
 
 }  // namespace lull

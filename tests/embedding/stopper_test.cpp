@@ -56,7 +56,7 @@ TEST(Stopper, AnswersAsTheDefaultModelDoes) {
         EXPECT_EQ(answer.votes_needed, 3);
         EXPECT_EQ(answer.stop, expected.stop);
         if (answer.checked) {
-            EXPECT_EQ(answer.visible_noise, VisibleNoise(image.At(spp)));
+            EXPECT_EQ(answer.masked_noise, VisibleNoise(image.At(spp)));
         }
     }
     EXPECT_EQ(answer.stop, 1);
@@ -164,7 +164,7 @@ TEST(Stopper, TakesEightBitsForTheColoursThatTheyStandFor) {
         const lull_answer answer = Show(eight, picture, 100 * (k + 1));
         EXPECT_TRUE(SameAnswer(answer, expected));
         EXPECT_EQ(answer.checked, k);
-        EXPECT_EQ(answer.visible_noise, -1);
+        EXPECT_EQ(answer.masked_noise, -1);
     }
 }
 

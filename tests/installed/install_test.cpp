@@ -163,8 +163,8 @@ TEST(Install, ExampleWatchesPicturesAgainstTheInstalledLibrary) {
     std::filesystem::create_directory(tree.File("room7"));
     WritePictures(tree, 20, 20, "room7/p_{1}.png");
     const std::string paper = Do(tree, "build/paper room7");
-    EXPECT_TRUE(paper.starts_with("20 spp: 0 of 1 blocks have stopped\n40 spp: ")) << paper;
-    EXPECT_TRUE(Contains(paper, "\n300 spp: 0 of 1 blocks have stopped, P(noise) ")) << paper;
+    EXPECT_TRUE(paper.starts_with("20 spp: 0 of 1 blocks are clean\n40 spp: ")) << paper;
+    EXPECT_TRUE(Contains(paper, "\n300 spp: 0 of 1 blocks are clean, P(noise) ")) << paper;
     EXPECT_TRUE(Contains(paper, "\nroom7;")) << paper;
     EXPECT_TRUE(paper.ends_with(";\n")) << paper;
     std::filesystem::rename(tree.File("room7/p_20.png"), tree.File("room7/p.png"));
@@ -223,8 +223,7 @@ TEST(Install, WheelWorksWherePipPutsIt) {
                     "print(lull.render('scene.pbrt', spp=2, progress=False).spp.max())\n"
                     "print(lull.denoise.__name__, lull.__file__)\n");
     const std::string out = here("env -u LULL_PROGRAM PATH=/usr/bin:/bin env/bin/python use.py");
-    EXPECT_TRUE(out.starts_with("<lull.Answer: 0 of 1 blocks stopped, at 40 to 40 spp>\n2\n"))
-        << out;
+    EXPECT_TRUE(out.starts_with("<lull.Answer: 0 of 1 blocks clean, at 40 to 40 spp>\n2\n")) << out;
     EXPECT_TRUE(Contains(out, "/env/lib/python3")) << out;
     here("env/bin/python -m pip uninstall -q -y lull-render >&2 && test ! -e env/bin/lull");
 }

@@ -60,6 +60,9 @@ TEST(CommandLine, RefusesWrongUsage) {
           "render scene.pbrt --time nan",
           "render scene.pbrt --cap 3 --denoise-layers",
           "render scene.pbrt --cap 0",
+          "render scene.pbrt --max-spp 0",
+          "render scene.pbrt --quality best",
+          "render scene.pbrt --quality final --caution 2",
           "render scene.pbrt --pass 0",
           "render scene.pbrt --block 0",
           "render scene.pbrt --spp 0",
@@ -280,11 +283,30 @@ TEST(CommandLine, TakesAsManySamplesAsAskedFor) {
     EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 10001);
     RunLull(directory, one + "--spp 30 --cap 25");
     EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 25);
-    RunLull(directory, one + "--cap 3");  // less than a pass
+    RunLull(directory, one + "--max-spp 3");  // less than a pass
     EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 3);
     ExpectFailure(directory, "render scene.pbrt --pass 7 -o out.exr", {"pass of 7 spp"});
     RunLull(directory, one + "--cap 45");  // too small to be judged
     EXPECT_EQ(ReadExr(directory.File("i.exr")).Find("spp")->values[0], 45);
+}
+
+// Qualities are names of a caution, with the same stops.
+TEST(CommandLine, NamesQualities) {
+    const SceneDirectory directory;
+    const auto thresholds = [&](const std::string& options) {
+        ExpectSuccess(directory,
+                      "render scene.pbrt --resolution 100x90 --block 45 --stop lnoise:1.2 "
+                      "--max-spp 600 --quiet -o i.exr " +
+                          options);
+        return ReadBytes(directory.File("i.thresholds.csv"));
+    };
+    const std::string draft = thresholds("--quality draft"), good = thresholds("--quality good");
+    const std::string final = thresholds("--quality final");
+    EXPECT_EQ(draft, thresholds("--caution 0.5"));
+    EXPECT_EQ(good, thresholds(""));
+    EXPECT_EQ(final, thresholds("--caution 2"));
+    EXPECT_NE(draft, good);
+    EXPECT_NE(final, good);
 }
 
 // Returns the objects on stderr, of which each line is one.
@@ -343,8 +365,8 @@ TEST(CommandLine, TellsStoppedFromCapped) {
     const std::string render = "render scene.pbrt --resolution 100x100 --block 50 --report r.json ";
     const Outcome capped =
         ExpectSuccess(directory, render + "--stop lnoise:0.01 --cap 100 -o i.exr");
-    for (const char* part : {"0 of 4 blocks stopped, 4 at the cap and not stopped",
-                             "threshold 0.01;", "estimated sufficient --cap: "})
+    for (const char* part : {"0 of 4 blocks clean, 4 at the cap and not clean", "threshold 0.01;",
+                             "estimated sufficient --max-spp: "})
         EXPECT_TRUE(Contains(capped.err, part)) << part << "\n" << capped.err;
     EXPECT_FALSE(Contains(capped.err, "less time")) << capped.err;
     const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
@@ -354,7 +376,7 @@ TEST(CommandLine, TellsStoppedFromCapped) {
     const auto attribute = [&](const char* name) {
         return std::get<std::string>(ReadExr(directory.File("i.exr")).attributes.at(name));
     };
-    EXPECT_EQ(attribute("stoppedBlocks"), "0");
+    EXPECT_EQ(attribute("cleanBlocks"), "0");
     EXPECT_EQ(attribute("blocksAtCap"), "4");
     EXPECT_TRUE(Contains(attribute("note"), "4 of 4 blocks went to the cap"));
 

@@ -81,7 +81,7 @@ TEST(DenoiseOption, StoppedBlocksHaveTheErrorThatStoppedThem) {
                   "--report a.json");
     const auto report = nlohmann::json::parse(ReadBytes(directory.File("a.json")));
     const auto& block = report["blocks"][0];
-    ASSERT_EQ(block["end"], "stopped");
+    ASSERT_EQ(block["end"], "clean");
     EXPECT_EQ(block["visibleDifference"]["estimate"], block["decisions"]["value"].back());
     EXPECT_LE(block["visibleDifference"]["estimate"], block["decisions"]["threshold"]);
     EXPECT_LE(block["visibleDifference"]["estimate"], block["visibleDifference"]["upper"]);

@@ -101,7 +101,7 @@ TEST(Pictures, MakeTheImageOfPeople) {
     EXPECT_EQ(RunLull(directory, "compare --images room scene.pbrt").exitCode, 2);
     EXPECT_EQ(RunLull(directory, "compare --images room --reference r.exr").exitCode, 2);
     ExpectFailure(directory, "compare --images room --cap 20",
-                  {"--cap: has no effect with --images"}, 2);
+                  {"--max-spp: has no effect with --images"}, 2);
     ExpectFailure(directory, "record --images room -o data.h5 --resolution 9x9",
                   {"--resolution: has no effect with --images"}, 2);
 }

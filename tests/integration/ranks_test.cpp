@@ -81,7 +81,9 @@ struct RanksTest : testing::Test {
 
 // Rank 0 denoises blocks from the sums of all.
 TEST_F(RanksTest, ShareLayers) {
+    WritePng(directory.File("mask.png"), std::vector<uint8_t>{0, 0, 0, 255, 255, 255}, 2, 1);
     ExpectShared(
+        "--importance mask.png "
         "--aov albedo,normal,depth,position,object,material,noise --denoise --stop denoised:0.1 "
         "--cap 300 ");
 }

@@ -75,13 +75,13 @@ def check_saved(browser, name, charts, tables):
 def check_sentences(browser):
     """What the first sentence says of a render, whose blocks have so many samples."""
     for totals, spp, rule, sentence in (
-            ({"stoppedBlocks": 2, "blocksAtCap": 0}, [20, 40], "lnoise:1",
+            ({"cleanBlocks": 2, "blocksAtCap": 0}, [20, 40], "lnoise:1",
              "Rendered in 5\u00a0s: all 2 blocks are clean, at 20 to 40 samples per pixel."),
-            ({"stoppedBlocks": 0, "blocksAtCap": 2}, [80, 80], "lnoise:1",
+            ({"cleanBlocks": 0, "blocksAtCap": 2}, [80, 80], "lnoise:1",
              "Rendered in 5\u00a0s: 0 of 2 blocks are clean; 2 at the cap of 80 samples per pixel, still noisy."),
-            ({"stoppedBlocks": 1, "blocksAtCap": 0, "timeUp": True}, [20, 40], "lnoise:1",
+            ({"cleanBlocks": 1, "blocksAtCap": 0, "timeUp": True}, [20, 40], "lnoise:1",
              "Rendered in 5\u00a0s: 1 of 2 blocks is clean; 1 not finished in time."),
-            ({"stoppedBlocks": 0, "blocksAtCap": 2}, [80, 80], "fixed:80",
+            ({"cleanBlocks": 0, "blocksAtCap": 2}, [80, 80], "fixed:80",
              "Rendered in 5\u00a0s: 80 samples per pixel, without a stopping rule.")):
         data = {"cap": 80, "provenance": {"criterion": rule}, "images": [{"blocks": [{"spp": s} for s in spp]}],
                 "totals": {"blocks": 2, "seconds": 5, "interrupted": False, **totals}}

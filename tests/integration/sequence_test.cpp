@@ -46,14 +46,26 @@ TEST(Sequence, IsItsFrames) {
     ExpectSuccess(directory, std::string(kRender) +
                                  "--frames 0:0.75:4fps --shutter 0.1 -o a.exr --report a.json");
     for (int frame = 0; frame < 3; ++frame) {
-        ExpectSuccess(directory,
-                      fmt::format("{}--frame {} --shutter 0.1 -o one.exr", kRender, 0.25 * frame));
+        ExpectSuccess(directory, fmt::format("{}--frame {} --shutter 0.1 --seed {} -o one.exr",
+                                             kRender, 0.25 * frame, frame + 1));
         EXPECT_TRUE(directory.Same(fmt::format("a.{:04}.exr", frame + 1), "one.exr")) << frame;
         EXPECT_TRUE(
             std::filesystem::exists(directory.File(fmt::format("a.{:04}.json", frame + 1))));
     }
     EXPECT_FALSE(directory.Same("a.0001.exr", "a.0003.exr"));
     EXPECT_FALSE(std::filesystem::exists(directory.File("a.0004.exr")));
+}
+
+TEST(Sequence, HasASeedForEachFrame) {
+    const SequenceDirectory directory;
+    const std::string command = std::string(kRender) + "--shutter 0 --frames ";
+    // All three show the end of the animation, and differ by their grain alone.
+    ExpectSuccess(directory, command + "2:5:1 -o own.exr --seed 5");
+    ExpectSuccess(directory, command + "2:5:1 -o same.exr --seed 7 --same-seed");
+    EXPECT_FALSE(directory.Same("own.0001.exr", "own.0002.exr"));
+    EXPECT_TRUE(directory.Same("own.0002.exr", "same.0001.exr"));
+    EXPECT_TRUE(directory.Same("same.0001.exr", "same.0003.exr"));
+    EXPECT_EQ(RunLull(directory, std::string(kRender) + "--frame 0 --same-seed").exitCode, 2);
 }
 
 TEST(Sequence, GoesOnWithTheFramesThatAreLeft) {
@@ -92,7 +104,7 @@ TEST(Sequence, KnowsFramesThatAreNotDone) {
     }
     EXPECT_NO_THROW(ReadExr(directory.File("a.0001.exr")));
     ExpectFailure(directory, command + "-o a.exr --seed 7",
-                  {"a.0001.exr", "other settings", "seed=0 there", "seed=7 here"});
+                  {"a.0001.exr", "other settings", "seed=1 there", "seed=8 here"});
     ExpectFailure(directory, command + "-o a.exr --aov depth", {"a.0001.exr", "aov"});
 }
 

@@ -117,7 +117,8 @@ TEST(Study, RefusesWhatDoesNotFit) {
     ExpectFailure(directory, "study --collect bad.json -o human.csv", {"none of 1 files"});
     ExpectFailure(directory, "study --collect bad.json -o human.csv --study bad.json",
                   {"bad.json: not a page made by lull study"});
-    ExpectFailure(directory, "study scene.pbrt -o s.html --cap 20", {"--cap 20", "a ladder needs"});
+    ExpectFailure(directory, "study scene.pbrt -o s.html --cap 20",
+                  {"--max-spp 20", "a ladder needs"});
     ExpectFailure(directory, "study scene.pbrt -o s.html --record d.h5", {"cannot be recorded"});
     ExpectFailure(directory, "study --images nowhere -o s.html", {"--images nowhere"});
     ExpectFailure(directory, "study scene.pbrt -o s.html --questions",

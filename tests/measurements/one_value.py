@@ -59,7 +59,7 @@ QUANTITIES = [
     ('published error', PAPER, r'svd-entropy-rnn 40 640 0 0 # ', 'blocks of the published # %'),
     ('threshold of denoised', RULES, r'the true one is below T \(#\)', 'the true image is below #', 'below T, by default #',
      'without the worst, #, was the best', 'of --denoise, #', 'seed 1, threshold #', r'upper.max\(\) > #'),
-    ('cap, spp', REFERENCE, r'Stop every block at N spp at the latest # \(', r'--cap, # spp by default', r'block, # by default \(--cap'),
+    ('cap, spp', REFERENCE, r'Stop every block at N spp at the latest # \(', r'--max-spp, # spp by default', r'block, # by default \(--max-spp'),
     ('pass, spp', REFERENCE, r'Decide every N spp \(1 to 1048576\) #', 'Each pass adds # spp'),
     ('side of a block, pixels', REFERENCE, r'Set the side of the blocks, in pixels \(1 to 65536\) #', 'each block of #x200 pixels is finished',
      'Observers judged blocks of #x200'),

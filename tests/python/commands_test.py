@@ -41,6 +41,8 @@ class Options(unittest.TestCase):
                                caution=None, exr_half=False, max_depth=3, output=pathlib.Path("a")),
                          ["--resolution", "40x30", "--crop", "0,0.5,0,1", "--denoise",
                           "--max-depth", "3", "--output", "a"])
+        self.assertEqual(words("render", max_spp=5), words("render", cap=5))
+        self.assertEqual(words("render", cap=5, quality="draft"), ["--max-spp", "5", "--quality", "draft"])
         self.assertEqual(words("render", aov_through_specular=True, pass_=5),
                          ["--aov-through-specular", "--pass", "5"])
         self.assertEqual(words("evaluate", stop=["paper", "noise"], margins=[2, 5]),

@@ -33,12 +33,14 @@ def _step(event):
 
 
 def _progress(event):
-    text = "%d of %d blocks stopped, %d spp" % (
-        event["stoppedBlocks"], event["blocks"], event["medianSpp"])
-    left, is_bound = event["remainingSeconds"], event["remainingIsUpperBound"]
-    if left is None or is_bound and event["stoppedBlocks"] == 0:  # until then the bound is that of the most samples
+    text = "%d of %d blocks clean, %d spp" % (
+        event["cleanBlocks"], event["blocks"], event["medianSpp"])
+    left, between = event["remainingSeconds"], event["remainingRange"]
+    if left is None:
         return text
-    return "%s, %s%s left" % (text, "at most " if is_bound else "", _duration(left))
+    if between:
+        return "%s, done in %s to %s (80 %%)" % (text, *map(_duration, between))
+    return "%s, %s%s left" % (text, "at most " if event["remainingIsUpperBound"] else "", _duration(left))
 
 
 class LullEngine(bpy.types.RenderEngine):

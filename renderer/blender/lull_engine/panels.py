@@ -24,8 +24,14 @@ class LullSettings(bpy.types.PropertyGroup):
                      description="Samples per pixel of all blocks")
     rule: StringProperty(name="Rule", default="lnoise:0.3",
                          description="Rule of lull render --stop, e.g. lnoise:0.3")
+    quality: EnumProperty(
+        name="Quality", default='good',
+        items=(('draft', "Draft", "Allow twice as much noise as Good, after a third of the samples or more"),
+               ('good', "Good", "Allow no visible noise"),
+               ('final', "Final", "Allow half as much noise as Good, after twice the samples or more")))
+    # Of files of earlier versions, in place of the quality where it is not 1.
     caution: FloatProperty(name="Caution", default=1, min=0.01, max=100,
-                           description="2 allows half as much visible noise")
+                           description="2 allows half as much noise; set 1 to choose a quality")
     cap: IntProperty(name="Max Samples", default=10000, min=1, max=1 << 24,
                      description="Maximum samples per pixel of a block")
     time: StringProperty(name="Time Limit", description="End after this wall-clock time, e.g. 90s, 10m or 1h30m; "
@@ -46,7 +52,16 @@ class LullSettings(bpy.types.PropertyGroup):
                         description="Replace flat slabs of clear glass by sheets, which light sampling passes")
     graded_by: FloatProperty(name="Graded By", default=0, min=-10, max=10,
                              description="Judge noise in the image brightened by this many stops as well")
-    seed: IntProperty(name="Seed", min=0, description="Seed of the random numbers")
+    seed: IntProperty(name="Seed", min=0, description="Seed of the random numbers, to which the frame number is added")
+    same_seed: BoolProperty(name="Same Seed for All Frames", description="Do not add the frame number to the seed")
+
+    def noise_used(self):
+        """Returns the name of the property that scales noise."""
+        return "quality" if self.caution == 1 else "caution"
+
+    def seed_used(self):
+        """Returns the seed of the current frame."""
+        return self.seed if self.same_seed else (self.seed + self.id_data.frame_current) % 2**64
 
     def rule_used(self):
         """Returns the name of the rule of lull render --stop that stops blocks."""
@@ -54,14 +69,15 @@ class LullSettings(bpy.types.PropertyGroup):
 
     def arguments(self):
         """Returns the command-line arguments."""
-        said = ["--cap", str(self.cap), "--max-depth", str(self.max_depth), "--seed", str(self.seed),
+        said = ["--max-spp", str(self.cap), "--max-depth", str(self.max_depth), "--seed", str(self.seed_used()),
                 "--block", str(self.block)]
         if self.integrator != 'path':
             said += ["--integrator", self.integrator]
         if self.stop_by == 'SAMPLES':
             said += ["--spp", str(self.spp)]
         else:
-            said += ["--caution", "%g" % self.caution]
+            name = self.noise_used()
+            said += ["--" + name, "%g" % self.caution if name == "caution" else self.quality]
             if self.graded_by:
                 said += ["--graded-by", "%g" % self.graded_by]
             if self.stop_by == 'RULE':
@@ -116,7 +132,7 @@ class LULL_RENDER_PT_stopping(_Panel, bpy.types.Panel):
         else:
             if settings.stop_by == 'RULE':
                 layout.prop(settings, "rule")
-            layout.prop(settings, "caution")
+            layout.prop(settings, settings.noise_used())
             layout.prop(settings, "graded_by")
         layout.prop(settings, "cap")
         layout.prop(settings, "time")
@@ -134,7 +150,7 @@ class LULL_RENDER_PT_sampling(_Panel, bpy.types.Panel):
     def draw(self, context):
         settings, layout = context.scene.lull, self.layout
         layout.use_property_split = True
-        for name in "integrator", "max_depth", "seed", "texture", "panes":
+        for name in "integrator", "max_depth", "seed", "same_seed", "texture", "panes":
             layout.prop(settings, name)
 
 

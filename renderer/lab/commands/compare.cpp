@@ -25,8 +25,8 @@ constexpr const char* kOptionsOfFiles[] = {
     "--automatic", "--human",  "--reference", "--block", "--viewing",
     "--threads",   "--output", "--report",    "--quiet", "--json-progress"};
 constexpr const char* kOptionsOfPictures[] = {
-    "--images",  "--human",  "--stop",   "--caution", "--block",        "--viewing",
-    "--threads", "--output", "--report", "--quiet",   "--json-progress"};
+    "--images",  "--human",   "--stop",   "--caution", "--quality", "--block",
+    "--viewing", "--threads", "--output", "--report",  "--quiet",   "--json-progress"};
 
 // Returns the results; `rendered` are the images that come from the scene, if there is one.
 std::vector<NamedFile> OutputsOf(const CompareOptions& options,

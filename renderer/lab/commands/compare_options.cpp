@@ -43,8 +43,8 @@ Files, in one folder:
 Examples:
   lull compare scene.pbrt --snapshots --human human.csv:room-view0 -o room --report room.html
   lull compare scene.pbrt --snapshots --denoise -o room
-  lull compare scene.pbrt --snapshots --curves --cap 2000 -o room --report room.html
-  lull compare scene.pbrt --snapshots --stop lnoise:0.5 --cap 2000 --verify 0,1 -o room
+  lull compare scene.pbrt --snapshots --curves --max-spp 2000 -o room --report room.html
+  lull compare scene.pbrt --snapshots --stop lnoise:0.5 --max-spp 2000 --verify 0,1 -o room
   lull compare --images images/kitchen --human human.csv -o kitchen --report kitchen.html
   lull compare --automatic a.exr --human h.exr --reference r.exr -o room
   lull compare --automatic a.png --reference photo.jpg -o room
@@ -66,7 +66,7 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
                      ->group(kCommonOptions)
                      ->type_name("RULE")
                      ->capture_default_str();
-    AddCautionOption(app, &o->render.caution)->group("Stopping");
+    AddCautionOptions(app, "Stopping", &o->render.caution);
     app.add_option("--human", o->human, "Compare human thresholds, or an image rendered with them")
         ->type_name("H.csv[:NAME]|H.exr|H.png");
     app.add_option("--automatic", o->automatic,

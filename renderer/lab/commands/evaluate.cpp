@@ -30,9 +30,9 @@ namespace lull::evaluate {
 namespace {
 
 // Those with an effect on an evaluation by single answers.
-constexpr const char* kOptionsOfAnswers[] = {"DATASET.h5", "--images", "--block",
-                                             "--answers",  "--stop",   "--caution",
-                                             "--without",  "--brief",  "--csv"};
+constexpr const char* kOptionsOfAnswers[] = {"DATASET.h5", "--images",  "--block",   "--answers",
+                                             "--stop",     "--caution", "--quality", "--without",
+                                             "--brief",    "--csv"};
 
 struct Options {
     std::vector<std::string> datasets, images, predicted, rules, without;
@@ -142,7 +142,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(CLI::ExistingFile)
         ->type_name("P.csv");
     AddList(app, "--stop", &o->rules, "Evaluate this rule; can be given again")->type_name("RULE");
-    AddCautionOption(app, &o->caution);
+    AddCautionOptions(app, kOptions, &o->caution);
     app.add_flag(
         "--rivals", o->rivals,
         "Evaluate the baselines, which have one setting:\n" + RuleNames([](const RuleEntry& rule) {
@@ -291,8 +291,9 @@ void CheckUsage(const CLI::App& app, const Options& options) {
         throw CLI::ValidationError("--split", "needs DATASET.h5 or --images");
     if (!runs && options.predicted.empty())
         throw CLI::ValidationError("evaluate", "needs --predicted, --stop or --rivals");
-    if (app.count("--caution") > 0 && options.rules.empty())
-        throw CLI::ValidationError("--caution", "is for the rules of --stop");
+    for (const char* option : {"--caution", "--quality"})
+        if (app.count(option) > 0 && options.rules.empty())
+            throw CLI::ValidationError(option, "is for the rules of --stop");
     if (app.count("--choose-by") > 0 && !options.rivals && !options.constants)
         throw CLI::ValidationError("--choose-by", "is for --rivals and --constants");
 }

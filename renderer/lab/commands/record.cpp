@@ -78,7 +78,7 @@ void AddOptions(CLI::App& app, Options* o) {
         ->check(Between(0.1, 100.0))
         ->type_name("X")
         ->needs(human);
-    app.add_option("--cap", o->render.schedule.cap, "Record up to N spp")
+    app.add_option(kCapOption, o->render.schedule.cap, "Record up to N spp")
         ->group(kCommonOptions)
         ->check(Between(1, 1 << 24))
         ->type_name("N")

@@ -69,7 +69,7 @@ Damaged, foreign and contradictory files are named and left out.
 
 Examples:
   lull study scene.pbrt -o study.html --record data.h5
-  lull study scene.pbrt -o study.html --resolution 800x800 --cap 2000
+  lull study scene.pbrt -o study.html --resolution 800x800 --max-spp 2000
   lull study --images images/ --name kitchen-view0 -o study.html
   lull study --collect answers/*.json -o human.csv --study study.html --report collected.html
   lull train data.h5 --human human.csv -o model.h5
@@ -173,7 +173,7 @@ std::vector<int> LevelsOf(const Options& options, const ScheduleOptions& schedul
         options.levels > 0 ? LadderByCount(schedule.passLength, schedule.cap, options.levels)
                            : LadderByRatio(schedule.passLength, schedule.cap, kLadderRatio);
     if (levels.size() < 2)
-        throw Error(fmt::format("--cap {}: a ladder needs more than one pass of {} spp",
+        throw Error(fmt::format("--max-spp {}: a ladder needs more than one pass of {} spp",
                                 schedule.cap, schedule.passLength));
     // As pixels, and as the text of the page, of which a part is there twice.
     CheckMemory(region.Area() * int64_t(levels.size()) * 12,

@@ -16,14 +16,14 @@ parser = argparse.ArgumentParser(description=__doc__,
                                  formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("scene")
 parser.add_argument("--resolution", default="300x300")
-parser.add_argument("--cap", type=int, default=2000)
+parser.add_argument("--max-spp", type=int, default=2000)
 parser.add_argument("--block", type=int, default=100)
 parser.add_argument("--plots", type=pathlib.Path, help="folder for error.png and spp.png")
 o = parser.parse_args()
-size = dict(resolution=o.resolution, block=o.block, cap=o.cap)
+size = dict(resolution=o.resolution, block=o.block, max_spp=o.max_spp)
 
 # %% Render: the truth, with other samples and twice as many, and a picture by each rule
-truth = lull.render(o.scene, **dict(size, cap=2 * o.cap), stop=f"fixed:{2 * o.cap}", seed=1).image
+truth = lull.render(o.scene, **dict(size, max_spp=2 * o.max_spp), stop=f"fixed:{2 * o.max_spp}", seed=1).image
 rules = {"learned": dict(stop="learned"), "lnoise:0.5": dict(stop="lnoise:0.5"),
          "denoised": dict(denoise=True)}
 pictures = {name: lull.render(o.scene, **size, **rule) for name, rule in rules.items()}
@@ -62,6 +62,6 @@ if o.plots:
     for (name, picture), (above, below) in zip(pictures.items(), axes.T):
         above.imshow(np.clip(picture.image, 0, 1) ** (1 / 2.2))
         above.set_title(name)
-        figure.colorbar(below.imshow(picture.spp, vmin=0, vmax=o.cap), ax=below, label="spp")
+        figure.colorbar(below.imshow(picture.spp, vmin=0, vmax=o.max_spp), ax=below, label="spp")
     figure.tight_layout()
     figure.savefig(o.plots / "spp.png")

@@ -4,8 +4,8 @@ import keyword
 import os
 import re
 
-# An entry of a help text: its long name, and its value if it has one.
-_ENTRY = re.compile(r"^  (?:-\w,)?--([a-z0-9-]+)(?: (?!Needs:|Excludes:)(\S+))?")
+# An entry of a help text: its long names, and its value if it has one.
+_ENTRY = re.compile(r"^  (?:-\w,)?--([a-z0-9-]+(?:,--[a-z0-9-]+)*)(?: (?!Needs:|Excludes:)(\S+))?")
 _OURS = {"help", "help-all", "json-progress", "quiet"}  # set by this module
 
 
@@ -49,9 +49,10 @@ def read(help_text):
         if not line:  # the end of a group
             last = None
         if entry := _ENTRY.match(line):
-            last = Option(*entry.groups())
+            names = entry[1].split(",--")
+            last = Option(names[0], entry[2])
             if last.name not in _OURS:
-                options[_keyword(last.name)] = last
+                options.update({_keyword(name): last for name in names})
         if last:
             last.text += line + "\n"
     return options

@@ -120,9 +120,12 @@ class _Line:
     def __call__(self, event):
         if not self.shows or event["event"] != "progress":
             return
-        text = "%3.0f %%, %d of %d blocks stopped, %d spp, %.0f s left" % (
-            event["percent"], event["stoppedBlocks"], event["blocks"], event["medianSpp"],
-            event["remainingSeconds"])
+        text = "%3.0f %%, %d of %d blocks clean, %d spp" % (
+            event["percent"], event["cleanBlocks"], event["blocks"], event["medianSpp"])
+        if event["remainingRange"]:
+            text += ", done in %.0f to %.0f s (80 %%)" % tuple(event["remainingRange"])
+        elif event["remainingSeconds"] is not None:
+            text += ", %.0f s left" % event["remainingSeconds"]
         sys.stderr.write("\r" + text.ljust(self.width))
         sys.stderr.flush()
         self.width = len(text)

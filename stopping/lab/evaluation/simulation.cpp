@@ -83,25 +83,6 @@ double PeakIn(const BlockRecording& recording, int i, const Rule& rule) {
     return PeakOverLimit(rule, noise, recording.spp[size_t(i)]);
 }
 
-// Lets the rule decide after every recorded pass, whether it has stopped the block or not.
-std::vector<Decision> Replayed(const LabelledBlock& block, const Rule& rule) {
-    CheckSpacing(rule, block);
-    const BlockRecording& recording = *block.recording;
-    RuleCriterion criterion(std::make_shared<const Rule>(rule), {.index = block.block});
-    std::vector<Decision> decisions;
-    for (int i = 0; i < recording.Count(); ++i) {
-        const int spp = recording.spp[size_t(i)];
-        if (!criterion.IsDue(spp)) {
-            decisions.push_back(criterion.Decide(spp, {}));
-            continue;
-        }
-        decisions.push_back(
-            criterion.Decide(spp, RecordedSignals(rule, recording, i), PeakIn(recording, i, rule)));
-    }
-    CheckLookedAt(decisions, block);
-    return decisions;
-}
-
 std::vector<double> NumbersOf(std::span<const Decision> decisions) {
     std::vector<double> numbers;
     for (const Decision& decision : decisions)
@@ -127,10 +108,28 @@ Simulator ThresholdsSimulator(const std::string& path) {
 
 }  // namespace
 
+std::vector<Decision> ReplayRule(const LabelledBlock& block, const Rule& rule,
+                                 std::vector<std::optional<double>>* noise) {
+    CheckSpacing(rule, block);
+    const BlockRecording& recording = *block.recording;
+    RuleCriterion criterion(std::make_shared<const Rule>(rule), {.index = block.block});
+    std::vector<Decision> decisions;
+    for (int i = 0; i < recording.Count(); ++i) {
+        const int spp = recording.spp[size_t(i)];
+        decisions.push_back(criterion.IsDue(spp)
+                                ? criterion.Decide(spp, RecordedSignals(rule, recording, i),
+                                                   PeakIn(recording, i, rule))
+                                : criterion.Decide(spp, {}));
+        if (noise) noise->push_back(criterion.NetworkNoise());
+    }
+    CheckLookedAt(decisions, block);
+    return decisions;
+}
+
 ErrorSeries MakeErrorSeries(const LabelledBlock& block, const Rule& rule) {
     Rule plain = rule;
     plain.peak = {};  // numbers are compared with other thresholds than the rule's
-    return {.errors = NumbersOf(Replayed(block, plain)), .needed = std::max(1, rule.votes)};
+    return {.errors = NumbersOf(ReplayRule(block, plain)), .needed = std::max(1, rule.votes)};
 }
 
 int FirstBelow(const ErrorSeries& series, double threshold) {
@@ -173,7 +172,7 @@ RuleOutcome SimulateCycles(const LabelledBlock& block, double threshold, bool br
 }
 
 RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule) {
-    const std::vector<Decision> decisions = Replayed(block, rule);
+    const std::vector<Decision> decisions = ReplayRule(block, rule);
     const auto last = std::ranges::find(decisions, true, &Decision::stop);
     RuleOutcome outcome = MakeOutcome(
         *block.recording,

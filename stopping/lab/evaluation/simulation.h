@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,11 @@
 #include "stopping/rules/rule.h"
 
 namespace lull {
+
+// Returns the decisions of a rule after every recorded pass, also once it has stopped the block;
+// `noise`, unless it is null, gets Criterion::NetworkNoise() after each. Throws as SimulateRule().
+std::vector<Decision> ReplayRule(const LabelledBlock& block, const Rule& rule,
+                                 std::vector<std::optional<double>>* noise = nullptr);
 
 // The numbers that a rule compares with its threshold, for sweeps of that.
 struct ErrorSeries {

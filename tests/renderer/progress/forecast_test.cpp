@@ -132,6 +132,30 @@ TEST(PredictStops, FollowsTheNoiseThatANetworkLooksAt) {
     EXPECT_EQ(trend.LastSpp(), 400);
 }
 
+// A factor of the noise near its reference that falls as (1 - n / N)^x is followed for any x.
+TEST(PredictStops, FollowsTheNearnessOfAReference) {
+    for (const double x : {0.25, 0.5, 1.}) {
+        const RuleTrend rule{.reference = 10000, .nearness = x};
+        const auto fall = [&](int spp) { return std::pow(1 - spp / 10000., x) / std::sqrt(spp); };
+        const auto value = [&](int spp) { return kThreshold * fall(spp) / fall(7000); };
+        for (const int end : {200, 3000})
+            EXPECT_NEAR(PredictOne(Follow(rule, end, value)), 7000, 10) << x << " " << end;
+    }
+}
+
+TEST(RangeOfRest, HoldsThePredictionAndNarrowsTowardsTheEnd) {
+    double last = 1e9;
+    for (const double left : {20000., 2000., 200., 20.}) {
+        const auto [least, most] = RangeOfRest(1000, left);
+        EXPECT_GT(least, 0);
+        EXPECT_LT(least, left);
+        EXPECT_GT(most, left);
+        EXPECT_LT(most / least, last);
+        last = most / least;
+    }
+    EXPECT_EQ(RangeOfRest(1000, 0), (std::array<double, 2>{0, 0}));
+}
+
 TEST(PredictStops, CountsTheVotesThatAreMissing) {
     const RuleTrend rule{.kind = RuleTrend::Error, .votes = 3};
     const auto value = [](int spp) { return kThreshold * std::sqrt(2000.0 / spp); };

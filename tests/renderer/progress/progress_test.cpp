@@ -71,8 +71,9 @@ TEST(ProgressText, PredictsTheEndWhereItCan) {
     EXPECT_EQ(ProgressText(StateOf(progress, 50000, true)),
               " 80%  9/16 blocks done  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
               "about 30.0s left");
-    EXPECT_TRUE(Contains(ProgressJson(StateOf(progress, 50000, true)),
-                         R"("remainingSeconds":30.000,"remainingIsUpperBound":false)"));
+    EXPECT_TRUE(Contains(
+        ProgressJson(StateOf(progress, 50000, true)),
+        R"("remainingSeconds":30.000,"remainingRange":null,"remainingIsUpperBound":false)"));
     // A clock can end it before.
     progress.secondsLeft = 12;
     EXPECT_TRUE(Contains(ProgressText(StateOf(progress, 50000, true)), "at most 12.0s left"));
@@ -83,6 +84,39 @@ TEST(ProgressText, PredictsTheEndWhereItCan) {
     EXPECT_FALSE(Contains(ProgressText(StateOf(progress, 50000, true)), "left"));
 }
 
+// What holds for the cap says nothing before a block has stopped.
+TEST(ProgressText, HasNoTimeBeforeThereAreData) {
+    RenderProgress progress = Halfway();
+    progress.stoppedBlocks = 0;
+    EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).ends_with("1:40 elapsed"));
+    EXPECT_TRUE(Contains(ProgressJson(StateOf(progress, 50000, true)),
+                         R"("remainingSeconds":null,"remainingRange":null)"));
+    EXPECT_TRUE(ProgressText(StateOf(progress, 50000, false)).ends_with("  1:40 left"));
+    progress.secondsLeft = 500;
+    EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).ends_with("at most 8:20 left"));
+}
+
+TEST(ProgressText, HasARangeOfTimes) {
+    RenderProgress progress = Halfway();
+    progress.predictedSamples = 1250000;
+    progress.predictedSeconds = 650;
+    progress.secondsRange = {{550, 830}};
+    EXPECT_TRUE(
+        ProgressText(StateOf(progress, 50000, true)).ends_with("  done in 9 to 14 min (80 %)"));
+    EXPECT_TRUE(Contains(ProgressJson(StateOf(progress, 50000, true)),
+                         R"("remainingSeconds":650.000,"remainingRange":[550.000,830.000])"));
+    progress.secondsLeft = 700;  // of a clock that ends it within the range
+    EXPECT_TRUE(
+        ProgressText(StateOf(progress, 50000, true)).ends_with("  done in 9 to 12 min (80 %)"));
+}
+
+TEST(FormatRange, IsRoundedOutwards) {
+    EXPECT_EQ(FormatRange({0, 0.2}), "0 to 1 s");
+    EXPECT_EQ(FormatRange({61.5, 119.5}), "61 to 120 s");
+    EXPECT_EQ(FormatRange({90, 130}), "1 to 3 min");
+    EXPECT_EQ(FormatRange({4000, 8000}), "1 to 3 h");
+}
+
 TEST(ProgressText, GuessesNothingWithoutARate) {
     EXPECT_FALSE(Contains(ProgressText(StateOf(Halfway(), 0, true)), "left"));
     EXPECT_TRUE(Contains(ProgressText(StateOf({}, 0, true)), "100%"));
@@ -91,9 +125,9 @@ TEST(ProgressText, GuessesNothingWithoutARate) {
 TEST(ProgressJson, IsOneLineOfJson) {
     EXPECT_EQ(
         ProgressJson(StateOf(Halfway(), 50000, true)),
-        R"({"event":"progress","percent":50.00,"blocks":16,"stoppedBlocks":9,)"
+        R"({"event":"progress","percent":50.00,"blocks":16,"cleanBlocks":9,)"
         R"("blocksAtCap":0,"medianSpp":1240,"samples":5000000,"samplesPerSecond":50000.0,"elapsedSeconds":100.000,)"
-        R"("remainingSeconds":100.000,"remainingIsUpperBound":true})");
+        R"("remainingSeconds":100.000,"remainingRange":null,"remainingIsUpperBound":true})");
     EXPECT_TRUE(Contains(ProgressJson(StateOf(Halfway(), 0, true)), R"("remainingSeconds":null)"));
 }
 
@@ -149,6 +183,21 @@ TEST(ProgressPrinter, WritesPlainLinesEveryThirtySecondsWithoutControlCodes) {
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);  // at 30, 60, 90 and the end
     EXPECT_FALSE(Contains(text, "\r"));
     EXPECT_FALSE(Contains(text, "\x1b"));
+}
+
+// Of a render that takes long, and of no other.
+TEST(ProgressPrinter, WritesItsFirstForecastAtOnce) {
+    for (const double most : {20., 200.}) {
+        const std::string text = Printed(ProgressStyle::Plain, [&](ProgressPrinter& printer) {
+            for (int second = 1; second <= 20; ++second) {
+                RenderProgress progress{.samples = second, .samplesToCap = 1};
+                progress.seconds = second;
+                if (second > 5) progress.secondsRange = {{10, most}};
+                printer.Print(progress);
+            }
+        });
+        EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), most > 30 ? 1 : 0);
+    }
 }
 
 // What is predicted may grow, and the last state may have been printed as it came.

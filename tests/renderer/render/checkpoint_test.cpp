@@ -28,6 +28,10 @@ class SummingCriterion final : public Criterion {
         for (size_t i = 0; i < view.mean.size(); ++i) sum += view.mean[i] - view.halfMean[i];
         return {.stop = --passes == 0, .checked = true, .value = sum, .threshold = 0};
     }
+    // Forecasts have it of every second decision.
+    std::optional<double> NetworkNoise() const override {
+        return passes % 2 == 0 ? std::optional(0.5 * passes) : std::nullopt;
+    }
     std::vector<std::byte> Save() const override {
         StateWriter writer;
         writer.Put(sum);
@@ -67,6 +71,7 @@ void ExpectSame(const RenderResult& a, const RenderResult& b) {
             EXPECT_EQ(a.blocks[i].decisions[k].spp, b.blocks[i].decisions[k].spp);
             EXPECT_EQ(a.blocks[i].decisions[k].decision.value,
                       b.blocks[i].decisions[k].decision.value);
+            EXPECT_EQ(a.blocks[i].decisions[k].networkNoise, b.blocks[i].decisions[k].networkNoise);
         }
     }
 }
@@ -208,7 +213,7 @@ TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
     const auto errorOf = [&](const std::string& path) {
         return ErrorOf([&] { ReadCheckpoint(path, kIdentity, &film); });
     };
-    const std::string path = fileOf("lull checkpoint 4"), error = errorOf(path);
+    const std::string path = fileOf("lull checkpoint 5"), error = errorOf(path);
     EXPECT_TRUE(Contains(error, path + ": it was written by an older lull; ")) << error;
     EXPECT_TRUE(Contains(errorOf(fileOf("something else")), "it is not a checkpoint"));
 }

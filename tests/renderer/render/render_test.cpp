@@ -183,6 +183,65 @@ TEST(Render, ReportsProgressInOrderAndTheEnd) {
     EXPECT_EQ(reports.back().stoppedBlocks, reports.back().blocks);
 }
 
+// Stops at `stop` spp by an error that falls with the root of the samples.
+struct FallingCriterion final : Criterion {
+    explicit FallingCriterion(double stop) : stop(stop) {}
+    ViewNeed Need(int) const override { return ViewNeed::Nothing; }
+    Decision Observe(const BlockView& view) override {
+        const double value = std::sqrt(stop / view.spp);
+        return {.stop = value <= 1, .checked = true, .value = value, .threshold = 1};
+    }
+    double stop;
+};
+
+// There is no time before 60 spp, then a range of it; after an interruption once the run has taken
+// a sample per pixel.
+TEST(Render, PredictsTheTimeOnceThereAreData) {
+    RenderOptions options = SmallRender();
+    options.schedule.cap = 2000;
+    options.trend = RuleTrend();
+    options.makeCriterion = [](const BlockInfo&) {
+        return std::make_unique<FallingCriterion>(400);
+    };
+    options.events.progressInterval = 0;
+    std::vector<RenderProgress> reports;
+    bool isInterrupted = false;
+    options.events.onProgress = [&](const RenderProgress& p) {
+        reports.push_back(p);
+        isInterrupted = p.medianSpp >= 200;
+    };
+    RenderState state;
+    Film film(kRegion);
+    const auto check = [&](int64_t before) {
+        int predicted = 0;
+        for (const RenderProgress& p : reports) {
+            const bool isKnown = p.medianSpp >= 60 && p.samples >= before + kRegion.Area();
+            if (!isKnown && p.samplesToCap > 0 && p.stoppedBlocks == 0) {
+                EXPECT_FALSE(p.predictedSeconds) << p.samples;
+            }
+            if (!p.secondsRange || p.stoppedBlocks > 0) continue;
+            ++predicted;
+            EXPECT_NEAR(double(p.samples) + *p.predictedSamples, 400. * double(kRegion.Area()),
+                        40. * double(kRegion.Area()));
+            EXPECT_LT((*p.secondsRange)[0], *p.predictedSeconds);
+            EXPECT_GT((*p.secondsRange)[1], *p.predictedSeconds);
+        }
+        EXPECT_GT(predicted, 5);
+    };
+    options.isCancelled = [&] { return isInterrupted; };
+    RenderContext context{.source = SyntheticSample, .film = &film};
+    context.checkpoints.write = [&](const RenderState& s) { state = s; };
+    EXPECT_TRUE(Render(context, options).cancelled);
+    check(0);
+
+    reports.clear();
+    const int64_t before = film.SampleCount();
+    options.isCancelled = {};
+    context.interrupted = &state;
+    EXPECT_FALSE(Render(context, options).cancelled);
+    check(before);
+}
+
 // The first of them come soon, and nothing of the image depends on them.
 TEST(Render, ShowsPreviews) {
     for (const int threads : {1, 4}) {

@@ -20,6 +20,7 @@ RenderResult TwoBlocks() {
     decision.threshold = 0.5;
     decision.votes = 1;
     result.blocks[0].decisions = {{20, decision}};
+    result.blocks[0].block.noise = 0.5;
     result.blocks[1].block = {
         .pixels = {{10, 0}, {20, 10}}, .spp = 100, .votes = false, .leader = 0, .stopped = true};
     result.blocks[1].seconds = 20;
@@ -62,12 +63,13 @@ TEST(ReportJson, HoldsBlocksTotalsAndProvenance) {
     EXPECT_EQ(report["provenance"]["estimator"], "combined");
     EXPECT_EQ(report["totals"]["rejectedSamples"], 3);
     EXPECT_EQ(report["totals"]["samplesSaved"], 0.4);
-    EXPECT_EQ(report["totals"]["stoppedBlocks"], 1);
+    EXPECT_EQ(report["totals"]["cleanBlocks"], 1);
     EXPECT_EQ(report["totals"]["blocksAtCap"], 1);
     EXPECT_EQ(report["warnings"]["zero-area triangle"], 7);
     const auto& blocks = report["blocks"];
     ASSERT_EQ(blocks.size(), 2u);
-    EXPECT_EQ(blocks[0]["end"], "stopped");
+    EXPECT_EQ(blocks[0]["end"], "clean");
+    EXPECT_EQ(blocks[0]["maskedNoise"], 0.5);
     EXPECT_EQ(blocks[0]["threshold"], 20);
     EXPECT_EQ(blocks[0]["decisions"]["spp"], nlohmann::json({20}));
     EXPECT_EQ(blocks[0]["decisions"]["value"], nlohmann::json({0.25}));

@@ -118,17 +118,17 @@ typedef struct lull_rect {
 
 /* State of a block. No number is NaN. */
 typedef struct lull_answer {
-    int stop;             /* 1: needs no more samples; final */
-    int checked;          /* 1: the call checked the block; 0: the numbers are older */
-    int spp;              /* of the last picture, or of the one that stopped the block */
-    int next_spp;         /* smallest spp of the next check; 0: none */
-    int votes;            /* consecutive votes to stop */
-    int votes_needed;     /* votes that stop the block; 1 for rules without votes */
-    double value;         /* value of the rule, */
-    double threshold;     /* and its threshold */
-    double probability;   /* that an observer sees noise (models); 1 before the first estimate;
-                             -1: none */
-    double visible_noise; /* RMS noise in L*, masked by texture, at the last check with a half
+    int stop;            /* 1: needs no more samples; final */
+    int checked;         /* 1: the call checked the block; 0: the numbers are older */
+    int spp;             /* of the last picture, or of the one that stopped the block */
+    int next_spp;        /* smallest spp of the next check; 0: none */
+    int votes;           /* consecutive votes to stop */
+    int votes_needed;    /* votes that stop the block; 1 for rules without votes */
+    double value;        /* value of the rule, */
+    double threshold;    /* and its threshold */
+    double probability;  /* that an observer sees noise (models); 1 before the first estimate;
+                            -1: none */
+    double masked_noise; /* RMS noise in L*, masked by texture, at the last check with a half
                              buffer; -1: unknown */
 } lull_answer;
 
@@ -163,7 +163,7 @@ LULL_API lull_status lull_stopper_observe_block(lull_stopper* stopper, int block
 /* Returns the last answer for a block; `spp` is 0 before the first. Error: LULL_BAD_ARGUMENT. */
 LULL_API lull_status lull_stopper_answer(const lull_stopper* stopper, int block,
                                          lull_answer* answer);
-/* Returns 1 if all blocks have stopped, and for NULL. */
+/* Returns 1 if all blocks are clean, and for NULL. */
 LULL_API int lull_stopper_done(const lull_stopper* stopper);
 
 /* Returns a warning about the pictures so far, as a line of text; "" if there is none, and for
