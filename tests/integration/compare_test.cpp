@@ -115,12 +115,12 @@ TEST(Compare, TakesPairs) {
     const std::string pair = std::string(" scene.pbrt --stereo 0.3,4") + kSize;
     const Outcome outcome =
         ExpectSuccess(directory, "compare" + pair +
-                                     "--snapshots --denoise --stop dammertz:0.02 --cap 80 -o room "
+                                     "--snapshots --denoise --stop lnoise:1.5 --cap 160 -o room "
                                      "--verify 1");
     EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
-    RunLull(directory, "render" + pair + "--stop dammertz:0.02 --cap 80 -o a.exr");
-    RunLull(directory, "render" + pair + "--denoise --cap 80 -o clean.exr");
-    RunLull(directory, "render" + pair + "--spp 80 -o r.exr");
+    RunLull(directory, "render" + pair + "--stop lnoise:1.5 --cap 160 -o a.exr");
+    RunLull(directory, "render" + pair + "--denoise --cap 160 -o clean.exr");
+    RunLull(directory, "render" + pair + "--spp 160 -o r.exr");
     for (const auto& [file, same] :
          {std::pair("room.automatic", "a"), std::pair("room.denoised", "clean"),
           std::pair("room.reference", "r")}) {
