@@ -132,6 +132,10 @@ ExitCode RunDenoise(Options options) {
         throw Error("--half " + options.half + ": the same file as " + options.input +
                     "; render once more, with another --seed");
     ExrImage exr = ReadExr(options.input);
+    if (exr.views.size() > 1)
+        throw Error(
+            options.input +
+            ": is a pair for two eyes, which lull render --denoise denoises as it renders it");
     NoisyPicture picture = ReadHalves(options, &exr);
     CheckHalves(options, exr, picture);
     const PixelRect shown = ShownWindow(exr, options.input);

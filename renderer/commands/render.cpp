@@ -124,7 +124,10 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
     const Film& film = session->GetFilm();
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
-        denoised = DenoisePreview(film);
+        denoised = DenoiseEyes(film.Region(), p.blocks, p.settings.schedule.eyeWidth,
+                               [&](const PixelRect& eye, const std::vector<Block>&) {
+                                   return DenoisePreview(film, eye);
+                               });
         RemoveUnknownErrors(result, film.Region(), &*denoised);
     }
     ResultFiles written(Rescue::None);
@@ -155,24 +158,6 @@ struct DenoiserResults {
     std::vector<ExrChannel> halves;  // what can be denoised later
 };
 
-// Denoises each eye of a pair by itself, so that neither sees the other at the seam.
-DenoisedImage DenoisePair(const PreparedRender& p, const Film& film, const ProgressStyle& style,
-                          const DenoiserOptions& how) {
-    const PixelRect& region = p.region;
-    const Vec2i across(region.Width() / 2, 0);
-    const PixelRect left{region.min, region.max - across};
-    const size_t count = p.blocks.size() / 2;
-    const auto denoise = [&](const PixelRect& eye, size_t first) {
-        const std::vector<Block> blocks(p.blocks.begin() + std::ptrdiff_t(first),
-                                        p.blocks.begin() + std::ptrdiff_t(first + count));
-        return film.layers.Find<LightGroupLayer>()
-                   ? DenoiseWithReports(GroupedPictureOf(film, eye), eye, blocks, style, how)
-                   : DenoiseWithReports(PictureOf(film, eye), eye, blocks, style, how);
-    };
-    const DenoisedImage first = denoise(left, 0);
-    return Beside(first, denoise({left.min + across, left.max + across}, count));
-}
-
 // Makes the requested images, and frees their inputs.
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
@@ -182,15 +167,23 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     DenoiserResults made;
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
     const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
-    const auto denoise = [&](auto picture) {
-        return DenoiseWithReports(std::move(picture), region, p.blocks, style, how);
+    const auto denoise = [&](auto picture, const PixelRect& part,
+                             const std::vector<Block>& blocks) {
+        return DenoiseWithReports(std::move(picture), part, blocks, style, how);
+    };
+    // An image gives the denoiser the film's memory; an eye leaves it to the other.
+    const bool hasGroups = film.layers.Find<LightGroupLayer>();
+    const auto denoisePart = [&](const PixelRect& part, const std::vector<Block>& blocks) {
+        if (part == region)
+            return hasGroups ? denoise(TakeGroups(&film), part, blocks)
+                             : denoise(TakePicture(&film), part, blocks);
+        return hasGroups ? denoise(GroupedPictureOf(film, part), part, blocks)
+                         : denoise(PictureOf(film, part), part, blocks);
     };
     const auto start = std::chrono::steady_clock::now();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);
     if (p.request.denoise)
-        made.image = p.filmSettings.isPair                 ? DenoisePair(p, film, style, how)
-                     : film.layers.Find<LightGroupLayer>() ? denoise(TakeGroups(&film))
-                                                           : denoise(TakePicture(&film));
+        made.image = DenoiseEyes(region, p.blocks, settings.schedule.eyeWidth, denoisePart);
     film.layers.ForgetFeatures();  // what follows needs the memory
     film.DropHalf();
     if (!made.image) return made;

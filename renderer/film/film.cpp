@@ -81,9 +81,12 @@ FilmPixel Film::At(const Vec2i& p) const {
 Rgb Film::MeanAt(const Vec2i& p) const {
     const uint32_t count = tiles.At(TileOf(p)).count;
     if (count > 0 || firstLook.colours.empty()) return MeanOf(sums.At(p), count);
-    const int spacing = firstLook.spacing, columns = (Region().Width() + spacing - 1) / spacing;
-    const Vec2i square = (p - Region().min) / spacing;
-    return firstLook.colours[size_t(square.y()) * size_t(columns) + size_t(square.x())];
+    const auto& [spacing, colours, eyeWidth] = firstLook;
+    const int width = eyeWidth > 0 ? eyeWidth : Region().Width();
+    const int perEye = (width + spacing - 1) / spacing, columns = perEye * Region().Width() / width;
+    const Vec2i at = p - Region().min;
+    const int column = at.x() / width * perEye + at.x() % width / spacing;
+    return colours[size_t(at.y() / spacing) * size_t(columns) + size_t(column)];
 }
 
 FilmTile Film::Tile(const PixelRect& pixels) { return {this, pixels}; }

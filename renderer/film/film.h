@@ -21,11 +21,12 @@ struct SampleSpread {
     double light = 0;      // of that of light paths, one by one, in the round
 };
 
-// A coarse picture of a region: one colour for each square of spacing x spacing pixels, row by row,
-// finite.
+// A coarse picture of a region: one colour for each square of spacing x spacing pixels of an image,
+// row by row, finite.
 struct FirstLook {
     int spacing = 1;  // pixels, > 0
     std::vector<Rgb> colours;
+    int eyeWidth = 0;  // as in TileGrid
 };
 
 // The means of a rectangle of pixels as the stopping criteria read them: row-major RGB

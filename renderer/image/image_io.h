@@ -47,6 +47,9 @@ struct ExrImage {
     Vec2i displaySize{0, 0};       // the display window starts at (0, 0); 0: as the data window
     std::vector<ExrChannel> channels;
     std::map<std::string, ExrAttribute> attributes;
+    // Read from files of several, such as those of two eyes: the first is that of the channels; the
+    // names of others come before theirs, as in right.R.
+    std::vector<std::string> views;
 
     // Returns the channel of that name, or null.
     const ExrChannel* Find(const std::string& name) const;

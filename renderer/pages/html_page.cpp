@@ -177,6 +177,7 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
     page["cap"] = provenance.schedule.cap;
     page["width"] = film.Region().Width();
     page["height"] = film.Region().Height();
+    if (const int width = provenance.schedule.eyeWidth; width > 0) page["eyeWidth"] = width;
     page["images"] = {std::move(image)};
     if (denoised) {
         page["images"].push_back(

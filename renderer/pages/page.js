@@ -1,6 +1,6 @@
 "use strict";
 // Fills in the parts of a page that all reports have, with its data:
-//   title, cap, width, height, notes [text], warnings {kind: count}, provenance {}
+//   title, cap, width, height, eyeWidth?, notes [text], warnings {kind: count}, provenance {}
 //   blocks [{x, y, width, height, end?, decisions? {threshold, spp [], value [], votes []},
 //            curves? {spp [], entropy [], noise []}}], in pixels of the image, row by row
 //   images [{name, label, rule, src, blocks [{spp, seconds, ruleSeconds, estimated}]}]

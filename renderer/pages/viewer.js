@@ -1,6 +1,6 @@
 "use strict";
 // Shows the images with the grid of blocks: one; two that take turns, that a divider parts, or that
-// are side by side.
+// are side by side; of a pair for two eyes, both eyes' in turn.
 
 const view = {a: 0, b: 1, mode: "one", overlay: "grid", zoom: 0, divide: 0.5, block: 0};
 let layers = [];  // pictures that can be shown: [{label, src, ends?}], with the ends of a map's scale
@@ -100,17 +100,18 @@ function makeStage(data) {
 }
 
 // Returns how wide an image is shown: as its zoom says, or as large as the window has room for.
-function shownWidth(data, room) {
-  if (view.zoom) return data.width * view.zoom;
-  return Math.min(room, Math.max(320, 0.85 * innerHeight * data.width / data.height));
+function shownWidth(width, height, room) {
+  if (view.zoom) return width * view.zoom;
+  return Math.min(room, Math.max(320, 0.85 * innerHeight * width / height));
 }
 
 function showStages(data) {
-  const two = view.mode === "side", over = view.mode === "divide" || view.mode === "flicker";
+  const two = view.mode === "side", eyes = view.mode === "eyes", over = view.mode === "divide" || view.mode === "flicker";
+  const pixels = eyes ? data.eyeWidth : data.width;
   stages[1].figure.hidden = !two;
   stages.forEach((stage, s) => {
     if (s && !two) return;
-    const lower = layers[s ? view.b : view.a], upper = over ? layers[view.b] : null;
+    const lower = layers[s ? view.b : view.a], upper = over ? layers[view.b] : eyes ? lower : null;
     stage.images[0].src = lower.src;
     stage.images[0].alt = lower.label;
     stage.images[1].hidden = !upper;
@@ -120,10 +121,12 @@ function showStages(data) {
       stage.images[1].alt = upper.label;
     }
     stage.caption.textContent = view.mode === "divide" ? `left: ${lower.label} \u00b7 right: ${upper.label}` : lower.label;
-    const width = shownWidth(data, stage.scroller.clientWidth || 600);
+    const width = shownWidth(pixels, data.height, stage.scroller.clientWidth || 600);
     stage.canvas.style.width = width + "px";
-    stage.canvas.style.height = width * data.height / data.width + "px";
-    stage.canvas.classList.toggle("large", width > 1.5 * data.width);
+    stage.canvas.style.height = width * data.height / pixels + "px";
+    stage.canvas.classList.toggle("large", width > 1.5 * pixels);
+    stage.canvas.classList.toggle("eyes", eyes);
+    stage.svg.setAttribute("viewBox", `0 0 ${pixels} ${data.height}`);
     drawOverlay(data, stage.svg);
   });
   divideAt(view.divide);
@@ -131,17 +134,21 @@ function showStages(data) {
   showLegend(data);
 }
 
-// Lets both images take turns while that is how they are shown.
+// Lets both images take turns while that is how they are shown; by the button alone once it is
+// pressed, and for those who want less motion.
 function takeTurns() {
   clearInterval(flickering);
-  if (view.mode !== "flicker") return;
+  const button = byId("turn"), names = {flicker: [view.a, view.b].map(i => layers[i].label), eyes: ["left eye", "right eye"]}[view.mode];
+  button.hidden = !names;
+  if (!names) return;
   const [stage] = stages;
   const turn = () => {
     stage.images[1].hidden = !stage.images[1].hidden;
-    stage.caption.textContent = stage.images[1].hidden ? layers[view.a].label : layers[view.b].label;
+    stage.caption.textContent = names[stage.images[1].hidden ? 0 : 1];
   };
   turn();
-  flickering = setInterval(turn, flickerMs);
+  button.onclick = () => { clearInterval(flickering); turn(); };
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) flickering = setInterval(turn, flickerMs);
 }
 
 function showLegend(data) {
@@ -173,15 +180,17 @@ function startViewer(data) {
   }
   const second = makeChoice("and", pictures, view.b, v => { view.b = +v; update(); });
   const over = makeChoice("Overlay", overlays, view.overlay, v => { view.overlay = v; update(); });
-  const showSecond = () => { second.hidden = view.mode === "one"; };
+  const showSecond = () => { second.hidden = view.mode === "one" || view.mode === "eyes"; };
+  const modes = [["one", "one image"], ...(data.eyeWidth ? [["eyes", "both eyes, flickering"]] : []),
+    ...(layers.length > 1 ? [["flicker", "two, flickering"], ["divide", "two, with a divider"], ["side", "two, side by side"]] : [])];
   const setMode = mode => {
     view.mode = mode;
-    if (mode === "flicker") over.querySelector("select").value = view.overlay = "none";  // it would hide the noise
+    if (mode === "flicker" || mode === "eyes") over.querySelector("select").value = view.overlay = "none";  // it would hide the noise
     showSecond();
     update();
   };
   byId("controls").append(
-    layers.length > 1 ? makeChoice("Show", [["one", "one image"], ["flicker", "two, flickering"], ["divide", "two, with a divider"], ["side", "two, side by side"]], view.mode, setMode) : "",
+    modes.length > 1 ? makeChoice("Show", modes, view.mode, setMode) : "", make("button", {id: "turn", type: "button", hidden: ""}, "Switch"),
     makeChoice("Image", pictures, view.a, v => { view.a = +v; update(); }), second,
     data.blocks.length ? over : "",
     makeChoice("Zoom", [[0, "fit"], [0.5, "50 %"], [1, "100 %"], [2, "200 %"], [4, "400 %"], [8, "800 %"]], 0, v => { view.zoom = +v; update(); }));

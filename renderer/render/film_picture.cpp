@@ -176,8 +176,7 @@ NoisyPicture PictureOf(const Film& film, const PixelRect& rect) {
     return picture;
 }
 
-NoisyPicture ReducedPictureOf(const Film& film, int halvings) {
-    const PixelRect& region = film.Region();
+NoisyPicture ReducedPictureOf(const Film& film, const PixelRect& region, int halvings) {
     const int scale = 1 << halvings;
     const auto reduced = [&](Planes image) {
         for (int i = 0; i < halvings; ++i) image = Halved(image);
@@ -280,17 +279,21 @@ bool HasAllSamples(const Film& film) {
 
 void TakeFirstLook(const SampleSource& source, const RenderOptions& options, Film* film) {
     if (HasAllSamples(*film)) return;
-    const PixelRect& region = film->Region();
-    const int columns = (region.Width() + kSpacing - 1) / kSpacing;
-    const int rows = (region.Height() + kSpacing - 1) / kSpacing;
-    FirstLook look{kSpacing, std::vector<Rgb>(size_t(columns) * size_t(rows), Rgb(0, 0, 0))};
+    const std::vector<PixelRect> eyes = EyesOf(film->Region(), options.schedule.eyeWidth);
+    const int perEye = (eyes[0].Width() + kSpacing - 1) / kSpacing;
+    const int columns = perEye * int(eyes.size());
+    const int rows = (eyes[0].Height() + kSpacing - 1) / kSpacing;
+    FirstLook look{kSpacing, std::vector<Rgb>(size_t(columns) * size_t(rows), Rgb(0, 0, 0)),
+                   options.schedule.eyeWidth};
     const auto isCancelled = [&] { return options.isCancelled && options.isCancelled(); };
     const auto takeRow = [&](int row) {
         Sampler sampler = options.sampler;
         PathSample sample;
         for (int column = 0; column < columns && !isCancelled(); ++column) {
-            const Vec2i middle = kSpacing * Vec2i(column, row) + Vec2i(kSpacing, kSpacing) / 2;
-            const Vec2i pixel = (region.min + middle).cwiseMin(region.max - Vec2i(1, 1));
+            const PixelRect& eye = eyes[size_t(column / perEye)];
+            const Vec2i middle =
+                kSpacing * Vec2i(column % perEye, row) + Vec2i(kSpacing, kSpacing) / 2;
+            const Vec2i pixel = (eye.min + middle).cwiseMin(eye.max - Vec2i(1, 1));
             source(sampler, pixel, 0, &sample);
             look.colours[size_t(row) * size_t(columns) + size_t(column)] = sample.radiance;
         }

@@ -20,9 +20,9 @@ NoisyPicture PictureOf(const Film&, const PixelRect&);
 // which has to be there; the first look belongs to the last group.
 GroupedPicture GroupedPictureOf(const Film&, const PixelRect&);
 
-// Returns the whole film at a lower resolution, for a quick look: each pixel is the mean of
+// Returns a region of the film at a lower resolution, for a quick look: each pixel is the mean of
 // 2^halvings x 2^halvings.
-NoisyPicture ReducedPictureOf(const Film&, int halvings);
+NoisyPicture ReducedPictureOf(const Film&, const PixelRect& region, int halvings);
 
 // Do the same for all pixels, and free what the denoiser alone reads of the film, row by row: so
 // the picture takes its place.

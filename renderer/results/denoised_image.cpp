@@ -41,9 +41,6 @@ DenoisedImage DenoiseImage(GroupedPicture picture, const PixelRect& region,
     return image;
 }
 
-namespace {
-
-// Joins rows of both sides, with so many values each.
 std::vector<float> RowsBeside(const std::vector<float>& left, const std::vector<float>& right,
                               size_t row) {
     std::vector<float> both;
@@ -55,8 +52,9 @@ std::vector<float> RowsBeside(const std::vector<float>& left, const std::vector<
     return both;
 }
 
-}  // namespace
+namespace {
 
+// Returns the images of both eyes of a pair as one, the blocks of the left first.
 DenoisedImage Beside(const DenoisedImage& left, const DenoisedImage& right) {
     const int width = left.image.width;
     const auto join = [&](const std::vector<float>& a, const std::vector<float>& b, int channels) {
@@ -72,14 +70,26 @@ DenoisedImage Beside(const DenoisedImage& left, const DenoisedImage& right) {
     return both;
 }
 
-DenoisedImage DenoisePreview(const Film& film, int64_t mostPixels) {
-    const PixelRect& region = film.Region();
+}  // namespace
+
+DenoisedImage DenoiseEyes(
+    const PixelRect& region, const std::vector<Block>& blocks, int eyeWidth,
+    const std::function<DenoisedImage(const PixelRect&, const std::vector<Block>&)>& denoise) {
+    if (eyeWidth == 0) return denoise(region, blocks);
+    const std::vector<PixelRect> eyes = EyesOf(region, eyeWidth);
+    const auto middle = blocks.begin() + std::ptrdiff_t(blocks.size() / 2);
+    const DenoisedImage left = denoise(eyes[0], {blocks.begin(), middle});
+    return Beside(left, denoise(eyes[1], {middle, blocks.end()}));
+}
+
+DenoisedImage DenoisePreview(const Film& film, const PixelRect& region, int64_t mostPixels) {
     std::vector<Vec2i> sizes = {{region.Width(), region.Height()}};
     while (int64_t(sizes.back().x()) * sizes.back().y() > mostPixels)
         sizes.push_back((sizes.back() + Vec2i(1, 1)) / 2);
     if (sizes.size() == 1)
         return DenoiseImage(PictureOf(film, region), region, {}, {.effort = Effort::Quick});
-    Planes picture = Denoise(ReducedPictureOf(film, int(sizes.size()) - 1), Effort::Quick).picture;
+    Planes picture =
+        Denoise(ReducedPictureOf(film, region, int(sizes.size()) - 1), Effort::Quick).picture;
     for (size_t i = sizes.size() - 1; i-- > 0;)
         picture = Doubled(picture, sizes[i].x(), sizes[i].y());
     return {{picture.width, picture.height, Interleaved(picture)},

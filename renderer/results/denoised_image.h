@@ -1,6 +1,7 @@
 // Denoises a finished render.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,14 +31,21 @@ DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vec
 DenoisedImage DenoiseImage(GroupedPicture, const PixelRect& region, const std::vector<Block>&,
                            const DenoiserOptions& = {});
 
-// Returns the images of both eyes of a pair as one, side by side, the blocks of the left first.
-DenoisedImage Beside(const DenoisedImage& left, const DenoisedImage& right);
+// Returns what denoise(region, blocks) makes of an image, or of each eye of a pair by itself, so
+// that neither sees the other at the seam; as one image, side by side.
+DenoisedImage DenoiseEyes(
+    const PixelRect& region, const std::vector<Block>& blocks, int eyeWidth,
+    const std::function<DenoisedImage(const PixelRect&, const std::vector<Block>&)>& denoise);
 
-// Denoises what there is of a render for a quick look: a larger one at a lower resolution of at
-// most so many pixels, so that it does not take minutes, and its errors are not known. Takes at
-// most kPreviewBytes of memory a pixel if it is large.
+// Joins rows of both sides, with so many values each.
+std::vector<float> RowsBeside(const std::vector<float>& left, const std::vector<float>& right,
+                              size_t row);
+
+// Denoises what there is of a region of a render for a quick look: a larger one at a lower
+// resolution of at most so many pixels, so that it does not take minutes, and its errors are not
+// known. Takes at most kPreviewBytes of memory a pixel if it is large.
 inline constexpr int kPreviewBytes = 48;
-DenoisedImage DenoisePreview(const Film&, int64_t mostPixels = 2'000'000);
+DenoisedImage DenoisePreview(const Film&, const PixelRect& region, int64_t mostPixels = 2'000'000);
 
 // Returns how large the visible errors of blocks probably are at most.
 std::string TextOf(const std::vector<std::optional<VisibleError>>&,

@@ -289,12 +289,16 @@ void WriteImage(const PictureFiles& files, const PictureOrigin& origin,
     for (size_t i = 0; i < picture.blocks.size(); ++i)
         samples += picture.blocks[i].pixels.Area() * picture.spp[i];
     const ExrImage exr = MakeExr(origin, region, samples, picture.seconds);
+    const RowSource means = MeansOf(image), spp = SppOf(region, picture.blocks, picture.spp);
+    if (origin.scene.rightEye) {
+        WritePair(files, origin.scene, exr, means, spp, means, {}, results);
+        return;
+    }
     results->Write(files.exr, [&](const std::string& file) {
-        WriteExr(file, exr,
-                 ChannelsOf(exr, MeansOf(image), SppOf(region, picture.blocks, picture.spp)));
+        WriteExr(file, exr, ChannelsOf(exr, means, spp));
     });
     results->Write(files.png, [&](const std::string& file) {
-        WritePng(file, MeansOf(image), image.width, image.height);
+        WritePng(file, means, image.width, image.height);
     });
 }
 

@@ -24,13 +24,18 @@ PixelRect TileAt(const PixelRect& block, int tileSize, int tile) {
 
 }  // namespace
 
+std::vector<PixelRect> EyesOf(const PixelRect& region, int eyeWidth) {
+    if (eyeWidth == 0) return {region};
+    const int middle = region.min.x() + eyeWidth;
+    return {{region.min, {middle, region.max.y()}}, {{middle, region.min.y()}, region.max}};
+}
+
 std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions& options) {
     if (options.eyeWidth > 0) {
         ScheduleOptions ofEye = options;
         ofEye.eyeWidth = 0;
         const Vec2i across(options.eyeWidth, 0);
-        std::vector<Block> blocks =
-            MakeBlocks({region.min, {region.min.x() + across.x(), region.max.y()}}, ofEye);
+        std::vector<Block> blocks = MakeBlocks(EyesOf(region, options.eyeWidth)[0], ofEye);
         const int count = int(blocks.size());
         for (int i = 0; i < count; ++i) {
             Block right = blocks[size_t(i)];

@@ -102,6 +102,9 @@ struct Tile {
     int first, count;
 };
 
+// Returns the images within a region: those of both eyes, the left one first, or one alone.
+std::vector<PixelRect> EyesOf(const PixelRect& region, int eyeWidth);
+
 // Cuts a region into blocks, row by row; of a pair, all of the left eye come first.
 std::vector<Block> MakeBlocks(const PixelRect& region, const ScheduleOptions&);
 

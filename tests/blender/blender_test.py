@@ -41,6 +41,7 @@ volume dicing missing beckmann""".split()
 
 EXPORT = "bpy.ops.lull.check(); print('TEXT', repr(bpy.data.texts['lull: differences'].as_string())); bpy.ops.lull.export(filepath={!r})"
 LAYERS = "r.image_settings.file_format = 'OPEN_EXR_MULTILAYER'; "
+EYES = "r.use_multiview, eyes = True, scene.camera.data.stereo; eyes.interocular_distance, eyes.convergence_distance = 0.6, 5; "
 PROGRAM_OF = ("bpy.ops.preferences.addon_enable(module='lull_engine'); "
               "bpy.context.preferences.addons['lull_engine'].preferences.program = {!r}")
 
@@ -71,6 +72,7 @@ class AddOn(unittest.TestCase):
             ("open", "sunlit_pane", "bpy.data.objects['pane'].hide_render = True", lull),
             ("cropped", "plastic", LAYERS + "s.denoise = r.use_border = r.use_crop_to_border = True; r.border_min_x = 0.3; "
              "r.border_max_x, r.border_min_y, r.border_max_y = 0.7, 0.25, 0.9", lull),
+            ("eyes", "plastic", LAYERS + EYES + "r.image_settings.views_format = 'MULTIVIEW'", ['CYCLES', 'LULL']), ("toe-in", "plastic", EYES + "eyes.convergence_mode = 'TOE'", lull),
             ("default", "plastic", LAYERS + "s.stop_by, s.denoise = 'DEFAULT', True", lull),
             ("looks", "looks", "scene.cycles.use_fast_gi = True; bpy.ops.lull.check()", none),
             ("shapes", "area_shapes", EXPORT.format(paths["shapes.gltf"]), none),
@@ -226,6 +228,13 @@ print(*s.arguments())""", none),
         for share, colour in zip(sheet[shadow].mean(0) / free[shadow].mean(0), (0.9, 0.95, 0.9)):
             self.assertAlmostEqual(share, colour ** 2 * 0.97, delta=0.08)
 
+    def test_renders_both_eyes(self):
+        ours, theirs = self.read("eyes.lull"), self.read("eyes.cycles")
+        for eye, other in ("left", "right"), ("right", "left"):
+            here, there = (abs(rgb(ours, "Combined." + eye) - rgb(theirs, "Combined." + e)).mean() for e in (eye, other))
+            self.assertLess(2 * here, there, eye)
+        self.assertGreater(abs(ours["Depth.left.Z"] - ours["Depth.right.Z"]).max(), 1)
+
     def test_denoises_a_border(self):
         passes = self.read("cropped.lull")
         self.assertEqual(passes["Noisy.R"].shape, (26, 24))
@@ -301,8 +310,8 @@ print(*s.arguments())""", none),
         self.assertNotIn("--quality", second)
 
     def test_says_why_there_is_no_picture(self):
-        for name, message in (("no rule", "lull: --stop"), ("panoramic", "panoramic"), ("nowhere", "Program not found: /nowhere/lull"),
-                              ("other", f"{self.other} is lull 9.8.7; this add-on needs lull"),
+        for name, message in (("no rule", "lull: --stop"), ("panoramic", "panoramic"), ("toe-in", "toe-in"),
+                              ("nowhere", "Program not found: /nowhere/lull"), ("other", f"{self.other} is lull 9.8.7; this add-on needs lull"),
                               ("no program", "Program lull not found on the PATH")):
             errors = [line for line in self.heard[name][1] if line.startswith("Error")]
             self.assertIn(message, "\n".join(errors))

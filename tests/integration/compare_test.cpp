@@ -109,6 +109,39 @@ TEST(Compare, MakesTheDenoisedImageOfARender) {
     EXPECT_EQ(files.exitCode, 2) << files.err;
 }
 
+// Both blocks of a place stop with the later, and each eye is denoised and measured by itself.
+TEST(Compare, TakesPairs) {
+    const SceneDirectory directory;
+    const std::string pair = std::string(" scene.pbrt --stereo 0.3,4") + kSize;
+    const Outcome outcome =
+        ExpectSuccess(directory, "compare" + pair +
+                                     "--snapshots --denoise --stop lnoise:1.5 --cap 160 -o room "
+                                     "--verify 1");
+    EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
+    RunLull(directory, "render" + pair + "--stop lnoise:1.5 --cap 160 -o a.exr");
+    RunLull(directory, "render" + pair + "--denoise --cap 160 -o clean.exr");
+    RunLull(directory, "render" + pair + "--spp 160 -o r.exr");
+    for (const auto& [file, same] :
+         {std::pair("room.automatic", "a"), std::pair("room.denoised", "clean"),
+          std::pair("room.reference", "r")}) {
+        const ExrImage made = ReadExr(directory.File(std::string(file) + ".exr")),
+                       rendered = ReadExr(directory.File(std::string(same) + ".exr"));
+        for (const char* channel : {"G", "right.G", "spp", "right.spp"})
+            EXPECT_EQ(made.Find(channel)->values, rendered.Find(channel)->values) << file;
+        EXPECT_EQ(ReadBytes(directory.File(std::string(file) + ".right.png")),
+                  ReadBytes(directory.File(std::string(same) + ".right.png")));
+    }
+    ExpectSuccess(directory, "compare --automatic a.exr --reference r.exr --block 40 -o files");
+    const Json one = directory.Read("room.compare.json")["images"][0],
+               other = directory.Read("files.compare.json")["images"][0];
+    EXPECT_EQ(one["figures"], other["figures"]);
+    EXPECT_EQ(one["eyes"], other["eyes"]);
+    EXPECT_EQ(one["blocks"][17]["flip"], other["blocks"][17]["flip"]);
+    const Outcome refused = RunLull(directory, "denoise a.exr");
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_TRUE(Contains(refused.err, "a.exr: is a pair")) << refused.err;
+}
+
 // Pictures have the figures of the display image of the EXRs beside them, and no others.
 TEST(Compare, TakesPicturesForDisplays) {
     const SceneDirectory directory;

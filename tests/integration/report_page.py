@@ -109,6 +109,25 @@ def check_two(browser):
         choose(browser, "Show", mode)
 
 
+def check_eyes(browser):
+    """The eyes of a pair take turns at the same place; by hand alone for those who want less motion."""
+    shown = ("[...document.querySelector('.canvas').querySelectorAll('img')].map(i => [i.hidden, i.getBoundingClientRect().x -"
+             " document.querySelector('.canvas').getBoundingClientRect().x])")
+    browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
+    choose(browser, "Show", "eyes")
+    width = browser.evaluate("document.querySelector('.canvas').clientWidth")
+    caption = "stages[0].caption.textContent"
+    check(browser.evaluate(caption) == "left eye" and browser.evaluate(shown + "[1][0]"), "a pair: the left eye's image comes first")
+    browser.click("#turn")
+    (_, left), (is_hidden, right) = browser.evaluate(shown)
+    check((left, is_hidden, round(right)) == (0, False, -width), "a pair: a button puts the right eye's in its place")
+    browser.call("Emulation.setEmulatedMedia", features=[])
+    choose(browser, "Show", "eyes")
+    for eye in ("left", "right"):
+        browser.wait_for(f"{caption} === '{eye} eye'")
+    check_widths(browser, "a pair")
+
+
 def test(browser, lull):
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory)
@@ -117,7 +136,8 @@ def test(browser, lull):
         for command in (
                 "render scene.pbrt --stop lnoise:1 --cap 80 --report render.html -o r.exr",
                 "compare scene.pbrt --stop lnoise:1 --human human.csv --snapshots --cap 80"
-                " --curves --report compare.html"):
+                " --curves --report compare.html",
+                "render scene.pbrt --spp 4 --stereo 0.2,3 --report pair.html -o pair.exr"):
             subprocess.run([lull, *command.split(), "--block", "40", "--quiet"], cwd=folder,
                            check=True, stdout=subprocess.DEVNULL)
 
@@ -135,6 +155,8 @@ def test(browser, lull):
         check_dark(browser)
         check_widths(browser, "render")
         check_sentences(browser)
+        browser.open(folder / "pair.html")
+        check_eyes(browser)
         browser.open(folder / "compare.html")
         check_two(browser)
         check_blocks(browser, "compare", 3)

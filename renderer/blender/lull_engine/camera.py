@@ -13,6 +13,12 @@ def resolution(render):
     return int(render.resolution_x * scale), int(render.resolution_y * scale)
 
 
+def views(render):
+    """Returns the names of the pictures of a render, such as those of two eyes; that of a single one is empty."""
+    named = [v.name for v in render.views if v.use and (render.views_format == 'MULTIVIEW' or v.name in ("left", "right"))]
+    return named if render.use_multiview else [""]
+
+
 class View:
     """The view of an evaluated scene's camera. Raises: Failure."""
 
@@ -34,9 +40,29 @@ class View:
         sensor = data.sensor_height if data.sensor_fit == 'VERTICAL' else data.sensor_width
         # Half the extent of a pixel's worth of the longer side: at a distance of 1, or anywhere.
         self._half = (data.ortho_scale if data.type == 'ORTHO' else sensor / data.lens) / 2 / self.side
+        self.stereo, self._moved = [], 0  # arguments of `lull render` for two eyes, and how far the frame is moved at a distance of 1
         if is_sheared(self.matrix):
             self.matrix = _upright(self.matrix)
             notes.say(f"the picture of camera '{camera.name}' is not sheared as the scale of its parent has it")
+        if r.use_multiview and r.views_format == 'STEREO_3D' and data.stereo.interocular_distance > 0:
+            self._part_eyes(r, data.sensor_width / sensor)
+
+    def _part_eyes(self, render, share):
+        """Sets the camera to the middle of both eyes. Blender's shift is in sensor widths, `share` of the side that the lens fits."""
+        eyes = self.data.stereo
+        for kind, is_set in (("toe-in", eyes.convergence_mode == 'TOE'), ("spherical", eyes.use_spherical_stereo),
+                             ("orthographic", self.data.type == 'ORTHO')):
+            if is_set:
+                raise Failure(f"the eyes of camera '{self.name}' are {kind}; lull has eyes that are off-axis or parallel, in perspective")
+        away = {'LEFT': 0.5, 'RIGHT': -0.5, 'CENTER': 0}[eyes.pivot] * eyes.interocular_distance
+        scale = self.matrix.col[0].length
+        self.matrix = self.matrix @ Matrix.Translation((away / scale, 0, 0))
+        self.stereo = ["--stereo", "%.9g" % (eyes.interocular_distance / scale)]
+        if eyes.convergence_mode == 'OFFAXIS':
+            self.stereo[1] += ",%.9g" % (eyes.convergence_distance * share / scale)
+            self._moved = away / (eyes.convergence_distance * share)
+        if len(views(render)) == 1:
+            self.stereo += ["--eye", *views(render)]
 
     def pixel_width(self, distance):
         """Returns the width of a pixel at a distance."""
@@ -48,7 +74,7 @@ class View:
 
     def shift(self):
         """Returns the offset of the frame, in fractions of its width and height."""
-        return self.data.shift_x * self.side / self.width, self.data.shift_y * self.side / self.height
+        return self.data.shift_x * self.side / self.width - self._moved / self.extent()[0], self.data.shift_y * self.side / self.height
 
     def focus(self):
         """Returns the distance at which the picture is sharp; None without depth of field."""
@@ -67,7 +93,7 @@ class View:
         """Returns the camera for glTF."""
         data, x, y = self.data, self._half * self.width, self._half * self.height
         lens = {"clipStart": data.clip_start, "clipEnd": data.clip_end}
-        if data.shift_x or data.shift_y:
+        if any(self.shift()):
             lens["shift"] = list(self.shift())
         if data.dof.use_dof and data.type == 'ORTHO':  # one lens for all pixels would make it a perspective one
             self._notes.say(f"the orthographic camera '{self.name}' is sharp at all distances")

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from . import exr, passes
-from .camera import resolution
+from .camera import resolution, views
 from .export import export
 from .process import Failure, Render, ended
 from .program import find_lull
@@ -112,7 +112,7 @@ def export_scene(scene, layer, folder, name="scene", suffix=".gltf"):
 
 def arguments(scene, exported, size):
     """Returns the arguments of `lull render` for an exported scene of this size, as Blender's settings have it."""
-    said = [exported.gltf, "--resolution", "%dx%d" % size, *scene.lull.arguments()]
+    said = [exported.gltf, "--resolution", "%dx%d" % size, *exported.stereo, *scene.lull.arguments()]
     if exported.shutter:
         said += ["--frame", "0", "--shutter", "%.9g" % exported.shutter]
     if exported.environment:
@@ -148,8 +148,13 @@ class _Job:
         self.view_layer = self.scene.view_layers[self.layer]
         self.passes = passes.wanted(self.scene, self.view_layer)
         self.shown = time.monotonic()  # the progress of the export
-        self.eye = depsgraph.scene.camera.matrix_world.translation.copy() if depsgraph.scene.camera else None
+        self.views = {name: self._eye(name, depsgraph.scene.camera) for name in views(depsgraph.scene.render)}
         self._measure(depsgraph.scene.render)
+
+    def _eye(self, view, camera):
+        """Returns where the camera of a view is."""
+        self.engine.active_view_set(view)
+        return camera and self.engine.camera_model_matrix(camera).translation.copy()
 
     def _measure(self, render):
         """Sets the size of the whole image and the rendered part, in fractions."""
@@ -221,12 +226,13 @@ class _Job:
 
     def _watch(self, render, result, exported):
         """Shows the progress of the render until it ends."""
-        view = np.zeros((self.size[1], self.size[0], 4), np.float32)
+        count = 2 if len(exported.stereo) == 2 else 1  # of pictures side by side
+        film = np.zeros((self.size[1], count * self.size[0], 4), np.float32)
         changed, shown, said = False, time.monotonic(), -_SECONDS_BETWEEN_LINES
         for kind, what in render.events(self.engine.test_break):
             if kind == "show":
                 x, y, channels = what
-                rectangle = view[y:y + len(channels["R"]), x:x + channels["R"].shape[1]]
+                rectangle = film[y:y + len(channels["R"]), x:x + channels["R"].shape[1]]
                 for i, name in enumerate("RGB"):
                     rectangle[:, :, i] = channels[name]
                 rectangle[:, :, 3] = 1
@@ -240,7 +246,8 @@ class _Job:
             elif kind in ("warning", "note") and _ADVICE not in what:
                 self.engine.report({'WARNING' if kind == "warning" else 'INFO'}, "lull: " + self._named(what, exported))
             if changed and time.monotonic() - shown > _SECONDS_BETWEEN_VIEWS:
-                _set(result.layers[0].passes["Combined"], view)
+                for i, view in enumerate(self.views):
+                    self._set(result, "Combined", view, np.split(film, count, 1)[i % count])
                 self.engine.update_result(result)
                 changed, shown = False, time.monotonic()
 
@@ -251,22 +258,26 @@ class _Job:
             raise Failure(str(e)) from e
         for made in self.passes:
             self.engine.add_pass(made.name, len(made.channels), made.channels, layer=self.layer)
+        for view in self.views:
+            own = {name.removeprefix(view + "."): plane for name, plane in channels.items() if view and name.startswith(view + ".")}
+            self._fill_view(result, view, channels | own, attributes, exported)
+        for field, value in passes.cryptomatte_fields(self.layer, attributes):
+            self.engine.get_result().stamp_data_add_field(field, value)
+
+    def _fill_view(self, result, view, channels, attributes, exported):
         if exported.backdrop and not self.is_transparent:
             behind = (1 - channels["A"][..., None]) * self._backdrop(exported.backdrop)
             for name in channels.keys() & {prefix + c for prefix in ("", "noisy.", "light.environment.") for c in "RGB"}:
                 channels[name] = channels[name] + behind[..., "RGB".index(name[-1])]
-        targets = result.layers[0].passes
         combined = np.ones((self.size[1], self.size[0], 4), np.float32)
         for i, name in enumerate("RGB"):
             combined[:, :, i] = channels[name]
         if self.is_transparent:  # colours are multiplied by it, as Blender wants them
             combined[:, :, 3] = channels["A"]
-        _set(targets["Combined"], combined)
-        picture = passes.Picture(channels, attributes, exported, self.scene, self.eye)
+        self._set(result, "Combined", view, combined)
+        picture = passes.Picture(channels, attributes, exported, self.scene, self.views[view])
         for made in self.passes:
-            _set(targets[made.name], made.fill(picture))
-        for field, value in passes.cryptomatte_fields(self.layer, attributes):
-            self.engine.get_result().stamp_data_add_field(field, value)
+            self._set(result, made.name, view, made.fill(picture))
 
     def _backdrop(self, path):
         """Returns the rendered part of the backdrop."""
@@ -281,8 +292,9 @@ class _Job:
         shown = pixels.reshape(height, width, 4)[y:y + self.size[1], x:x + self.size[0], :3]
         return shown[::-1] * (self.scene.cycles.film_exposure or 1)
 
-
-def _set(target, values):
-    """Fills a pass, whose lowest row comes first."""
-    values = np.ascontiguousarray(values[::-1], np.float32)
-    target.rect.foreach_set(values.ravel() if IS_RECT_FLAT else values.reshape(-1, values.shape[2]))
+    @staticmethod
+    def _set(result, name, view, values):
+        """Fills a pass, whose lowest row comes first."""
+        values = np.ascontiguousarray(values[::-1], np.float32)
+        target = result.layers[0].passes.find_by_name(name, view)
+        target.rect.foreach_set(values.ravel() if IS_RECT_FLAT else values.reshape(-1, values.shape[2]))

@@ -24,12 +24,14 @@ _ROUNDS = 3  # of questions to a second Blender, at most
 @dataclass
 class Exported:
     """`groups` are the names of light groups for lull; `shutter` is the time that it is open, in seconds, 0 where nothing moves;
-    `objects` and `materials` are pass indices by their names; `names` are the names in the file, by kinds such as "nodes"."""
+    `stereo` are arguments of `lull render` for two eyes; `objects` and `materials` are pass indices by their names; `names` are the names
+    in the file, by kinds such as "nodes"."""
     gltf: str
     environment: str = None
     backdrop: str = None
     groups: dict = field(default_factory=dict)
     shutter: float = 0
+    stereo: list = field(default_factory=list)
     objects: dict = field(default_factory=dict)
     materials: dict = field(default_factory=dict)
     names: dict = field(default_factory=dict)
@@ -57,7 +59,7 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     pictures = Images(_FAST if is_render else _SMALL, notes)
     dresser = dress.Dresser(found.shown, baker, pictures, notes)
     lamps = lights.Lights(found.lamps, scene, base, baker, notes)
-    world = Surroundings(scene, layer, view, base, is_render and not moving.moves(scene.camera), baker, notes)
+    world = Surroundings(scene, layer, view, base, is_render and not (view.stereo or moving.moves(scene.camera)), baker, notes)
     for _ in range(_ROUNDS):
         baker.is_lacking, told = False, Notes()
         parts, lit = dresser.dress(told), lamps.read(told)
@@ -68,6 +70,8 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     notes.take(told)
     if world.backdrop and moving.moves(scene.camera):
         notes.say("the background is sharp although the camera moves")
+    if world.backdrop and view.stereo:
+        notes.say("both eyes have the same background")
     if scene.lull.panes:
         dress.make_sheets(found.shown, parts, notes)
     _move_flat(found.shown, parts, notes)
@@ -84,8 +88,8 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     if world.light and scene.world and scene.world.lightgroup in layer.lightgroups:
         groups[scene.world.lightgroup] = "environment"
     materials = {m.original for s in found.shown for m in s.mesh.materials if m}
-    return Exported(path, world.light, world.backdrop, groups, shutter, _indices(s.original for s in found.shown), _indices(materials),
-                    nodes.names(), notes.lines(), limits(scene.original, scene.lull.max_depth))
+    return Exported(path, world.light, world.backdrop, groups, shutter, view.stereo, _indices(s.original for s in found.shown),
+                    _indices(materials), nodes.names(), notes.lines(), limits(scene.original, scene.lull.max_depth))
 
 
 def _move_flat(shown, parts, notes):

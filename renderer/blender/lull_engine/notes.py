@@ -55,7 +55,7 @@ class Notes:
 
 
 def note_film(scene, layer, notes):
-    if scene.render.use_multiview:
+    if scene.render.use_multiview and scene.render.views_format == 'MULTIVIEW':
         notes.say("all views have the same picture")
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
         notes.say("pixels are square, whatever their aspect")

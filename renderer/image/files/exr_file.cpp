@@ -148,11 +148,15 @@ struct ExrFile::Parts {
             const std::vector<std::string> names = NamesOf(header);
             const std::string reason = ProblemOf(header);
             if (!reason.empty()) problem = reason;
-            const bool isTaken = std::ranges::any_of(
-                names, [&](const std::string& name) { return places.contains(name); });
+            std::string prefix;
+            const auto isTaken = [&] {
+                return std::ranges::any_of(
+                    names, [&](const std::string& name) { return places.contains(prefix + name); });
+            };
+            if (isTaken() && header.hasView()) prefix = header.view() + ".";
+            if (isTaken()) prefix = header.name() + ".";
             for (size_t k = 0; reason.empty() && k < names.size(); ++k)
-                places.try_emplace(isTaken ? header.name() + "." + names[k] : names[k],
-                                   Place{i, names[k]});
+                places.try_emplace(prefix + names[k], Place{i, names[k]});
         }
         if (places.empty()) throw std::runtime_error(problem);
         part = PicturePart();
@@ -161,6 +165,18 @@ struct ExrFile::Parts {
         });
     }
     const Imf::Header& Header() const { return file.header(part); }
+    // Returns the views, first that of the picture; none where they have no names.
+    std::vector<std::string> Views() const {
+        std::vector<std::string> views;
+        if (Imf::hasMultiView(Header())) views = Imf::multiView(Header());
+        const auto add = [&](const Imf::Header& header) {
+            if (header.hasView() && std::ranges::count(views, header.view()) == 0)
+                views.push_back(header.view());
+        };
+        add(Header());
+        for (int i = 0; i < file.parts(); ++i) add(file.header(i));
+        return views;
+    }
     std::vector<std::string> SortedNames() const {
         std::vector<std::string> names;
         for (const auto& [name, place] : places) names.push_back(name);
@@ -211,6 +227,7 @@ ExrImage ExrFile::Header() const {
     image.origin = {data.min.x - display.min.x, data.min.y - display.min.y};
     image.displaySize = ExtentOf(display);
     image.attributes = AttributesOf(header);
+    image.views = parts->Views();
     return image;
 }
 

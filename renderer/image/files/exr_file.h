@@ -1,6 +1,6 @@
 // Reads OpenEXR files: scan lines and tiles (at full size). Several parts are read as one, of their
-// channels: a part that has names of others gets its own name before them. Left out are deep parts,
-// and those of another window than the picture's.
+// channels: a part that has names of others gets its view, or its own name, before them. Left out
+// are deep parts, and those of another window than the picture's.
 #pragma once
 
 #include <array>

@@ -90,7 +90,9 @@ std::vector<ComparedImage> ReadImagesBeside(const CompareOptions& options,
 // A scene that is ready, and the rules to be compared on it.
 struct Compared {
     Compared(const CompareOptions& options, MpiJob* ranks)
-        : options(options), render(options.render, ranks) {}
+        : options(options), render(options.render, ranks) {
+        this->options.render.schedule.eyeWidth = render.settings.schedule.eyeWidth;
+    }
 
     CompareOptions options;
     RenderJob render;
@@ -128,8 +130,9 @@ void AddCurveRules(Compared* compared) {
 }
 
 // Checks all that can be wrong before the work begins.
-std::unique_ptr<Compared> Prepare(const CompareOptions& options, MpiJob* ranks) {
-    auto compared = std::make_unique<Compared>(options, ranks);
+std::unique_ptr<Compared> Prepare(const CompareOptions& given, MpiJob* ranks) {
+    auto compared = std::make_unique<Compared>(given, ranks);
+    const CompareOptions& options = compared->options;
     RenderJob& render = compared->render;
     const PixelRect& region = render.region;
     const Rule automatic = render.ReadRule("--stop", options.rule);

@@ -189,7 +189,7 @@ ExitCode MakeStudyOfScene(Options options) {
     settings.checkpoint =
         ResumeIfThere(options.output + ".checkpoint", settings.checkpoint.interval);
     RenderJob render(settings, nullptr);
-    const ScheduleOptions& schedule = settings.schedule;
+    const ScheduleOptions& schedule = render.settings.schedule;
     const PixelRect& region = render.region;
     const std::vector<Block> blocks = MakeBlocks(region, schedule);
     const std::vector<int> levels = LevelsOf(options, schedule, region);

@@ -216,14 +216,17 @@ std::string Figure(const char* format, double value) {
     return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
+std::string FiguresLine(const std::string& name, const ErrorFigures& f) {
+    return fmt::format("{:<12} {:>9} {:>9} {:>7.3f} {:>7} {:>8} {:>7.4f} {:>7}", name,
+                       Figure("{:.4g}", f.rmse), Figure("{:.3g}", f.relMse), f.rmseLightness,
+                       Figure("{:.2f}", f.psnr), Figure("{:.5f}", f.ssim), f.flip,
+                       Figure("{:.3g}", f.visibleDifference));
+}
+
 std::string ImageLine(const Comparison& comparison, const ComparedImage& image) {
     std::string line = fmt::format("{:<12}", image.name);
     if (image.figures) {
-        const ErrorFigures& f = *image.figures;
-        line += fmt::format(" {:>9} {:>9} {:>7.3f} {:>7} {:>8} {:>7.4f} {:>7}",
-                            Figure("{:.4g}", f.rmse), Figure("{:.3g}", f.relMse), f.rmseLightness,
-                            Figure("{:.2f}", f.psnr), Figure("{:.5f}", f.ssim), f.flip,
-                            Figure("{:.3g}", f.visibleDifference));
+        line = FiguresLine(image.name, *image.figures);
     } else {
         line += fmt::format(" {:>9} {:>9} {:>7} {:>7} {:>8} {:>7} {:>7}", "-", "-", "-", "-", "-",
                             "-", "-");
@@ -259,8 +262,11 @@ std::string ComparisonTable(const ComparisonReport& report) {
         fmt::format("{:<12} {:>9} {:>9} {:>7} {:>7} {:>8} {:>7} {:>7} {:>6} {:>9} {:>9} {:>6}\n",
                     "image", "RMSE", "relMSE", "RMSE L", "PSNR", "SSIM", "FLIP", "visible", "seams",
                     "mean spp", "seconds", "rule");
-    for (const ComparedImage& image : comparison.images)
+    for (const ComparedImage& image : comparison.images) {
         text += ImageLine(comparison, image) + "\n";
+        for (size_t i = 0; i < image.eyes.size(); ++i)
+            text += FiguresLine(i == 0 ? "  left eye" : "  right eye", image.eyes[i]) + "\n";
+    }
 
     for (const ComparedImage& image : comparison.images)
         if (image.figures) text += VisibleBlocksLine(comparison, image) + "\n";

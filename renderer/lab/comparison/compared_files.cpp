@@ -1,14 +1,18 @@
 #include "renderer/lab/comparison/compared_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <set>
 
 #include "renderer/base/color.h"
 #include "renderer/base/error.h"
 #include "renderer/image/image_io.h"
 #include "renderer/results/channel_names.h"
+#include "renderer/results/denoised_image.h"
 #include "renderer/results/image_files.h"
 
 namespace lull {
@@ -67,6 +71,30 @@ void MoveTo(const PixelRect& window, ComparedFile* file) {
     file->region = window;
 }
 
+// Joins the views of a pair, as lull renders them. Throws Error for other views.
+void JoinViews(const std::string& path, ExrImage* exr) {
+    const bool isLeftFirst = exr->views[0] == "left";
+    const std::string other = isLeftFirst ? "right" : "left";
+    const auto has = [&](const char* name) { return exr->Find(other + "." + name) != nullptr; };
+    if (std::set(exr->views.begin(), exr->views.end()) != std::set<std::string>{"left", "right"} ||
+        !std::ranges::all_of(std::array{"R", "G", "B"}, has))
+        throw Error(
+            fmt::format("{}: its views are {}; those of a pair are left and right, with R, G "
+                        "and B of both",
+                        path, fmt::join(exr->views, ", ")));
+    std::vector<ExrChannel> joined;
+    for (const char* name : {"R", "G", "B", "spp"}) {
+        if (!has(name) || !exr->Find(name)) continue;
+        const std::vector<float>* values[] = {&exr->Find(name)->values,
+                                              &exr->Find(other + "." + name)->values};
+        joined.push_back(
+            {name, RowsBeside(*values[!isLeftFirst], *values[isLeftFirst], size_t(exr->width))});
+    }
+    exr->channels = std::move(joined);
+    exr->width *= 2;
+    exr->displaySize = {0, 0};
+}
+
 bool IsPlaced(const ComparedFile& file) { return !file.image.isDisplay; }
 
 // Moves images to the window of the picture if they have data of different regions.
@@ -96,6 +124,8 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name) 
     ExrImage exr = ReadExr(path);
     UseOwnNames(path, &exr);
     ComparedFile file;
+    file.isPair = exr.views.size() > 1;
+    if (file.isPair) JoinViews(path, &exr);
     file.region = DataWindow(exr);
     file.shown = ShownWindow(exr, path);
     file.image.name = name;
@@ -117,6 +147,8 @@ ComparedFile ReadComparedFile(const std::string& path, const std::string& name) 
 
 RgbImage ReadShownPicture(const std::string& path) {
     ComparedFile file = ReadComparedFile(path, path);
+    if (file.isPair)
+        throw Error(path + ": is a pair for two eyes; give images of one, as in its .left.png");
     MoveTo(file.shown, &file);
     return std::move(file.image.image);
 }
@@ -182,9 +214,11 @@ ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
 }
 
 Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
-                        const ScheduleOptions& schedule) {
+                        ScheduleOptions schedule) {
     UseOneWindow(&files);
-    Comparison comparison = BeginComparison(CommonRegion(files, reference), schedule);
+    const PixelRect region = CommonRegion(files, reference);
+    if (std::ranges::any_of(files, &ComparedFile::isPair)) schedule.eyeWidth = region.Width() / 2;
+    Comparison comparison = BeginComparison(region, schedule);
     for (ComparedFile& file : files) {
         SetCosts(comparison.blocks, &file);
         comparison.images.push_back(std::move(file.image));

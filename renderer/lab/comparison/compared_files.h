@@ -10,6 +10,7 @@ struct ComparedFile {
     PixelRect region;        // of the whole image that it covers
     PixelRect shown;         // the window of the picture (ShownWindow()), black outside of `region`
     std::vector<float> spp;  // of each pixel; empty: not known
+    bool isPair = false;     // of two eyes, the right one's beside the left one's
 };
 
 // Returns whether a file has an image's extension: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in
@@ -20,12 +21,12 @@ bool IsImageFile(const std::string& path);
 bool IsDisplayFile(const std::string& path);
 
 // Reads an EXR: R, G and B, or Y for all three, and, if it is one of lull's, samples, rule and
-// seconds; or a picture for displays, taken as sRGB whatever profile it has, without its alpha,
-// whose region begins at (0, 0). Throws Error, also for a TIFF of more than 8 bits, which may be
-// linear or not.
+// seconds, also of the views "left" and "right" of a pair; or a picture for displays, taken as sRGB
+// whatever profile it has, without its alpha, whose region begins at (0, 0). Throws Error, also for
+// a TIFF of more than 8 bits, which may be linear or not.
 ComparedFile ReadComparedFile(const std::string& path, const std::string& name);
 
-// Reads such a file as the picture that it shows (ShownWindow()). Throws Error.
+// Reads such a file as the picture that it shows (ShownWindow()). Throws Error, also for a pair.
 RgbImage ReadShownPicture(const std::string& path);
 
 // Reads an image to be compared with others of a region and blocks that are known; a picture for
@@ -37,7 +38,7 @@ ComparedImage ReadImageBeside(const std::string& path, const std::string& name, 
 // name: of their data, or, if these are of different regions, of the pictures that they show. The
 // cap is the most samples that it has. Throws Error if they do not fit together.
 Comparison ComparisonOf(std::vector<ComparedFile> files, const std::string& reference,
-                        const ScheduleOptions&);
+                        ScheduleOptions);
 
 // Returns the region of the EXRs among the files; a picture for displays of the same
 // size can be of any part. The last of `files` is the reference, from the file of that name. Throws

@@ -94,14 +94,14 @@ void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blo
     const PixelRect& region = render.context.film->Region();
     std::vector<int> spp;
     for (const BlockCost& cost : image->costs) spp.push_back(cost.spp);
-    NoisyPicture picture;
-    {
-        Film film(region, {.layers = {.features = true}});
-        RenderBlocks(render, spp, &film);
-        picture = PictureOf(film, region);
-    }
+    Film film(region, {.layers = {.features = true}});
+    RenderBlocks(render, spp, &film);
     const double start = ProcessSeconds();
-    image->image = DenoiseImage(std::move(picture), region, blocks).image;
+    const auto denoise = [&](const PixelRect& part, const std::vector<Block>& inPart) {
+        return DenoiseImage(part == region ? TakePicture(&film) : PictureOf(film, part), part,
+                            inPart);
+    };
+    image->image = DenoiseEyes(region, blocks, render.options.schedule.eyeWidth, denoise).image;
     const double seconds = ProcessSeconds() - start;
     for (size_t i = 0; i < blocks.size(); ++i)
         image->costs[i].ruleSeconds +=
@@ -116,6 +116,7 @@ void ForgetLinear(ComparedImage* image) {
     };
     forget(&*image->figures);
     for (ErrorFigures& figures : image->blockFigures) forget(&figures);
+    for (ErrorFigures& figures : image->eyes) forget(&figures);
 }
 
 ScheduleOptions ScheduleFor(const MonitoredRule& rule, ScheduleOptions schedule) {
@@ -138,30 +139,96 @@ PixelRect Comparison::Local(size_t block) const {
 Comparison BeginComparison(const PixelRect& region, const ScheduleOptions& schedule) {
     Comparison comparison;
     comparison.region = region;
+    comparison.eyeWidth = schedule.eyeWidth;
     for (const Block& block : MakeBlocks(region, schedule))
         comparison.blocks.push_back(block.pixels);
     comparison.hasReference = true;
     return comparison;
 }
 
-void Measure(Comparison* comparison) {
+namespace {
+
+// Compares an image with the reference; of a pair, each eye's by itself.
+std::vector<ErrorMaps> CompareEyes(const Comparison& comparison, const RgbImage& image) {
+    const RgbImage& reference = comparison.images.back().image;
+    if (comparison.eyeWidth == 0) return {CompareImages(image, reference, comparison.display)};
+    std::vector<ErrorMaps> maps;
+    for (const PixelRect& eye :
+         EyesOf({{0, 0}, {image.width, image.height}}, comparison.eyeWidth)) {
+        const auto cut = [&](const RgbImage& both) -> RgbImage {
+            return {eye.Width(), eye.Height(), CutPixels(both.values, both.width, eye)};
+        };
+        maps.push_back(CompareImages(cut(image), cut(reference), comparison.display));
+    }
+    return maps;
+}
+
+ErrorFigures FiguresOf(const std::vector<ErrorMaps>& maps) {
+    const ErrorFigures a = Average(maps[0]);
+    if (maps.size() == 1) return a;
+    const ErrorFigures b = Average(maps[1]);
+    const auto mean = [&](double ErrorFigures::*figure) { return (a.*figure + b.*figure) / 2; };
+    const auto root = [&](double ErrorFigures::*figure) {
+        return std::sqrt((Sqr(a.*figure) + Sqr(b.*figure)) / 2);
+    };
+    return {.rmse = root(&ErrorFigures::rmse),
+            .relMse = mean(&ErrorFigures::relMse),
+            .rmseLightness = root(&ErrorFigures::rmseLightness),
+            .psnr = -10 * std::log10((std::pow(10, -a.psnr / 10) + std::pow(10, -b.psnr / 10)) / 2),
+            .ssim = mean(&ErrorFigures::ssim),
+            .flip = mean(&ErrorFigures::flip),
+            .visibleDifference = std::max(a.visibleDifference, b.visibleDifference)};
+}
+
+// Sets all figures by the reference, and their maps.
+void SetFigures(const Comparison& comparison, ComparedImage* image) {
+    const std::vector<ErrorMaps> maps = CompareEyes(comparison, image->image);
+    image->figures = FiguresOf(maps);
+    const size_t perEye = comparison.blocks.size() / maps.size();
+    for (size_t i = 0; i < comparison.blocks.size(); ++i) {
+        const PixelRect block = comparison.Local(i);
+        const Vec2i across(int(i / perEye) * comparison.eyeWidth, 0);
+        image->blockFigures.push_back(
+            Average(maps[i / perEye], {block.min - across, block.max - across}));
+    }
+    image->flip = maps[0].flip;
+    image->visibleDifference = VisibleMap(maps[0].visibleDifference);
+    if (maps.size() > 1) {
+        for (const ErrorMaps& eye : maps) image->eyes.push_back(Average(eye));
+        const auto join = [&](std::vector<float>* left, const std::vector<float>& right) {
+            *left = RowsBeside(*left, right, size_t(comparison.eyeWidth));
+        };
+        join(&image->flip, maps[1].flip);
+        join(&image->visibleDifference, VisibleMap(maps[1].visibleDifference));
+    }
+    if (image->isDisplay || comparison.images.back().isDisplay) ForgetLinear(image);
+}
+
+// There is no seam between eyes.
+Seams SeamsOf(const Comparison& comparison, const ComparedImage& image) {
     std::vector<PixelRect> blocks;
-    for (size_t i = 0; i < comparison->blocks.size(); ++i) blocks.push_back(comparison->Local(i));
+    for (size_t i = 0; i < comparison.blocks.size(); ++i) blocks.push_back(comparison.Local(i));
+    const auto measure = [&](std::span<const PixelRect> those) {
+        return MeasureSeams(image.noise, image.image.width, those);
+    };
+    if (comparison.eyeWidth == 0) return measure(blocks);
+    const std::span all(blocks);
+    const Seams left = measure(all.first(all.size() / 2)),
+                right = measure(all.last(all.size() / 2));
+    return {(left.border + right.border) / 2, (left.inside + right.inside) / 2};
+}
+
+}  // namespace
+
+void Measure(Comparison* comparison) {
     const bool hasReference = comparison->hasReference;
     const RgbImage* reference = hasReference ? &comparison->images.back().image : nullptr;
     for (ComparedImage& image : comparison->images) {
         if (reference && &image.image != reference) {
-            const ErrorMaps maps = CompareImages(image.image, *reference, comparison->display);
-            image.figures = Average(maps);
-            for (const PixelRect& block : blocks)
-                image.blockFigures.push_back(Average(maps, block));
-            if (image.isDisplay || comparison->images.back().isDisplay) ForgetLinear(&image);
-            image.flip = maps.flip;
-            image.visibleDifference = VisibleMap(maps.visibleDifference);
+            SetFigures(*comparison, &image);
             if (image.noise.empty()) image.noise = LightnessErrorMap(image.image, *reference);
         }
-        if (!image.noise.empty())
-            image.seams = MeasureSeams(image.noise, image.image.width, blocks);
+        if (!image.noise.empty()) image.seams = SeamsOf(*comparison, image);
     }
 }
 
@@ -207,14 +274,20 @@ ComparedImage TakeImage(const MonitoredRender& render, const std::vector<Monitor
         MakeBlocks(region, ScheduleFor(rule, render.options.schedule));
     ComparedImage image = EmptyImage(region, rule.name, rule.text);
 
-    // Find the sample count of each block; images that were not kept are rendered again.
+    const auto stopOf = [&](size_t i) {
+        const int voter = blocks[i].votes ? int(i) : blocks[i].leader;
+        return voter < 0 ? RuleStop() : render.histories[size_t(voter)].stops[index];
+    };
+
+    // Find the sample count of each block, in a pair that of the later; images that were not kept
+    // are rendered again.
     std::vector<int> again(blocks.size(), 0);
     for (size_t i = 0; i < blocks.size(); ++i) {
         const BlockResult& whole = render.result.blocks[i];
-        const int voter = blocks[i].votes ? int(i) : blocks[i].leader;
-        const RuleStop stop = voter < 0 ? RuleStop() : render.histories[size_t(voter)].stops[index];
-        BlockCost cost{.spp = stop.spp > 0 ? stop.spp : cap};
-        if (blocks[i].votes && stop.spp > 0) {
+        const RuleStop stop = stopOf(i);
+        const int other = blocks[i].partner < 0 ? stop.spp : stopOf(size_t(blocks[i].partner)).spp;
+        BlockCost cost{.spp = std::min(stop.spp, other) > 0 ? std::max(stop.spp, other) : cap};
+        if (blocks[i].votes && stop.spp == cost.spp) {
             cost.seconds = stop.seconds;
         } else {
             cost.seconds = whole.seconds / whole.block.spp * cost.spp;
@@ -235,6 +308,8 @@ ComparedImage TakeImage(const MonitoredRender& render, const std::vector<Monitor
     }
     if (rule.isDenoised) DenoiseSamples(render, blocks, &image);
     if (std::ranges::none_of(again, [](int spp) { return spp > 0; })) return image;
+    for (size_t i = 0; i < blocks.size(); ++i)  // which go on together
+        if (again[i] > 0 && blocks[i].partner >= 0) again[size_t(blocks[i].partner)] = again[i];
     Film film(region);
     RenderBlocks(render, again, &film);
     for (size_t i = 0; i < blocks.size(); ++i)
@@ -329,8 +404,7 @@ std::vector<CurvePoint> MeasureCurves(const MonitoredRender& render,
     ForEachIndex(int(rules.size() - imageCount), [&](int i) {
         const size_t index = imageCount + size_t(i);
         const ComparedImage image = TakeImage(render, rules, index);
-        ErrorFigures figures =
-            Average(CompareImages(image.image, reference.image, comparison.display));
+        ErrorFigures figures = FiguresOf(CompareEyes(comparison, image.image));
         if (reference.isDisplay)
             figures.rmse = figures.relMse = std::numeric_limits<double>::quiet_NaN();
         points[index] = PointOf(comparison, image, figures, threads);

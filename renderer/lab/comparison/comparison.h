@@ -31,6 +31,7 @@ struct ComparedImage {
 
     // Set by Measure(); the reference has no figures.
     std::optional<ErrorFigures> figures;
+    std::vector<ErrorFigures> eyes;  // of a pair: of the left and the right eye
     std::vector<ErrorFigures> blockFigures;
     std::vector<float> flip, visibleDifference;  // at each pixel
     std::optional<Seams> seams;
@@ -40,6 +41,7 @@ struct Comparison {
     PixelRect region;
     std::vector<PixelRect> blocks;      // in pixels of the whole image
     int cap = 0;                        // 0: not known
+    int eyeWidth = 0;                   // as in ScheduleOptions
     std::vector<ComparedImage> images;  // the last is the reference, if there is one
     bool hasReference = false;
     DisplayModel display;  // for visible differences
@@ -49,11 +51,26 @@ struct Comparison {
     PixelRect Local(size_t block) const;
 };
 
+// Returns the pixels of a part of a picture of that width, R, G, B, row by row, as a BlockView has
+// them.
+template <typename Value>
+std::vector<Value> CutPixels(const std::vector<Value>& rgb, int width, const PixelRect& rect) {
+    std::vector<Value> pixels;
+    pixels.reserve(size_t(rect.Area()) * 3);
+    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
+        const auto row = rgb.begin() + (ptrdiff_t(y) * width) * 3;
+        pixels.insert(pixels.end(), row + rect.min.x() * 3, row + rect.max.x() * 3);
+    }
+    return pixels;
+}
+
 // Returns a comparison with a reference, in the blocks of a schedule, that has no images yet.
 Comparison BeginComparison(const PixelRect& region, const ScheduleOptions&);
 
-// Fills in figures by the reference, and seams. If the noise of an image is not known, its error in
-// lightness stands for it. Throws Error if images differ in size.
+// Fills in figures by the reference, and seams. Those of a pair are means over both eyes, which are
+// measured one by one, and the visible difference is that of the eye where it is larger. If the
+// noise of an image is not known, its error in lightness stands for it. Throws Error if images
+// differ in size.
 void Measure(Comparison*);
 
 // Returns the number of blocks with a visible difference above kVisibilityThreshold. The image must

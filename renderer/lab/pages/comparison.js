@@ -1,6 +1,6 @@
 "use strict";
 // Fills the page of a comparison, whose data have as well:
-//   images [{flipSrc?, visibleDifferenceSrc?, visibleBlocks?, figures?, seams?, cost?, saved?,
+//   images [{flipSrc?, visibleDifferenceSrc?, visibleBlocks?, figures?, eyes? {left, right}, seams?, cost?, saved?,
 //            blocks [{figures}]}]
 //   viewing {name, pixelsPerDegree, threshold}: for visible differences, with the visibility threshold
 //   againstHuman, estimates, verifications
@@ -46,7 +46,10 @@ function showSummary(data) {
   add("CPU time", i => i.cost && i.cost.seconds > 0 && roughly(i.cost.estimated, showSeconds(i.cost.seconds)));
   add("CPU time saved", i => saved(i) && roughly(i.saved.estimated, showShare(i.saved.seconds)));
   add("fraction of the rule", i => i.cost && i.cost.seconds > 0 && showShare(i.cost.ruleSeconds / (i.cost.seconds + i.cost.ruleSeconds)));
-  for (const [name, label] of figureNames) add(label, i => i.figures && showFigure(i.figures, name));
+  for (const [name, label] of figureNames) {
+    add(label, i => i.figures && showFigure(i.figures, name));
+    for (const eye of ["left", "right"]) add(`\u2003${eye} eye`, i => i.eyes && showFigure(i.eyes[eye], name));
+  }
   add("blocks that differ visibly", i => i.figures && `${i.visibleBlocks} of ${data.blocks.length}`);
   add("seams", i => i.seams && show(i.seams.ratio, 3));
   if (rows.length) parent.append(withCsv(makeTable("", ["", ...images.map(i => i.name)], rows), "summary"));

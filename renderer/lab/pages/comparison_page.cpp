@@ -43,6 +43,9 @@ Json ImageJson(const Comparison& comparison, const ComparedImage& image) {
     if (image.figures) {
         json["figures"] = FiguresJson(*image.figures);
         json["visibleBlocks"] = CountVisibleBlocks(image);
+        if (!image.eyes.empty())
+            json["eyes"] = {{"left", FiguresJson(image.eyes[0])},
+                            {"right", FiguresJson(image.eyes[1])}};
     }
     if (image.seams)
         json["seams"] = {{"border", image.seams->border},
@@ -162,6 +165,7 @@ Json ComparisonJson(const ComparisonReport& report) {
                  {"cap", comparison.cap},
                  {"width", comparison.region.Width()},
                  {"height", comparison.region.Height()}};
+    if (comparison.eyeWidth > 0) json["eyeWidth"] = comparison.eyeWidth;
     if (comparison.hasReference) json["viewing"] = ViewingJson(comparison.display);
     json["reference"] = comparison.hasReference ? Json(comparison.images.back().name) : Json();
     if (report.provenance) json["provenance"] = ProvenanceJson(*report.provenance);

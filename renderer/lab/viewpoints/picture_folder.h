@@ -42,19 +42,6 @@ PictureFolder FindNamedPictures(const std::string& text);
 // ignored. Throws Error, also if it has another size than the first.
 RgbImage ReadPicture(const PictureFolder&, int spp);
 
-// Returns the pixels of a part of a picture of that width, R, G, B, row by row, as a BlockView has
-// them.
-template <typename Value>
-std::vector<Value> CutPixels(const std::vector<Value>& rgb, int width, const PixelRect& rect) {
-    std::vector<Value> pixels;
-    pixels.reserve(size_t(rect.Area()) * 3);
-    for (int y = rect.min.y(); y < rect.max.y(); ++y) {
-        const auto row = rgb.begin() + (ptrdiff_t(y) * width) * 3;
-        pixels.insert(pixels.end(), row + rect.min.x() * 3, row + rect.max.x() * 3);
-    }
-    return pixels;
-}
-
 // Returns whether a picture has display values rather than linear radiance.
 bool IsDisplayPicture(const PictureFolder&, int spp);
 

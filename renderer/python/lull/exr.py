@@ -1,10 +1,11 @@
-"""Reads the OpenEXR files that lull writes: scan lines, without compression or with ZIP's. Writes floats without compression."""
+"""Reads the OpenEXR files that lull writes: scan lines, in one part or several, without compression or with ZIP's. Writes floats without
+compression."""
 import struct
 import zlib
 
 import numpy as np
 
-_MAGIC, _VERSION, _LONG_NAMES = 20000630, 2, 0x400
+_MAGIC, _VERSION, _LONG_NAMES, _PARTS = 20000630, 2, 0x400, 0x1000
 _ROWS = {0: 1, 2: 1, 3: 16}  # by compression: none, ZIPS, ZIP
 _TYPES = {0: np.dtype("<u4"), 1: np.dtype("<f2"), 2: np.dtype("<f4")}
 
@@ -56,39 +57,53 @@ def _unzip(data, size):
     return whole.tobytes()
 
 
+def _part(file, attributes, first):
+    """Reads a part whose table of chunks comes next; each begins `first` bytes before its row."""
+    compression = attributes["compression"][0]
+    if compression not in _ROWS:
+        raise ValueError("is compressed otherwise than by ZIP")
+    x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
+    width, height = x1 - x0 + 1, y1 - y0 + 1
+    channels = _channels(attributes["channels"])
+    picture = {name: np.empty((height, width), kind) for name, kind in channels}
+    rows = _ROWS[compression]
+    row_bytes = width * sum(kind.itemsize for _, kind in channels)
+    for _ in range(-(-height // rows)):
+        offset = file.take("Q") + first
+        y, size = struct.unpack_from("<ii", file.data, offset)
+        y, count = y - y0, min(rows, height - (y - y0))
+        data = file.data[offset + 8:offset + 8 + size]
+        lines = np.frombuffer(_unzip(data, count * row_bytes), np.uint8).reshape(count, row_bytes)
+        at = 0
+        for name, kind in channels:
+            end = at + width * kind.itemsize
+            picture[name][y:y + count] = np.ascontiguousarray(lines[:, at:end]).view(kind)
+            at = end
+    return picture
+
+
 def read(path):
     """Returns the channels of a file by their names, arrays of height x width with the upper row
-    first, and its attributes, as bytes. Raises OSError, or ValueError for what lull does not
-    write."""
+    first, and its attributes, as bytes. Of several parts, as of a pair for two eyes, the first has
+    these; channels of the others begin with the name of their part ("right.R"). Raises OSError, or
+    ValueError for what lull does not write."""
     with open(path, "rb") as f:
         file = _Bytes(f.read())
     try:
         magic, version = file.take("ii")
-        if magic != _MAGIC or version & ~_LONG_NAMES != _VERSION:
+        if magic != _MAGIC or version & ~(_LONG_NAMES | _PARTS) != _VERSION:
             raise ValueError("is no OpenEXR file of scan lines")
-        attributes = _header(file)
-        compression = attributes["compression"][0]
-        if compression not in _ROWS:
-            raise ValueError("is compressed otherwise than by ZIP")
-        x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
-        width, height = x1 - x0 + 1, y1 - y0 + 1
-        channels = _channels(attributes["channels"])
-        picture = {name: np.empty((height, width), kind) for name, kind in channels}
-        rows = _ROWS[compression]
-        row_bytes = width * sum(kind.itemsize for _, kind in channels)
-        for offset in struct.unpack_from("<%dQ" % -(-height // rows), file.data, file.at):
-            y, size = struct.unpack_from("<ii", file.data, offset)
-            y, count = y - y0, min(rows, height - (y - y0))
-            data = file.data[offset + 8:offset + 8 + size]
-            lines = np.frombuffer(_unzip(data, count * row_bytes), np.uint8).reshape(count, row_bytes)
-            at = 0
-            for name, kind in channels:
-                end = at + width * kind.itemsize
-                picture[name][y:y + count] = np.ascontiguousarray(lines[:, at:end]).view(kind)
-                at = end
+        has_parts = bool(version & _PARTS)
+        headers = [_header(file)]
+        while has_parts and (more := _header(file)):
+            headers.append(more)
+        picture = {}
+        for attributes in headers:
+            prefix = attributes["name"].decode() + "." if picture else ""
+            picture.update((prefix + name, plane) for name, plane in _part(file, attributes, 4 * has_parts).items())
     except (struct.error, zlib.error, KeyError, IndexError, ValueError) as e:
         raise ValueError(f"{path}: cannot be read as OpenEXR: {e}") from e
-    return picture, attributes
+    return picture, headers[0]
 
 
 def write(path, channels):

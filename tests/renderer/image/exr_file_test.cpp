@@ -129,6 +129,20 @@ TEST(ExrFile, ReadsTiles) {
     EXPECT_EQ(ReadExr(file.path).Find("Y")->values, file.values);
 }
 
+// As other programs store a pair in one part: those of the first view have no name before theirs.
+TEST(ExrFile, TellsItsViews) {
+    OneChannel file;
+    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    file.Write(Imf::FLOAT, file.values.data());
+    EXPECT_EQ(ReadExr(file.path).views, Names());
+    Imf::addMultiView(file.header, {"left", "right"});
+    file.header.channels().insert("right.Y", Imf::Channel(Imf::FLOAT));
+    file.Write(Imf::FLOAT, file.values.data());
+    const ExrImage pair = ReadExr(file.path);
+    EXPECT_EQ(pair.views, (Names{"left", "right"}));
+    EXPECT_NE(pair.Find("right.Y"), nullptr);
+}
+
 TEST(ExrFile, TurnsIntegersIntoZeroToOne) {
     OneChannel file;
     file.header.channels().insert("Y", Imf::Channel(Imf::UINT));

@@ -83,7 +83,7 @@ TEST(TakePicture, IsThePictureOfTheFilm) {
 TEST(ReducedPictureOf, HasTheMeansOfPixels) {
     const FeatureRender render(1);
     const NoisyPicture whole = PictureOf(render.film, kPictureRegion),
-                       reduced = ReducedPictureOf(render.film, 2);
+                       reduced = ReducedPictureOf(render.film, kPictureRegion, 2);
     ASSERT_EQ(reduced.colour.a.width, 15);
     ASSERT_EQ(reduced.features.height, 10);
     for (int y = 0; y < 10; ++y)
@@ -159,6 +159,20 @@ TEST(FirstLook, ShowsAPixelOfEachSquare) {
     film.Extract(kLookRegion, false, &view);
     EXPECT_EQ(view.mean, film.MeanImage());
     EXPECT_TRUE(std::ranges::all_of(view.mean, [](float v) { return v > 0; }));
+}
+
+// Each eye of a pair has squares of its own.
+TEST(FirstLook, EndsAtTheSeamOfAPair) {
+    Film film({{0, 0}, {20, 5}});
+    RenderOptions options;
+    options.schedule.eyeWidth = 10;
+    TakeFirstLook(PositionSample, options, &film);
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 20; ++x) {
+            const float shown = film.MeanAt({x, y})[0];
+            EXPECT_EQ(shown >= 10, x >= 10) << x;
+            EXPECT_LE(std::abs(shown - float(x)), 3) << x;
+        }
 }
 
 TEST(FirstLook, IsLeftOutWhereItWouldNotBeSeen) {

@@ -43,8 +43,8 @@ void WithoutSpikes(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSam
 // A large one is denoised at a lower resolution.
 TEST(DenoisePreview, IsQuick) {
     const FeatureRender render(1, 36, WithoutSpikes);
-    const DenoisedImage whole = DenoisePreview(render.film),
-                        quick = DenoisePreview(render.film, 700);
+    const DenoisedImage whole = DenoisePreview(render.film, kPictureRegion),
+                        quick = DenoisePreview(render.film, kPictureRegion, 700);
     double sum = 0, sumOfQuick = 0;
     ASSERT_EQ(quick.image.values.size(), whole.image.values.size());
     for (size_t i = 0; i < whole.image.values.size(); ++i) {
@@ -55,6 +55,27 @@ TEST(DenoisePreview, IsQuick) {
     EXPECT_EQ(quick.image.width, kPictureRegion.Width());
     EXPECT_EQ(quick.error, std::vector<float>(60 * 40, kUnknownError));
     EXPECT_NE(whole.error, quick.error);
+}
+
+// Nothing of one eye's image depends on the other's.
+TEST(DenoiseEyes, KeepsThemApart) {
+    const FeatureRender render(1, 36, WithoutSpikes);
+    const int eyeWidth = kPictureRegion.Width() / 2;
+    for (const int mostPixels : {10000, 300}) {
+        const auto denoise = [&](const PixelRect& eye, const std::vector<Block>&) {
+            return DenoisePreview(render.film, eye, mostPixels);
+        };
+        const RgbImage both = DenoiseEyes(kPictureRegion, {}, eyeWidth, denoise).image;
+        ASSERT_EQ(both.width, 2 * eyeWidth);
+        for (size_t k = 0; k < 2; ++k) {
+            const RgbImage eye = denoise(EyesOf(kPictureRegion, eyeWidth)[k], {}).image;
+            for (int y = 0; y < both.height; ++y) {
+                const size_t row = size_t(3 * eyeWidth), at = (2 * size_t(y) + k) * row;
+                EXPECT_TRUE(std::equal(&both.values[at], &both.values[at] + row,
+                                       &eye.values[size_t(y) * row]));
+            }
+        }
+    }
 }
 
 // What the denoiser needs of a picture goes through files.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "renderer/image/image_io.h"
 #include "tests/renderer/files/test_files.h"
 
@@ -105,6 +107,55 @@ TEST(ComparedFiles, LetPicturesForDisplaysBeOfAnyPart) {
     scene = BeginComparison({{0, 0}, {kWidth, kHeight}}, {});
     EXPECT_TRUE(Contains(ErrorOf([&] { ReadImageBeside(directory.File("b.exr"), "human", scene); }),
                          "b.exr: shows another part of the image than the scene would"));
+}
+
+// Writes a pair whose views have these names, the first brighter than 0.25 in its left half.
+std::string WritePair(const TemporaryDirectory& directory, const std::string& name, float brighter,
+                      const std::vector<std::string>& views = {"left", "right"}) {
+    std::vector<ExrImage> parts;
+    std::vector<RowSource> rows;
+    for (const std::string& view : views) {
+        ExrImage& part = parts.emplace_back(ReadExr(WriteGrey(directory, "grey.exr")));
+        part.width = part.height = 20;
+        part.attributes["view"] = view;
+        rows.push_back([=](int, std::span<float> row) {
+            for (size_t i = 0; i < row.size(); ++i)
+                row[i] = view == views[0] && i < row.size() / 2 ? 0.25f + brighter : 0.25f;
+        });
+    }
+    WriteExr(directory.File(name), parts, rows);
+    return directory.File(name);
+}
+
+// Each eye is measured by itself: noise that one has at the seam is no error of the other.
+TEST(ComparedFiles, MayBePairs) {
+    const TemporaryDirectory directory;
+    const ComparedFile pair = ReadComparedFile(WritePair(directory, "a.exr", 0.25f), "automatic"),
+                       reference = ReadComparedFile(WritePair(directory, "b.exr", 0), "reference");
+    EXPECT_EQ(pair.region, (PixelRect{{2, 0}, {42, 20}}));
+    EXPECT_EQ(pair.image.image.values[3 * 9], 0.5f);
+    EXPECT_EQ(pair.image.image.values[3 * 10], 0.25f);
+    Comparison comparison = ComparisonOf({pair, reference}, "b.exr", {.blockSize = 15});
+    EXPECT_EQ(comparison.blocks.size(), 8u);
+    Measure(&comparison);
+    const ComparedImage& image = comparison.images[0];
+    ASSERT_EQ(image.eyes.size(), 2u);
+    EXPECT_NEAR(image.eyes[0].rmse, 0.25 * std::sqrt(0.5), 1e-6);
+    EXPECT_EQ(image.eyes[1].rmse, 0);
+    EXPECT_NEAR(image.figures->rmse, 0.25 * std::sqrt(0.25), 1e-6);
+    EXPECT_NEAR(image.figures->psnr, image.eyes[0].psnr + 10 * std::log10(2), 1e-6);
+    EXPECT_EQ(image.figures->visibleDifference, image.eyes[0].visibleDifference);
+    EXPECT_GT(image.blockFigures[0].flip, 0);
+    EXPECT_EQ(image.blockFigures[4].visibleDifference, 0);
+    EXPECT_EQ(image.flip.size(), size_t(40 * 20));
+
+    const ComparedFile turned =
+        ReadComparedFile(WritePair(directory, "c.exr", 0.25f, {"right", "left"}), "turned");
+    EXPECT_EQ(turned.image.image.values[3 * 19], 0.25f);
+    EXPECT_EQ(turned.image.image.values[3 * 20], 0.5f);
+    const std::string others = WritePair(directory, "d.exr", 0, {"left", "middle", "right"});
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadComparedFile(others, "x"); }), "its views are left, "));
+    EXPECT_TRUE(Contains(ErrorOf([&] { ReadShownPicture(directory.File("a.exr")); }), "a pair"));
 }
 
 // Of other programs' layers, as `lull denoise` does.
