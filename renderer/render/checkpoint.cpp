@@ -17,7 +17,7 @@ namespace lull {
 
 namespace {
 
-constexpr std::string_view kFormat = "lull checkpoint 5";
+constexpr std::string_view kFormat = "lull checkpoint 6";
 constexpr std::array<std::string_view, 4> kOlderFormats = {
     "lull checkpoint 1", "lull checkpoint 2", "lull checkpoint 3", "lull checkpoint 4"};
 
