@@ -110,6 +110,22 @@ std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     return fmt::format("{}; there are {}", start, fmt::join(names, ", "));
 }
 
+// Returns which option has a list with an empty entry, which the parser would drop; "" where none
+// has.
+std::string ProblemOfLists(const CLI::App& command, std::span<const char* const> words) {
+    for (size_t i = 0; i < words.size(); ++i) {
+        const std::string word = words[i], name = word.substr(0, word.find('='));
+        const CLI::Option* option = command.get_option_no_throw(name);
+        if (!option || option->get_delimiter() != ',') continue;
+        const std::string list = name != word           ? word.substr(name.size() + 1)
+                                 : i + 1 < words.size() ? words[i + 1]
+                                                        : "-";
+        if (("," + list + ",").find(",,") != std::string::npos)
+            return fmt::format("{}: an entry of the list '{}' is empty", name, list);
+    }
+    return "";
+}
+
 // Returns why the words of a command cannot be read, and which option one may have been meant to
 // be.
 std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
@@ -167,6 +183,8 @@ ExitCode Main(MpiJob* job, int argc, char** argv) {
     }
     std::string problem = ProblemOfRemoved(words);
     if (problem.empty()) problem = ProblemOfCommand(app, words[1]);
+    for (const CLI::App* each : app.get_subcommands({}))
+        if (problem.empty() && each->get_name() == words[1]) problem = ProblemOfLists(*each, words);
     if (!problem.empty()) return Run(job, [problem]() -> ExitCode { throw UsageError(problem); });
     try {
         app.parse(int(words.size()), words.data());

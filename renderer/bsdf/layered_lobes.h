@@ -57,13 +57,15 @@ class CoatAbove {
 
     float Through(float cosO) const {
         if (weight == 0) return 1;
-        const float reflected = alpha == 0
+        const float reflected = alpha <= kSmooth
                                     ? 0.04f + 0.96f * SchlickWeight(cosO)
                                     : DirectionalAlbedo(cosO, float(alpha) / 65535)(0.04f, 1);
         return 1 - float(weight) / 65535 * reflected;
     }
 
   private:
+    // 0.001: between it and the next row of the table, the latter is 0.04 too low at the horizon.
+    static constexpr uint16_t kSmooth = 66;
     uint16_t weight, alpha;  // in units of 1 / 65535
 };
 

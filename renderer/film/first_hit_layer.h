@@ -30,7 +30,7 @@ struct FeatureSums {
     bool operator==(const FeatureSums&) const = default;
 };
 
-// The same albedo and normal where there is no denoiser.
+// The same albedo and normal as AOVs.
 struct SurfaceSums {
     std::array<double, 3> albedo = {}, normal = {};
 
@@ -79,9 +79,9 @@ class FirstHitLayer {
         if (WantsNearest(o)) nearest.emplace(region);
     }
 
-    static bool NeedsFirstHits(const LayerOptions&) { return true; }
+    static bool NeedsFirstHits(const LayerOptions& o) { return o.aovs.Hits(); }
     void Add(const Vec2i& p, const PathSample& sample) {
-        if (features) features->At(p).Add(sample.hit, InHalf(sample.index));
+        if (features) features->At(p).Add(sample.features, InHalf(sample.index));
         if (surface) surface->At(p).Add(sample.hit);
         if (place) place->At(p).Add(sample.hit);
         if (nearest) nearest->At(p).Add(sample.hit);
@@ -96,10 +96,10 @@ class FirstHitLayer {
     }
     // Free what the denoiser alone reads: all of it, and the rows [y0, y1).
     void ForgetFeatures(const LayerOptions& o) {
-        if (!WantsMeans(o)) features.reset();
+        if (!SharesFeatures(o)) features.reset();
     }
     void ForgetFeatures(const LayerOptions& o, int y0, int y1) {
-        if (!WantsMeans(o)) features->ForgetRows(y0, y1);
+        if (!SharesFeatures(o)) features->ForgetRows(y0, y1);
     }
 
     // Return the sums of a pixel; those that are wanted are there.
@@ -119,7 +119,11 @@ class FirstHitLayer {
 
   private:
     static bool WantsMeans(const LayerOptions& o) { return o.aovs.albedo || o.aovs.normal; }
-    static bool WantsSurface(const LayerOptions& o) { return WantsMeans(o) && !o.features; }
+    // Returns whether these AOVs are of the same hits as the denoiser's features.
+    static bool SharesFeatures(const LayerOptions& o) {
+        return WantsMeans(o) && o.features && o.aovs.throughSpecular;
+    }
+    static bool WantsSurface(const LayerOptions& o) { return WantsMeans(o) && !SharesFeatures(o); }
     static bool WantsPlace(const LayerOptions& o) { return o.aovs.depth || o.aovs.position; }
     static bool WantsNearest(const LayerOptions& o) { return o.aovs.object || o.aovs.material; }
 
@@ -146,9 +150,9 @@ class EmissionLayer {
     static int Channels(const LayerOptions&) { return 0; }
     EmissionLayer(const PixelRect& region, const LayerOptions&) : plane(region) {}
 
-    static bool NeedsFirstHits(const LayerOptions&) { return true; }
+    static bool NeedsFirstHits(const LayerOptions&) { return false; }
     void Add(const Vec2i& p, const PathSample& sample) {
-        const Rgb& emission = sample.hit.emission;
+        const Rgb& emission = sample.features.emission;
         if (IsBlack(emission)) return;
         std::array<float, 3>& sum = plane.At(p).halves[InHalf(sample.index) ? 0 : 1];
         for (size_t c = 0; c < 3; ++c) sum[c] += emission[int(c)];

@@ -215,12 +215,9 @@ struct LayerOptions {
     bool groupNoise = false;       // for the denoiser: of each group
     bool groupBackground = false;  // the light of each group that meets nothing
 
-    // Returns whether first hits are seen in mirrors and through glass, as is best for a denoiser;
-    // AOVs, which are of the same hits, take precedence.
-    bool ThroughSpecular() const { return aovs.Any() ? aovs.throughSpecular : features; }
-    // Returns the same in words.
+    // Returns in words of which hits the AOVs are.
     const char* HitsText() const {
-        return ThroughSpecular() ? "through mirrors and glass" : "of the first surface";
+        return aovs.throughSpecular ? "through mirrors and glass" : "of the first surface";
     }
 };
 

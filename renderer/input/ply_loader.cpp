@@ -35,9 +35,11 @@ constexpr std::pair<const char*, const char*> kUvs[] = {{"u", "v"},
                                                         {"texture_u", "texture_v"},
                                                         {"texture_s", "texture_t"},
                                                         {"texcoord_u", "texcoord_v"},
+                                                        {"texcoord_x", "texcoord_y"},
                                                         {"tex_u", "tex_v"},
                                                         {"u0", "v0"},
-                                                        {"s0", "t0"}};
+                                                        {"s0", "t0"},
+                                                        {"U", "V"}};
 
 SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
     SlotMap slots;

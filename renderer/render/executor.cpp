@@ -161,6 +161,7 @@ int64_t Executor::TakeSamples(const Tile& tile) {
     };
     if (film->layers.IsEmpty()) return render(alone);
     sample.asksForHit = film->layers.NeedFirstHits();
+    sample.asksForFeatures = film->layers.Options().features;
     const LightGroups& wanted = film->layers.Options().groups;
     std::optional<GroupRadiance> groups;
     if (wanted.Count() > 0) sample.groups = &groups.emplace(wanted);

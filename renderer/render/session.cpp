@@ -103,7 +103,7 @@ RenderResult Session::Run(const RenderFunction& render) {
     const RenderEvents& events = options.render.events;
     Display* display = options.render.display;
     PathOptions paths = options.estimator;
-    paths.throughSpecular = options.film.layers.ThroughSpecular();
+    paths.throughSpecular = options.film.layers.aovs.throughSpecular;
     context.source = SamplesOf(scene, paths, lightRounds.get());
     SetClock();
     KeepCheckpoints();

@@ -34,8 +34,9 @@ void RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampl
     const SampleStart start = StartSample(scene, sampler, pixel, index);
     sample->index = index;
     sample->connected = 0;
-    if (sample->asksForHit)
-        sample->hit = {.weight = start.filter.weight, .offset2 = start.filter.offset.squaredNorm()};
+    if (sample->AsksForHits())
+        sample->hit = sample->features = {.weight = start.filter.weight,
+                                          .offset2 = start.filter.offset.squaredNorm()};
     if (sample->groups) sample->groups->Clear();
     if (start.cameraWeight == 0) {
         sample->radiance = Rgb::Zero();
@@ -47,8 +48,8 @@ void RenderSample(const Scene& scene, const PathOptions& options, Sampler& sampl
     };
     const Rgb found = Visit(scene.integrator, li);
     SetRadiance(scene, start, found, sample);
-    if (sample->asksForHit) {
-        Rgb& emission = sample->hit.emission;
+    if (sample->asksForFeatures) {
+        Rgb& emission = sample->features.emission;
         emission = Balanced(scene, emission) *
                    (LimitOf(scene, found, Luminance(found)) * WeightOf(scene, start));
         if (sample->rejected || !IsFinite(emission)) emission = Rgb::Zero();

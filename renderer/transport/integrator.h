@@ -23,7 +23,8 @@ struct FirstHit {
     uint32_t object = 0;    // 1 + number of the shape, then of the instances; 0: none
     uint32_t material = 0;  // 1 + number of the material; 0: none
     bool found = false;     // there was one
-    // Of the sample's radiance, that of a surface that the camera's ray meets unscattered.
+    // Of the sample's radiance, that of a surface that the camera's ray meets unscattered: in
+    // PathSample::features.
     Rgb emission = Rgb::Zero();
     // Of the sample: its filter weight, and the squared distance from the pixel's centre.
     float weight = 1, offset2 = 0;
@@ -75,16 +76,14 @@ struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
 
     Estimator estimator = Estimator::Combined;
-    // Lets a FirstHit look through mirrors and glass: its albedo is the object's times their
-    // reflectance or transmittance, and its depth the length of the path, as if through windows.
-    bool throughSpecular = false;
-    BdptShares shares = {};  // of scenes with a BdptIntegrator
+    bool throughSpecular = false;  // PathSample::hit is seen as `features` are
+    BdptShares shares = {};        // of scenes with a BdptIntegrator
 };
 
-// A sample of a pixel, to be taken again and again. The first two members say what is asked for in
+// A sample of a pixel, to be taken again and again. The first members say what is asked for in
 // addition to the radiance, which that does not change.
 struct PathSample {
-    bool asksForHit = false;
+    bool asksForHit = false, asksForFeatures = false;
     GroupRadiance* groups = nullptr;  // the radiance by groups of lights; null: not asked for
 
     uint32_t index = 0;
@@ -93,9 +92,13 @@ struct PathSample {
     bool rejected = false;  // was NaN, infinite or of negative luminance, and counts as black
     // The share of the luminance that comes from connections to subpaths from lights.
     float connected = 0;
-    // The first hit of the path, if it is asked for; a path that is at its greatest depth, or ends
-    // before it finds something, has none.
-    FirstHit hit = {};
+    // The first hit of the path, for AOVs, and the first that is seen in mirrors and through glass,
+    // for the denoiser: its albedo is the object's times their reflectance or transmittance, and
+    // its depth the length of the path, as if through windows. A path that is at its greatest
+    // depth, or ends before it finds something, has none.
+    FirstHit hit = {}, features = {};
+
+    bool AsksForHits() const { return asksForHit || asksForFeatures; }
 };
 
 // Takes sample `index` of `pixel` (full-image coordinates). The result depends on (seed, pixel,

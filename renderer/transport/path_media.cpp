@@ -1,6 +1,8 @@
 #include "renderer/transport/path_media.h"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "renderer/base/color.h"
 #include "renderer/bsdf/fresnel.h"
@@ -57,25 +59,50 @@ class Beam {
 
 }  // namespace
 
-MediumStack Media::Beyond(const Scene& scene, int shape, const SurfaceInteraction& hit,
-                          const Vec3f& wi, bool crosses, const MediumStack& current) {
-    const MediumStack beyond = scene.media.Beyond(shape, wi.dot(hit.n) > 0, crosses, current);
-    if (beyond.Count() < 2 || beyond.Count() <= current.Count()) return beyond;
+namespace {
+
+// Calls visit(medium, isLeft) for the surfaces of volumes that a ray to wi meets, until that
+// returns false.
+template <typename Visit>
+void ForVolumesAhead(const Scene& scene, const SurfaceInteraction& hit, const Vec3f& wi,
+                     const Visit& visit) {
     constexpr int kMostHits = 100;
-    std::map<int, bool> isLeft;  // before it is entered, by medium
     Ray ray = hit.SpawnRay(wi);
     Hit found;
     for (int i = 0; i < kMostHits && scene.accelerator.Intersect(ray, &found); ++i) {
         SurfaceInteraction at;
         scene.shapes.Interact(ray, found, kNeedsNothing, &at, 0);
         const MediumTable::Sides& sides = scene.media.ofShapes[size_t(found.shape)];
-        if (sides.outside == ShapeEntity::kSurrounding)
-            isLeft.try_emplace(sides.inside, wi.dot(at.n) > 0);
+        if (sides.outside == ShapeEntity::kSurrounding && !visit(sides.inside, wi.dot(at.n) > 0))
+            return;
         ray = at.SpawnRay(wi);
     }
+}
+
+}  // namespace
+
+MediumStack Media::Beyond(const Scene& scene, int shape, const SurfaceInteraction& hit,
+                          const Vec3f& wi, bool crosses, const MediumStack& current) {
+    MediumStack beyond = scene.media.Beyond(shape, wi.dot(hit.n) > 0, crosses, current);
+    if (!scene.media.hasVolumes) return beyond;
+    if (beyond.Count() < current.Count()) {
+        ForVolumesAhead(scene, hit, wi, [&](int medium, bool isLeft) {
+            if (isLeft && beyond.CountOf(medium) == 0) beyond.Enter(medium);
+            return false;
+        });
+        return beyond;
+    }
+    if (beyond.Count() < 2 || beyond.Count() == current.Count()) return beyond;
+    // How often a medium is left more than it is entered, at some point ahead.
+    std::map<int, std::pair<int, int>> left;  // by medium: so far, and the most
+    ForVolumesAhead(scene, hit, wi, [&](int medium, bool isLeft) {
+        auto& [soFar, most] = left[medium];
+        most = std::max(most, soFar += isLeft ? 1 : -1);
+        return true;
+    });
     MediumStack kept;
     for (int i = 0; i + 1 < beyond.Count(); ++i)
-        if (const auto it = isLeft.find(beyond.At(i)); it != isLeft.end() && it->second)
+        if (left[beyond.At(i)].second > beyond.CountOf(beyond.At(i), i + 1))
             kept.Enter(beyond.At(i));
     kept.Enter(beyond.Top());
     return kept;

@@ -128,8 +128,9 @@ class Media {
     static constexpr bool kExist = true, kLetThrough = true;
     using Context = PathContext<Media>;
 
-    // Does what MediumTable::Beyond() does. Of the media about one that is entered, those are kept
-    // that the ray leaves later: where two volumes touch, it meets only one of their surfaces.
+    // Does what MediumTable::Beyond() does. Where two volumes touch, the ray meets only one of
+    // their surfaces: of the media about one that is entered, those are kept that it leaves later,
+    // and where one is left, it is in the volume that it leaves next without having entered it.
     static MediumStack Beyond(const Scene&, int shape, const SurfaceInteraction&, const Vec3f& wi,
                               bool crosses, const MediumStack& current);
 

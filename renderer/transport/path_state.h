@@ -1,6 +1,9 @@
 // A path between two vertices, and its way from one to the next.
 #pragma once
 
+#include <array>
+#include <utility>
+
 #include "renderer/base/math.h"
 #include "renderer/base/sampling.h"
 #include "renderer/bsdf/bsdf.h"
@@ -219,11 +222,11 @@ class FirstHitRecorder : public NoRecorder {
           direction(direction),
           time(time),
           groups(sample->groups),
-          hit(&sample->hit),
-          done(!sample->asksForHit) {}
-    static bool IsNeeded(const PathSample& sample) { return sample.asksForHit || sample.groups; }
+          hits{{{sample->asksForHit ? &sample->hit : nullptr, options.throughSpecular},
+                {sample->asksForFeatures ? &sample->features : nullptr, true}}} {}
+    static bool IsNeeded(const PathSample& sample) { return sample.AsksForHits() || sample.groups; }
 
-    bool Wanted() const { return !done; }
+    bool Wanted() const { return IsDue(false); }
 
     void FindLight(const Path& path, int index, const Rgb& L) {
         if (groups) groups->Add(index, path.beta * L);
@@ -231,58 +234,80 @@ class FirstHitRecorder : public NoRecorder {
 
     // The environment's radiance stands for the albedo.
     void LeaveScene(const Path& path) {
-        if (done) return;
-        done = true;
-        StoreColor(
-            Emission(scene, options.estimator, path, nullptr, {}, NoRecorder()) * scene.film.scale,
-            path);
+        if (!Wanted()) return;
+        const Rgb sky = Emission(scene, options.estimator, path, nullptr, {}, NoRecorder());
+        Store({.albedo = ColorOf(sky * scene.film.scale, path)}, false);
     }
 
     void ReachSurface(const Path&, const Hit& found, const SurfaceInteraction&) {
-        if (!done) distance += found.t;
+        if (Wanted()) distance += found.t;
     }
 
     void MeetSurface(const Path& path, const Hit& found, const SurfaceInteraction& at,
                      const Bsdf& bsdf) {
-        if (done) return;
-        const bool isSpecular = bsdf.LobeCount(LobeSet::All) > 0 &&
-                                bsdf.LobeCount(LobeSet::NonSpecular) == 0 &&
-                                !(scene.materials.Needs(at.material) & kScattersBelow);
-        if (isSpecular && options.throughSpecular && at.areaLight < 0) return;
+        if (!Wanted()) return;
+        const bool isSpecular =
+            bsdf.LobeCount(LobeSet::All) > 0 && bsdf.LobeCount(LobeSet::NonSpecular) == 0 &&
+            !(scene.materials.Needs(at.material) & kScattersBelow) && at.areaLight < 0;
+        if (!IsDue(isSpecular)) return;
         Rgb color = AlbedoOf(bsdf, at.wo);
+        Rgb emission = Rgb::Zero();
         if (at.areaLight >= 0) {
             const Rgb seen = Emission(scene, options.estimator, path, &at, found, NoRecorder());
-            if (isDirect) hit->emission = path.beta * seen;
+            if (isDirect) emission = path.beta * seen;
             color = color.max(seen * scene.film.scale);
         }
-        Store(color, at.p, path);
-        if (at.ns.allFinite()) hit->normal = at.n.dot(at.wo) < 0 ? Vec3f(-at.ns) : at.ns;
-        hit->object = NumberOfObject(scene, found);
-        hit->material = 1 + uint32_t(at.material);
+        FirstHit hit = HitAt(color, at.p, path);
+        hit.emission = emission;
+        if (at.ns.allFinite()) hit.normal = at.n.dot(at.wo) < 0 ? Vec3f(-at.ns) : at.ns;
+        hit.object = NumberOfObject(scene, found);
+        hit.material = 1 + uint32_t(at.material);
+        Store(hit, isSpecular);
     }
 
     // `path.beta` knows of the medium's albedo.
     void MeetMedium(const Path& path, float t, const Vec3f& p) {
-        if (done) return;
+        if (!Wanted()) return;
         distance += t;
-        Store(Rgb::Ones(), p, path);
+        Store(HitAt(Rgb::Ones(), p, path), false);
     }
 
     void Scatter(const Path&, bool) { isDirect = false; }
 
   private:
-    void Store(const Rgb& color, const Vec3f& p, const Path& path) {
-        done = true;
-        StoreColor(color, path);
-        hit->position = p;
-        hit->depth = Depth();
-        hit->found = p.allFinite() && std::isfinite(hit->depth);
+    struct Recorded {
+        FirstHit* hit;  // null: not wanted, or stored
+        bool isThroughSpecular;
+
+        bool IsDue(bool isSpecular) const { return hit && !(isSpecular && isThroughSpecular); }
+    };
+
+    // Returns whether a hit is recorded here, where the surface may be specular.
+    bool IsDue(bool isSpecular) const {
+        return hits[0].IsDue(isSpecular) || hits[1].IsDue(isSpecular);
+    }
+
+    void Store(FirstHit hit, bool isSpecular) {
+        for (Recorded& recorded : hits) {
+            if (!recorded.IsDue(isSpecular)) continue;
+            hit.weight = recorded.hit->weight;
+            hit.offset2 = recorded.hit->offset2;
+            *std::exchange(recorded.hit, nullptr) = hit;
+        }
+    }
+
+    FirstHit HitAt(const Rgb& color, const Vec3f& p, const Path& path) const {
+        const float depth = Depth();
+        return {.albedo = ColorOf(color, path),
+                .position = p,
+                .depth = depth,
+                .found = p.allFinite() && std::isfinite(depth)};
     }
 
     // Refraction scales radiance by the indices' ratio; that is no matter of colour.
-    void StoreColor(const Rgb& color, const Path& path) {
+    static Rgb ColorOf(const Rgb& color, const Path& path) {
         const Rgb seen = path.beta * path.etaScale * color;
-        for (int c = 0; c < 3; ++c) hit->albedo[c] = seen[c] > 0 ? std::min(seen[c], 1.f) : 0;
+        return (seen > 0).select(seen.min(1.f), Rgb::Zero());
     }
 
     float Depth() const {
@@ -301,9 +326,8 @@ class FirstHitRecorder : public NoRecorder {
     const Vec3f direction;
     const float time;
     GroupRadiance* groups;  // null: not wanted
-    FirstHit* hit;
-    float distance = 0;  // of the path so far, from where its first ray begins
-    bool done;
+    std::array<Recorded, 2> hits;
+    float distance = 0;    // of the path so far, from where its first ray begins
     bool isDirect = true;  // nothing has scattered the path
 };
 

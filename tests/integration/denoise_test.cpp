@@ -87,6 +87,23 @@ TEST(DenoiseOption, StoppedBlocksHaveTheErrorThatStoppedThem) {
     EXPECT_LE(block["visibleDifference"]["estimate"], block["visibleDifference"]["upper"]);
 }
 
+// The denoiser looks through glass, whatever AOVs look at.
+TEST(DenoiseOption, ImagesAreTheSameWithAovs) {
+    const TemporaryDirectory directory;
+    directory.Write("scene.pbrt", SceneText(std::string("Material \"glass\"\n") + kSphere +
+                                            "\nTranslate 0 -2 0\n" + kBall));
+    const std::string render =
+        "render scene.pbrt --resolution 48x40 --block 24 --denoise --cap 100 --quiet -o ";
+    ExpectSuccess(directory, render + "plain.exr");
+    Channels plain = ChannelsOf(directory, "plain.exr");
+    for (const std::string aovs :
+         {"albedo,normal,depth", "noise,cryptomatte", "albedo,object --aov-through-specular"}) {
+        ExpectSuccess(directory, render + "aovs.exr --aov " + aovs);
+        const Channels with = ChannelsOf(directory, "aovs.exr");
+        for (const auto& [name, values] : plain) EXPECT_EQ(with.at(name), values) << name << aovs;
+    }
+}
+
 // Paths find a lamp behind glass by chance: few samples have all of the light, and both halves can
 // look alike without being right.
 TEST(DenoiseOption, BoundsTheErrorOfALampInGlass) {

@@ -112,8 +112,8 @@ bool Normalizes(const tinygltf::Model& model, const std::string& attribute) {
            std::find(used.begin(), used.end(), "KHR_mesh_quantization") == used.end();
 }
 
-GltfArray ReadFloats(const GltfDocument& document, int index, int least, int most,
-                     bool normalizes) {
+GltfArray ReadNumbers(const GltfDocument& document, int index, int least, int most,
+                      bool normalizes) {
     const tinygltf::Accessor& accessor = document.model.accessors[size_t(index)];
     const FileLoc loc = document.At(fmt::format("/accessors/{}", index));
     GltfArray array;
@@ -141,9 +141,15 @@ GltfArray ReadFloats(const GltfDocument& document, int index, int least, int mos
     for (size_t i = 0; elements.bytes && i < accessor.count; ++i)
         put(i, elements.bytes + i * elements.stride);
     ForEachSparse(document, loc, accessor, size * components, put);
+    return array;
+}
+
+GltfArray ReadFloats(const GltfDocument& document, int index, int least, int most) {
+    GltfArray array = ReadNumbers(document, index, least, most);
     for (size_t i = 0; i < array.values.size(); ++i)
         if (!std::isfinite(array.values[i]))
-            throw Error(loc, fmt::format("element {} is not finite", i / components));
+            throw Error(document.At(fmt::format("/accessors/{}", index)),
+                        fmt::format("element {} is not finite", i / size_t(array.components)));
     return array;
 }
 

@@ -23,10 +23,12 @@ struct GltfArray {
 
 // Reads an accessor of any type of component, with its sparse values in place; integers that are
 // normalised, or all with `normalizes`, become 0 to 1 or -1 to 1. Throws Error where it has fewer
-// than `least` or more than `most` components, reaches beyond its buffer, or holds a number that is
-// not finite.
-GltfArray ReadFloats(const GltfDocument&, int accessor, int least, int most,
-                     bool normalizes = false);
+// than `least` or more than `most` components, or reaches beyond its buffer. Numbers may be not
+// finite.
+GltfArray ReadNumbers(const GltfDocument&, int accessor, int least, int most,
+                      bool normalizes = false);
+// Reads the same. Throws Error where a number is not finite, too.
+GltfArray ReadFloats(const GltfDocument&, int accessor, int least, int most);
 
 // Reads an accessor of indices. Throws Error unless they are unsigned integers below `bound`.
 std::vector<uint32_t> ReadIndices(const GltfDocument&, int accessor, size_t bound);

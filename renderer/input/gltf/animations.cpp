@@ -186,22 +186,29 @@ namespace {
 
 // A set of four joints and weights for each vertex.
 struct Influences {
-    std::vector<float> joints, weights;
+    GltfArray joints, weights;
 };
 
 std::vector<Influences> ReadInfluences(const GltfDocument& document, const FileLoc& loc,
-                                       const tinygltf::Primitive& primitive, size_t vertexCount) {
+                                       const tinygltf::Primitive& primitive,
+                                       const GltfTriangles& t) {
     std::vector<Influences> sets;
+    const auto read = [&](int accessor) {
+        GltfArray array = ReadNumbers(document, accessor, 4, 4);
+        if (array.Count() != t.VertexCount())
+            throw Error(loc, fmt::format("its joints or weights are not {}, as its vertices are",
+                                         t.VertexCount()));
+        ClearNonFinite(t.indices, &array, [&](uint32_t vertex) {
+            throw Error(loc,
+                        fmt::format("vertex {} has joints or weights that are not finite", vertex));
+        });
+        return array;
+    };
     while (true) {
         const auto joints = primitive.attributes.find(fmt::format("JOINTS_{}", sets.size()));
         const auto weights = primitive.attributes.find(fmt::format("WEIGHTS_{}", sets.size()));
         if (joints == primitive.attributes.end() || weights == primitive.attributes.end()) break;
-        sets.push_back({ReadFloats(document, joints->second, 4, 4).values,
-                        ReadFloats(document, weights->second, 4, 4).values});
-        if (sets.back().joints.size() != 4 * vertexCount ||
-            sets.back().weights.size() != 4 * vertexCount)
-            throw Error(loc, fmt::format("its joints or weights are not {}, as its vertices are",
-                                         vertexCount));
+        sets.push_back({read(joints->second), read(weights->second)});
     }
     if (sets.empty()) throw Error(loc, "has a skin, but no JOINTS_0 and WEIGHTS_0");
     return sets;
@@ -254,19 +261,19 @@ void Skin(const GltfDocument& document, int mesh, int index, const std::vector<M
     const tinygltf::Primitive& primitive =
         document.model.meshes[size_t(mesh)].primitives[size_t(index)];
     const FileLoc loc = document.At(fmt::format("/meshes/{}/primitives/{}", mesh, index));
-    const std::vector<Influences> sets = ReadInfluences(document, loc, primitive, t->VertexCount());
+    const std::vector<Influences> sets = ReadInfluences(document, loc, primitive, *t);
     for (size_t v = 0; v < t->VertexCount(); ++v) {
         Mat4d blended = Mat4d::Zero();
         double sum = 0;
         for (const Influences& set : sets)
             for (size_t k = 4 * v; k < 4 * v + 4; ++k) {
-                if (set.weights[k] == 0) continue;
-                const float joint = set.joints[k];
+                if (set.weights.values[k] == 0) continue;
+                const float joint = set.joints.values[k];
                 if (!(joint >= 0 && size_t(joint) < joints.size()))
                     throw Error(loc, fmt::format("vertex {} has joint {}, but its skin has {}", v,
                                                  joint, joints.size()));
-                blended += double(set.weights[k]) * joints[size_t(joint)];
-                sum += double(set.weights[k]);
+                blended += double(set.weights.values[k]) * joints[size_t(joint)];
+                sum += double(set.weights.values[k]);
             }
         blended = sum != 0 ? Mat4d(blended / sum) : joints.at(0);
         const Eigen::Matrix3d linear = blended.topLeftCorner<3, 3>();

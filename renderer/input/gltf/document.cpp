@@ -129,7 +129,7 @@ void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnin
 
 using Bytes = std::vector<unsigned char>;
 
-// Reads the buffers, of which one without a URI is `data`, and tells the library their numbers in
+// Reads the buffers, of which the first without a URI is `data`, and tells the library their numbers in
 // place of names of files. They may be longer than they say (3.6.1.1).
 std::vector<Bytes> TakeBuffers(const std::filesystem::path& folder, std::string_view data,
                                nlohmann::json* root, GltfDocument* document) {
@@ -141,6 +141,7 @@ std::vector<Bytes> TakeBuffers(const std::filesystem::path& folder, std::string_
         const std::string uri = buffer.value("uri", "");
         if (!buffer.contains("uri")) {
             bytes.assign(data.begin(), data.end());
+            data = {};  // a file with many of them would take its size as often
         } else if (IsDataUri(uri)) {
             std::string type;
             tinygltf::DecodeDataURI(&bytes, type, kData + Base64Of(uri).value_or(""), 0, false);

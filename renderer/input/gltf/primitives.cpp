@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <unordered_map>
 
 #include "renderer/input/gltf/accessors.h"
@@ -24,8 +25,9 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
     for (size_t i = 0; i < weights.size(); ++i) {
         const auto found = primitive.targets[i].find(name);
         if (weights[i] == 0 || found == primitive.targets[i].end()) continue;
-        const GltfArray target = ReadFloats(document, found->second, std::min(array->components, 3),
-                                            array->components, Normalizes(document.model, name));
+        const GltfArray target =
+            ReadNumbers(document, found->second, std::min(array->components, 3), array->components,
+                        Normalizes(document.model, name));
         if (target.Count() != array->Count())
             throw Error(loc, fmt::format("has {} {} in morph target {} for {} vertices",
                                          target.Count(), name, i, array->Count()));
@@ -34,7 +36,6 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
             float& value =
                 array->values[k / components * size_t(array->components) + k % components];
             value += float(weights[i]) * target.values[k];
-            if (!std::isfinite(value)) throw Error(loc, "its morph weights are too large");
         }
     }
 }
@@ -48,7 +49,7 @@ GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
     const auto found = primitive.attributes.find(name);
     if (found == primitive.attributes.end()) return {};
     const bool normalizes = Normalizes(document.model, name);
-    GltfArray array = ReadFloats(document, found->second, least, most, normalizes);
+    GltfArray array = ReadNumbers(document, found->second, least, most, normalizes);
     const tinygltf::Accessor& accessor = document.model.accessors[size_t(found->second)];
     if (normalizes && !accessor.normalized &&
         accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
@@ -109,6 +110,24 @@ std::vector<uint32_t> IndicesOf(const GltfDocument& document, const tinygltf::Pr
 
 }  // namespace
 
+void ClearNonFinite(const std::vector<uint32_t>& indices, GltfArray* array,
+                    const std::function<void(uint32_t vertex)>& report) {
+    const auto isFinite = [](float v) { return std::isfinite(v); };
+    if (indices.empty() || std::ranges::all_of(array->values, isFinite)) return;
+    const auto at = [&](size_t vertex) {
+        const auto n = size_t(array->components);
+        return std::span(array->values).subspan(vertex * n, n);
+    };
+    for (const uint32_t vertex : indices) {
+        if (std::ranges::all_of(at(vertex), isFinite)) continue;
+        report(vertex);
+        std::ranges::fill(at(vertex), 0.f);
+    }
+    for (size_t vertex = 0; vertex < array->Count(); ++vertex)
+        if (!std::ranges::all_of(at(vertex), isFinite))
+            std::ranges::copy(at(indices[0]), at(vertex).begin());
+}
+
 GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
                             const std::vector<double>& weights, Warnings& warnings) {
     const tinygltf::Primitive& primitive =
@@ -127,8 +146,23 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
 
     GltfTriangles t;
     const auto count = size_t(document.model.accessors[size_t(positions->second)].count);
-    const auto read = [&](const char* name, int least, int most) {
-        return ReadAttribute(document, loc, primitive, name, least, most, weights, count, warnings);
+    std::vector<uint32_t> corners = IndicesOf(document, primitive, count);
+    if (mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0)
+        warnings.Add(loc, "the last corners, which make up no triangle, are left out");
+    t.indices = Triangles(std::move(corners), mode);
+    if (t.indices.empty()) warnings.Add(loc, "primitive without triangles is left out");
+    if (t.indices.size() > size_t(std::numeric_limits<int>::max()))
+        throw Error(loc, "has more triangles than can be modelled");
+
+    const auto read = [&](const std::string& name, int least, int most) {
+        GltfArray array =
+            ReadAttribute(document, loc, primitive, name, least, most, weights, count, warnings);
+        ClearNonFinite(t.indices, &array, [&](uint32_t vertex) {
+            if (name == "POSITION")
+                throw Error(loc, fmt::format("vertex {} is not finite", vertex));
+            warnings.Add(loc, "value of a vertex that is not finite counts as 0", name);
+        });
+        return array;
     };
     t.positions = read("POSITION", 3, 3).values;
     t.normals = read("NORMAL", 3, 3).values;
@@ -140,14 +174,6 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
     for (std::vector<float>& uvs : t.uvs)
         for (size_t i = 1; i < uvs.size(); i += 2) uvs[i] = 1 - uvs[i];
     t.colors = WithAlpha(read("COLOR_0", 3, 4));
-
-    std::vector<uint32_t> corners = IndicesOf(document, primitive, count);
-    if (mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0)
-        warnings.Add(loc, "the last corners, which make up no triangle, are left out");
-    t.indices = Triangles(std::move(corners), mode);
-    if (t.indices.empty()) warnings.Add(loc, "primitive without triangles is left out");
-    if (t.indices.size() > size_t(std::numeric_limits<int>::max()))
-        throw Error(loc, "has more triangles than can be modelled");
     return t;
 }
 

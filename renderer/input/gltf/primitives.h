@@ -1,9 +1,11 @@
 // Makes triangle meshes of glTF's primitives, and poses them.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "renderer/input/description.h"
+#include "renderer/input/gltf/accessors.h"
 #include "renderer/input/gltf/document.h"
 #include "renderer/input/gltf/nodes.h"
 
@@ -22,8 +24,14 @@ struct GltfTriangles {
     size_t VertexCount() const { return positions.size() / 3; }
 };
 
+// Calls report(vertex) for each vertex of a triangle that has a value which is not finite, and
+// makes its values 0; where it throws, they stay. Vertices of no triangle get those of another.
+void ClearNonFinite(const std::vector<uint32_t>& indices, GltfArray* values,
+                    const std::function<void(uint32_t vertex)>& report);
+
 // Reads a primitive, with its morph targets added by their weights; no weights: as it stands.
-// Points and lines have no triangles: they are skipped with a counted warning. Throws Error.
+// Points and lines have no triangles: they are skipped with a counted warning. Throws Error, also
+// for a position that is not finite; other values then count as 0, with a counted warning.
 GltfTriangles ReadPrimitive(const GltfDocument&, int mesh, int primitive,
                             const std::vector<double>& weights, Warnings&);
 

@@ -160,9 +160,7 @@ class Repair {
         });
         std::set<size_t> filled;
         ForEachObject(root, "buffers", [&](json& buffer, size_t i) {
-            const bool isUnread =
-                !buffers.contains(i) && (Member(&buffer, "uri") || Extension(&buffer, kMeshopt));
-            if (!isUnread && !IsZero(Member(&buffer, "byteLength"))) return;
+            if (buffers.contains(i) && !IsZero(Member(&buffer, "byteLength"))) return;
             buffer = {{"uri", kOneByteUri}, {"byteLength", 1u}};
             filled.insert(i);
         });

@@ -130,13 +130,17 @@ MediumTable::MediumTable(const Description& description, Warnings& warnings) {
         media.push_back(MakeMedium(entity, warnings));
     if (media.empty()) return;
     ofCamera = MediumStack(description.cameraMedium);
+    size_t volumes = 0;
     const auto add = [&](const ShapeEntity& shape) {
         ofShapes.push_back({shape.insideMedium, shape.outsideMedium});
+        volumes += shape.outsideMedium == ShapeEntity::kSurrounding;
     };
     // In the order of ShapeTable::shapes.
     for (const ShapeEntity& shape : description.shapes) add(shape);
     for (const ObjectEntity& object : description.objects)
         for (const ShapeEntity& shape : object.shapes) add(shape);
+    // Objects may have several instances.
+    hasVolumes = volumes > 1 || (volumes == 1 && description.instances.size() > 1);
 }
 
 MediumSample MediumTable::Sample(int medium, const Ray& ray, Sampler& sampler) const {

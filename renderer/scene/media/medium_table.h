@@ -26,6 +26,10 @@ class MediumStack {
     int Top() const { return count > 0 ? media[size_t(count - 1)] : kVacuum; }
     int Count() const { return count; }
     int At(int i) const { return media[size_t(i)]; }
+    // Returns how often a medium has been entered, from entry `first` on.
+    int CountOf(int medium, int first = 0) const {
+        return int(std::count(media.begin() + first, media.begin() + count, medium));
+    }
     // Forgets the outermost where there are too many.
     void Enter(int medium) {
         if (count == kMost) std::shift_left(media.begin(), media.end(), 1), --count;
@@ -56,6 +60,7 @@ struct MediumTable {
     std::vector<Medium> media;
     std::vector<Sides> ofShapes;  // by the shapes of the scene; empty where there are no media
     MediumStack ofCamera;
+    bool hasVolumes = false;  // several surfaces around which other media stay
 
     MediumTable() = default;
     // Throws Error with file and line for unknown kinds, grids whose counts do not agree, negative

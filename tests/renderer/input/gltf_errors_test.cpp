@@ -147,11 +147,66 @@ TEST(GltfErrors, FindWhatIsInTheBuffers) {
     GltfFile file = GoodFile();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(&file.bytes[12], &nan, 4);
-    EXPECT_EQ(folder.ErrorOf(file), "scene.gltf: /accessors/0: element 1 is not finite");
+    EXPECT_EQ(folder.ErrorOf(file), "scene.gltf: /meshes/0/primitives/0: vertex 1 is not finite");
     file = GoodFile();
     file.bytes[60] = 9;
     EXPECT_EQ(folder.ErrorOf(file),
               "scene.gltf: /accessors/2: index 9 is out of range: there are 3 vertices");
+}
+
+// As in PLY files: what no triangle uses may be any number, and only positions have to be finite.
+TEST(GltfErrors, AreOnlyWhatIsNotFiniteAndUsed) {
+    const GltfFolder folder;
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    const auto quad = [&](const std::string& name, const char* type, int at, float weight) {
+        GltfFile file;
+        std::vector<float> p = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5},
+                           values(name == "POSITION" ? p : std::vector<float>(16, 0.5f));
+        values.resize(4 * size_t(type[3] - '0'));
+        values[size_t(at * (type[3] - '0'))] = kNan;
+        const int broken = file.Floats(values, type);
+        json attributes = {{"POSITION", name == "POSITION" ? broken : file.Floats(p, "VEC3")},
+                           {"NORMAL", file.Floats(std::vector<float>(12, 1), "VEC3")}};
+        if (weight == 0) attributes[name] = broken;
+        if (name.starts_with("WEIGHTS"))
+            attributes["JOINTS_0"] = file.Accessor(file.View(std::string(16, 0)), 5121, 4, "VEC4");
+        json more = {{"indices", file.Indices({2, 0, 1})}};
+        if (weight > 0) more["targets"] = {{{name, broken}}};
+        json node = {{"mesh", file.Mesh(attributes, more)}};
+        if (weight > 0) node["weights"] = {weight};
+        if (name.starts_with("WEIGHTS")) node["skin"] = 0;
+        file.Node(node);
+        if (name.starts_with("WEIGHTS")) file.root["skins"] = {{{"joints", {0}}}};
+        return file;
+    };
+    const std::pair<const char*, const char*> attributes[] = {
+        {"POSITION", "VEC3"},   {"NORMAL", "VEC3"},  {"TANGENT", "VEC4"}, {"TEXCOORD_0", "VEC2"},
+        {"TEXCOORD_1", "VEC2"}, {"COLOR_0", "VEC3"}, {"COLOR_0", "VEC4"}, {"WEIGHTS_0", "VEC4"}};
+    for (const auto& [name, type] : attributes)
+        for (const float weight : {0.f, 0.5f}) {
+            const std::string kind = name;
+            if (weight > 0 && (kind == "TANGENT" || kind == "WEIGHTS_0")) continue;
+            EXPECT_EQ(folder.ErrorOf(quad(name, type, 3, weight)), "") << name;
+            Warnings warnings;
+            const GltfFile used = quad(name, type, 1, weight);
+            const std::string error = folder.ErrorOf(used);
+            if (kind == "POSITION") {
+                EXPECT_EQ(error, "scene.gltf: /meshes/0/primitives/0: vertex 1 is not finite");
+            } else if (kind == "WEIGHTS_0") {
+                EXPECT_EQ(error,
+                          "scene.gltf: /meshes/0/primitives/0: vertex 1 has joints or weights that "
+                          "are not finite");
+            } else {
+                const Description parsed = folder.Parse(used, {}, &warnings);
+                for (const Parameter& parameter : parsed.shapes.at(0).parameters.All())
+                    if (const auto* values = std::get_if<std::vector<float>>(&parameter.values))
+                        for (const float v : *values)
+                            EXPECT_TRUE(std::isfinite(v)) << name << " " << parameter.name;
+                EXPECT_EQ(warnings.Counts().at("value of a vertex that is not finite counts as 0"),
+                          1)
+                    << name;
+            }
+        }
 }
 
 TEST(GltfErrors, RefuseBadUris) {

@@ -248,6 +248,8 @@ TEST_F(Ply, EveryNameOfTextureCoordinates) {
                                {"texture_u", "texture_v"},
                                {"texture_s", "texture_t"},
                                {"texcoord_u", "texcoord_v"},
+                               {"texcoord_x", "texcoord_y"},
+                               {"U", "V"},
                                {"u0", "v0"}}) {
         PlyWriter ply("ascii");
         ply.Header(Header("3", "1", fmt::format("property float {}\nproperty float {}\n", u, v)));

@@ -23,7 +23,7 @@ void OneOfTwoLamps(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSam
         sample->groups->Clear();
         sample->groups->Add(lamp, sample->radiance);
     }
-    if (sample->asksForHit) sample->hit = {.albedo = sample->radiance, .depth = 1, .found = true};
+    sample->features = {.albedo = sample->radiance, .depth = 1, .found = true};
 }
 
 // Renders by the rule `denoised`; returns the samples that the block took.

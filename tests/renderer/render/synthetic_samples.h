@@ -29,7 +29,8 @@ inline void SyntheticSample(Sampler& sampler, const Vec2i& pixel, uint32_t index
     sampler.StartSample(pixel, index);
     const Vec2f u = sampler.Get2D();
     sample->index = index;
-    if (sample->asksForHit) sample->hit = SyntheticHit(sampler.Get2D(), pixel, index);
+    if (sample->AsksForHits())
+        sample->hit = sample->features = SyntheticHit(sampler.Get2D(), pixel, index);
     const float smooth = 0.5f + 0.4f * std::sin(0.02f * float(pixel.x() + 2 * pixel.y()));
     const float spike = u.y() < 1e-3f ? 1e9f : 1.f;
     sample->radiance = Rgb(smooth * u.x() * spike, smooth * 1e-5f * u.y(), u.x() * u.y());

@@ -203,8 +203,8 @@ TEST(GltfMaterial, IsSingleSided) {
 }
 
 // Adds a box about (0, 0, z) of glass that does not bend light, of which `color` is left after each
-// half unit of length.
-void AddBox(GltfFile* file, const json& color, double size, double z) {
+// half unit of length. With `side` -1 its normals point inwards.
+void AddBox(GltfFile* file, const json& color, double size, double z, double side = 1) {
     const json glass = {
         {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
         {"extensions",
@@ -219,7 +219,7 @@ void AddBox(GltfFile* file, const json& color, double size, double z) {
     for (const json& turn : turns) {
         const Eigen::Quaterniond q(turn[3].get<double>(), turn[0].get<double>(),
                                    turn[1].get<double>(), turn[2].get<double>());
-        const Eigen::Vector3d at = q * (scale * Eigen::Vector3d::UnitZ());
+        const Eigen::Vector3d at = q * (side * scale * Eigen::Vector3d::UnitZ());
         file->Node({{"mesh", face},
                     {"rotation", turn},
                     {"scale", {scale, scale, scale}},
@@ -253,17 +253,27 @@ TEST(GltfMaterial, VolumesLieInOthers) {
     AddBox(&hollow, clear, 1, 0);
     AddBox(&hollow, red, 2, 0);
     expect(hollow, 0, 2, 2);
+    GltfFile bubble = LampBelow();
+    AddBox(&bubble, red, 1, 0, -1);
+    AddBox(&bubble, red, 2, 0);
+    expect(bubble, 0, 2, 2);
     GltfFile overlapping = LampBelow();
     AddBox(&overlapping, red, 2, 0);
     AddBox(&overlapping, green, 2, -1);
     expect(overlapping, 4, 2, 6);
-    // What is behind two that touch is in none of them.
-    GltfFile touching = LampBelow();
-    AddBox(&touching, red, 2, -1);
-    AddBox(&touching, green, 2, 1);
-    LookDown(&touching, 0.4);
-    EXPECT_GT(Measure(*Compiled(touching), Estimator::Combined, 400).mean.z(),
-              std::pow(0.5, 8) * 0.9f);
+    // What is behind two that touch is in none of them, whichever of the common faces rays meet.
+    for (const double side : {1., -1.})
+        for (const json& second : {red, green}) {
+            GltfFile touching = LampBelow();
+            AddBox(&touching, second, 2, side);
+            AddBox(&touching, red, 2, -side);
+            LookDown(&touching, 0.4);
+            const Rgb L = Measure(*Compiled(touching), Estimator::Combined, 4000).mean;
+            const double r = second == red ? 0 : 4, g = second == red ? 8 : 4;
+            EXPECT_NEAR(L.x() * std::pow(2, r), 1, 0.05);
+            EXPECT_NEAR(L.y() * std::pow(2, g), 1, 0.1);
+            EXPECT_NEAR(L.z() * std::pow(2, 8), 1, 0.1);
+        }
     // From the middle of both on.
     nested.root["cameras"] = {
         {{"type", "perspective"}, {"perspective", {{"yfov", 0.01}, {"znear", 0.01}}}}};

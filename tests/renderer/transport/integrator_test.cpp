@@ -85,10 +85,10 @@ TEST(FirstHit, KnowsTheLampSeenDirectly) {
     for (const Estimator estimator : kBoth) {
         const auto scene = MakeScene(lamp);
         Sampler sampler(SamplerKind::Random, 7);
-        PathSample sample{.asksForHit = true};
+        PathSample sample{.asksForFeatures = true};
         RenderSample(*scene, estimator, sampler, {0, 0}, 0, &sample);
-        EXPECT_FALSE(IsBlack(sample.hit.emission));
-        ExpectColor(sample.hit.emission, sample.radiance);
+        EXPECT_FALSE(IsBlack(sample.features.emission));
+        ExpectColor(sample.features.emission, sample.radiance);
     }
     // Seen in a mirror it is like any light that is reflected; the sky is no lamp.
     const auto mirror =
@@ -204,6 +204,29 @@ TEST(FirstHit, CanBeAPointInAMedium) {
     }
 }
 
+// The denoiser sees through glass, whatever AOVs show.
+TEST(FirstHit, IsOneThingAndFeaturesAreAnother) {
+    const auto scene = MakeScene("Material \"glass\"\n" + Wall(0) +
+                                 "Material \"matte\" \"rgb Kd\" [.1 .6 .9]\n" + Wall(2) + kSky);
+    Sampler sampler(SamplerKind::Random, 7);
+    PathOptions options = Estimator::Combined;
+    int behind = 0;
+    for (uint32_t k = 0; k < 16; ++k)
+        for (const bool throughSpecular : {false, true}) {
+            options.throughSpecular = throughSpecular;
+            PathSample both{.asksForHit = true, .asksForFeatures = true},
+                alone{.asksForFeatures = true};
+            RenderSample(*scene, options, sampler, {0, 0}, k, &both);
+            RenderSample(*scene, options, sampler, {0, 0}, k, &alone);
+            ExpectColor(both.features.albedo, alone.features.albedo, 0);
+            EXPECT_EQ(both.features.depth, alone.features.depth);
+            EXPECT_EQ(both.hit.object, throughSpecular ? both.features.object : 1);
+            EXPECT_EQ(both.hit.offset2, both.features.offset2);
+            behind += both.features.object == 2;
+        }
+    EXPECT_GT(behind, 16);  // the others are reflected
+}
+
 TEST(FirstHit, EnvironmentCamerasMeasureDistance) {
     const auto scene =
         SceneOf(WorldText("Shape \"sphere\" \"float radius\" [7]",
@@ -232,7 +255,7 @@ TEST(FirstHit, LeavesTheImageAsItIs) {
                 Sampler a(SamplerKind::Sobol, 3), b(SamplerKind::Sobol, 3);
                 PathOptions options = estimator;
                 options.throughSpecular = true;
-                PathSample with{.asksForHit = true};
+                PathSample with{.asksForHit = true, .asksForFeatures = true};
                 RenderSample(*scene, options, a, {0, 0}, k, &with);
                 const PathSample without = RenderSample(*scene, estimator, b, {0, 0}, k);
                 for (int c = 0; c < 3; ++c) ASSERT_EQ(with.radiance[c], without.radiance[c]);

@@ -211,29 +211,53 @@ TEST(PeakNoise, IsThatOfTheSubBlocks) {
     EXPECT_NEAR(PeakNoise(noise) / Rms(masked), std::pow(3, 0.25), 0.15);
 }
 
-// A lit square, with noise, in a block without any: it may be no noisier than where it fills the
-// block, wherever it is, however small and beside whatever level.
+// Lit rectangles, with noise, in a block without any: they may be no noisier than where they fill
+// the block, wherever they are, however small and beside whatever level.
 TEST(LocalPeakNoise, IsThatOfTheLitPixelsAlone) {
-    const auto peakOf = [](int side, int at, double noise, double dark) {
+    struct Window {
+        int x, y, width, height;
+    };
+    const auto peakOf = [](const std::vector<Window>& windows, double noise, double dark) {
         BlockImage block(200, 200, float(dark));
         const BlockImage noisy = NoisyBlock(200, 200, noise, 40, 11);
-        for (int y = at; y < at + side; ++y)
-            for (int x = at; x < at + side; ++x)
-                for (int c = 0; c < 3; ++c) {
-                    block.Mean(x, y)[c] = noisy.mean[size_t(3 * (200 * y + x) + c)];
-                    block.HalfMean(x, y)[c] = noisy.halfMean[size_t(3 * (200 * y + x) + c)];
-                }
+        for (const Window& window : windows)
+            for (int y = window.y; y < window.y + window.height; ++y)
+                for (int x = window.x; x < window.x + window.width; ++x)
+                    for (int c = 0; c < 3; ++c) {
+                        const size_t i = size_t(3 * (200 * y + x) + c);
+                        block.Mean(x, y)[c] = noisy.mean[i];
+                        block.HalfMean(x, y)[c] = noisy.halfMean[i];
+                    }
         return LocalPeakNoise(ComputeLightnessNoise(block.At(40)), 200, 200);
     };
     for (const double noise : {0.05, 0.3}) {
-        const double whole = peakOf(200, 0, noise, 0);
-        for (const double dark : {0., 0.8})
+        const double whole = peakOf({{0, 0, 200, 200}}, noise, 0);
+        for (const double dark : {0., 0.01, 0.18, 0.8}) {
+            const auto expect = [&](const std::vector<Window>& windows, double least, double most) {
+                const double ratio = peakOf(windows, noise, dark) / whole;
+                EXPECT_GT(ratio, least)
+                    << noise << " " << dark << " " << windows[0].x << " " << windows[0].y << " "
+                    << windows[0].width << "x" << windows[0].height << " " << windows.size();
+                EXPECT_LT(ratio, most)
+                    << noise << " " << dark << " " << windows[0].x << " " << windows[0].y << " "
+                    << windows[0].width << "x" << windows[0].height << " " << windows.size();
+            };
             for (const int at : {0, 77, 100}) {
-                for (const int side : {12, 24, 48, 100})
-                    EXPECT_NEAR(peakOf(side, at, noise, dark) / whole, 1, 0.4)
-                        << noise << " " << dark << " " << at << " " << side;
-                EXPECT_GT(peakOf(6, at, noise, dark) / whole, 0.5) << noise << " " << dark;
+                for (const int side : {12, 16, 24, 48, 100})
+                    expect({{at, at, side, side}}, 0.6, 1.4);
+                expect({{at, at, 4, 4}}, 0.35, 1.4);
+                expect({{at, at, 6, 6}}, 0.5, 1.4);
+                expect({{at, at, 8, 8}}, 0.5, 1.4);
+                // Strips across the block, a cross of them, and a corner.
+                for (const int thickness : {4, 6, 10}) {
+                    const Window row = {0, at, 200, thickness}, column = {at, 0, thickness, 200};
+                    expect({row}, 0.6, 1.4);
+                    expect({column}, 0.6, 1.4);
+                    expect({row, column}, 0.6, 1.4);
+                    expect({{at, at, 60, thickness}, {at, at, thickness, 60}}, 0.6, 1.4);
+                }
             }
+        }
     }
 }
 

@@ -45,8 +45,6 @@ std::vector<Vec3f> PositionsOf(const ShapeEntity& entity) {
     if (positions.empty())
         throw Error(entity.loc, "the mesh has no vertices: \"point P\" is missing" +
                                     entity.parameters.Mistyped("P"));
-    for (const Vec3f& p : positions)
-        if (!p.allFinite()) throw Error(entity.loc, "a vertex of the mesh is not finite");
     return positions;
 }
 
@@ -116,10 +114,11 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     mesh.reverseOrientation = entity.reverseOrientation;
     mesh.flipNormals = entity.reverseOrientation != Mirrors(m);
     mesh.frontByWinding = entity.parameters.GetBool("frontbywinding", false);  // as in glTF
-    for (Vec3f& p : data.positions) {
-        p = TransformPoint(m, p);
-        if (!p.allFinite()) throw Error(entity.loc, "a vertex is not finite once transformed");
-    }
+    for (Vec3f& p : data.positions) p = TransformPoint(m, p);
+    for (const auto& triangle : data.triangles)  // other vertices may be anywhere
+        for (const uint32_t v : triangle)
+            if (!data.positions[v].allFinite())
+                throw Error(entity.loc, fmt::format("vertex {} is not finite once transformed", v));
     for (Vec3f& n : data.normals) n = TransformNormal(inverse, n);
     ReadExtraAttributes(entity, data.positions.size(), &mesh);
     mesh.p = std::move(data.positions);

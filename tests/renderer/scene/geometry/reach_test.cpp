@@ -37,6 +37,15 @@ TEST(Reach, RefusesShapesTooFarAway) {
                          "test.pbrt:4: Shape \"trianglemesh\" reaches"));
 }
 
+TEST(Reach, RefusesUsedVerticesTooFarAway) {
+    const std::string mesh =
+        "Scale 1e10 1 1\nShape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0 1e37 0 0] "
+        "\"integer indices\" ";
+    EXPECT_EQ(ErrorIn("", mesh + "[0 1 3]"),
+              "test.pbrt:4: vertex 3 is not finite once transformed");
+    EXPECT_EQ(ErrorIn("", mesh + "[0 1 2]"), "");
+}
+
 TEST(Reach, RefusesInstancesThatNoRayCanBeFollowedInto) {
     EXPECT_TRUE(
         Contains(ErrorIn("", kObject + std::string("Scale 1e-19 1 1\nObjectInstance \"a\"")),
