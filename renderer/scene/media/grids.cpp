@@ -67,12 +67,12 @@ float CloudDensity::operator()(const Vec3f& p) const {
 }
 
 float SparseGrid::Value(const Vec3i& voxel) const {
-    if ((voxel.array() < 0).any() || (voxel.array() >= kSide * size.array()).any()) return 0;
-    const Brick& brick = At(voxel / kSide);
+    if ((voxel.array() < 0).any() || (voxel.array() >= kSide * size.array()).any())
+        return background;
+    const Brick& brick = At({voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3});
     if (brick.stored < 0) return brick.value;
-    const Vec3i in = voxel - voxel / kSide * kSide;
-    return values[size_t(brick.stored) * kValues + size_t((in.x() * kSide + in.y()) * kSide) +
-                  size_t(in.z())];
+    const int in = (voxel.x() & 7) << 6 | (voxel.y() & 7) << 3 | (voxel.z() & 7);
+    return values[size_t(brick.stored) * kValues + size_t(in)];
 }
 
 float SparseGrid::operator()(const Vec3f& p) const {

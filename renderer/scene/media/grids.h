@@ -47,6 +47,7 @@ struct SparseGrid {
     Vec3i size = Vec3i::Ones();  // in bricks
     std::vector<Brick> bricks;   // x fastest, then y
     std::vector<float> values;   // z fastest, then y
+    float background = 0;        // outside
     // Where the unit cube is, in units of voxels, from the first value on.
     Mat3f scale = Mat3f::Identity();
     Vec3f offset = Vec3f::Zero();
@@ -55,7 +56,7 @@ struct SparseGrid {
         return bricks[(size_t(brick.z()) * size.y() + brick.y()) * size.x() + brick.x()];
     }
     const Brick& At(const Vec3i& brick) const { return const_cast<SparseGrid*>(this)->At(brick); }
-    // Returns the value of a voxel, 0 for one outside.
+    // Returns the value of a voxel.
     float Value(const Vec3i& voxel) const;
     float operator()(const Vec3f& p) const;
     // Finds Brick::most of all.

@@ -180,8 +180,9 @@ class TreeReader {
         }
         result.low = (low - 8 * first).cast<float>();
         result.high = (high + Vec3i::Ones() - 8 * first).cast<float>();
-        const float background = bytes.At<float>(root + (isOld ? 48 : 28));
-        grid.bricks.resize(size_t(count), {.value = Checked(background)});
+        grid.background = Checked(bytes.At<float>(root + (isOld ? 48 : 28)));
+        grid.bricks.resize(size_t(count), {.value = grid.background});
+        grid.values.reserve(bytes.Size() / kLeafSize * SparseGrid::kValues);
     }
 
     void ReadMap(uint64_t map) {
