@@ -61,6 +61,7 @@ bool HasInterfaces(const Description& description) {
 
 void ReadMedia(const Description& description, Scene* scene, Warnings& warnings) {
     scene->media = MediumTable(description, warnings);
+    scene->mediaEmit = scene->media.Emit();
     scene->isVolumetric = IntegratorSeesMedia(description.integrator.name) &&
                           (!scene->media.media.empty() || HasInterfaces(description));
 }
@@ -198,7 +199,7 @@ std::unique_ptr<const Scene> MakeScene(const Description& description,
     scene->isMoving = scene->camera.motion || !scene->shapes.motions.empty();
 
     // A black picture would be the first sign of it.
-    if (scene->lights.Count() == 0)
+    if (scene->lights.Count() == 0 && !scene->mediaEmit)
         warnings.Add(description.integrator.loc,
                      "the scene has no lights: the image will be black");
     const Bounds3f& bounds = scene->shapes.bounds;

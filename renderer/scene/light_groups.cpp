@@ -143,6 +143,7 @@ LightGroups MakeLightGroups(const std::vector<std::string>& wanted, const Descri
             group = int(std::ranges::find(groups.names, *name) - groups.names.begin());
         groups.ofLight.insert(groups.ofLight.end(), size_t(light.count), uint8_t(group));
     }
+    if (scene.mediaEmit) groups.ofLight.push_back(uint8_t(rest));
     if (std::ranges::find(groups.ofLight, rest) != groups.ofLight.end() || rest == 0)
         groups.names.push_back(kRest);
     return groups;

@@ -15,7 +15,8 @@ inline constexpr int kMostLightGroups = 16;  // besides the rest
 
 struct LightGroups {
     std::vector<std::string> names;  // empty: light is not told apart
-    std::vector<uint8_t> ofLight;    // the group of each light of the scene, < names.size()
+    // The group of each light of the scene, and of media that emit behind them; < names.size().
+    std::vector<uint8_t> ofLight;
 
     int Count() const { return int(names.size()); }
 };

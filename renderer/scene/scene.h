@@ -37,6 +37,7 @@ struct Scene {
     bool isVolumetric = false;  // has visible media, or interfaces that shadow rays pass
     bool hasPanes = false;      // has surfaces with kLetsThrough
     bool hidesShapes = false;   // from the camera
+    bool mediaEmit = false;     // light
 
     TextureTable textures;
     MaterialTable materials;

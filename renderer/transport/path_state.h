@@ -23,7 +23,7 @@ struct NoRecorder {
     // Whether a path at its greatest depth has to continue for the recorder.
     static constexpr bool Wanted() { return false; }
     // The path, of this throughput, has found light of light `index`: that of a sample of it, or
-    // its emission.
+    // its emission. Behind the last one are media.
     static void FindLight(const Path&, int, const Rgb&) {}
     // The path's ray, of unit direction, ends: it leaves the scene, is at a surface whose BSDF is
     // not yet known, or is scattered by a medium at p, at this distance. The path has found the
@@ -350,6 +350,7 @@ class PathRecorder : public NoRecorder {
     }
     void MeetMedium(const Path& path, float t, const Vec3f& p) {
         Add(PathStep::Kind::Medium, path, t, p);
+        Gain(path, &PathStep::emitted);
     }
     void Scatter(const Path& path, bool isTransmission) {
         Gain(path, &PathStep::direct);

@@ -113,6 +113,11 @@ template <typename Media, typename Recorder>
                                                               Recorder& recorder, Path* path) {
     const Scene& scene = context.scene;
     const MediumSample inMedium = context.media.Sample(path->ray, end, context.sampler);
+    // As in pbrt-v4, media do not emit along the last ray.
+    if (scene.mediaEmit && !isLast) {
+        path->L += path->beta * inMedium.emitted;
+        recorder.FindLight(*path, scene.lights.Count(), inMedium.emitted);
+    }
     path->beta *= inMedium.weight;
     if (IsBlack(path->beta)) return MediumEvent::Ends;
     if (!inMedium.t) return MediumEvent::Passes;

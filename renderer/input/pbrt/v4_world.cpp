@@ -267,26 +267,54 @@ Entity TranslateMedium(V4Reader& in) {
     const std::string& kind = in.Name();
     const std::string owner = "medium \"" + Printable(kind) + "\"";
     in.given.GetString("type", "");
-    const bool isGrid = kind == "uniformgrid";
-    if (!isGrid && kind != "homogeneous")
-        in.Fail(fmt::format("{} is not supported; homogeneous and uniformgrid are", owner));
-    in.Copy(ParameterType::Float, {"g", "scale"});
-    if (in.given.Find(ParameterType::String, "preset") && !isGrid) {
+    const bool isHomogeneous = kind == "homogeneous", isRgb = kind == "rgbgrid";
+    const bool isGrid = kind == "uniformgrid", isCloud = kind == "cloud", isVdb = kind == "nanovdb";
+    if (!isHomogeneous && !isGrid && !isRgb && !isCloud && !isVdb)
+        in.Fail(
+            fmt::format("{} is unknown; cloud, homogeneous, nanovdb, rgbgrid and uniformgrid "
+                        "are",
+                        owner));
+    in.Copy(ParameterType::Float, {"g"});
+    if (!isCloud) in.Copy(ParameterType::Float, {"scale"});
+    if (!isHomogeneous && !isVdb) in.Copy(ParameterType::Point3, {"p0", "p1"});
+    if (isGrid || isRgb) in.Copy(ParameterType::Integer, {"nx", "ny", "nz"});
+    if (isRgb) {
+        in.Copy(ParameterType::Spectrum, {"sigma_a", "sigma_s", "Le"});
+        in.Copy(ParameterType::Float, {"Lescale"});
+        if (!in.given.Find(ParameterType::Spectrum, "sigma_a") &&
+            (in.given.Find(ParameterType::Spectrum, "Le") ||
+             !in.given.Find(ParameterType::Spectrum, "sigma_s")))
+            in.Fail(owner + " needs \"rgb sigma_a\", or without \"Le\" only \"rgb sigma_s\"");
+        return in.Finish(kind, owner);
+    }
+    if (in.given.Find(ParameterType::String, "preset") && isHomogeneous) {
         in.Copy(ParameterType::String, {"preset"});
     } else {
         in.write.Spectrum("sigma_a", in.Surface("sigma_a", Rgb::Ones()));
         in.write.Spectrum("sigma_s", in.Surface("sigma_s", Rgb::Ones()));
     }
-    if ((in.Light("Le", Rgb::Zero()) > 0).any() ||
-        in.given.Find(ParameterType::Float, "temperature"))
-        in.Fail("media that emit light are not supported");
-    in.Ignore({"Lescale", "temperaturescale", "temperatureoffset"});
-    if (isGrid) {
-        in.Copy(ParameterType::Float, {"density"});
-        in.Copy(ParameterType::Integer, {"nx", "ny", "nz"});
-        in.Copy(ParameterType::Point3, {"p0", "p1"});
+    if (isCloud) {
+        in.Copy(ParameterType::Float, {"density", "wispiness", "frequency"});
+        return in.Finish(kind, owner);
     }
-    return in.Finish(isGrid ? "heterogeneous" : kind, owner);
+    if (isVdb || isGrid) {
+        in.Copy(ParameterType::Float, "temperaturecutoff", "temperatureoffset");
+        in.Copy(ParameterType::Float, {"temperatureoffset", "temperaturescale", "Lescale"});
+    }
+    if (isVdb) {
+        in.Copy(ParameterType::String, {"filename", "gridname", "temperaturename"});
+        if (!in.given.Find(ParameterType::String, "filename"))
+            in.Fail(owner + " needs \"string filename\"");
+        return in.Finish(kind, owner);
+    }
+    const float LeScale = isHomogeneous ? in.given.GetFloat("Lescale", 1) : 1;
+    const Rgb Le = in.Light("Le", Rgb::Zero()) * LeScale;
+    if (!IsBlack(Le)) in.write.Spectrum("emission", Le);
+    if (isHomogeneous) return in.Finish(kind, owner);
+    in.Copy(ParameterType::Float, {"density", "temperature"});
+    if (in.Spectrum("Le") && in.given.Find(ParameterType::Float, "temperature"))
+        in.Fail(owner + " has both \"Le\" and \"temperature\"");
+    return in.Finish("heterogeneous", owner);
 }
 
 }  // namespace lull

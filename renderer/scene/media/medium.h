@@ -2,10 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "renderer/base/math.h"
 #include "renderer/base/sampler.h"
+#include "renderer/scene/media/grids.h"
 
 namespace lull {
 
@@ -13,12 +15,14 @@ struct MediumSample {
     std::optional<float> t =
         {};                    // where the ray scatters, in units of its direction; none: it passes
     Rgb weight = Rgb::Ones();  // factor of the path's throughput, either way
+    Rgb emitted = Rgb::Zero();  // radiance of the medium itself that gets to the ray's origin
 };
 
 // Represents a medium that is the same everywhere.
 struct HomogeneousMedium {
-    Rgb sigmaS, sigmaT;  // scattering and extinction, per unit of length
-    float g;             // of the phase function
+    Rgb sigmaS, sigmaT;          // scattering and extinction, per unit of length
+    float g;                     // of the phase function
+    Rgb emission = Rgb::Zero();  // radiance per unit of length
 
     // Returns the share of light that passes through `length` of the medium, which may be infinite.
     Rgb Transmittance(float length) const {
@@ -31,6 +35,20 @@ struct HomogeneousMedium {
     // Finds where the ray, of unit direction, scatters: at a distance by the extinction of one
     // channel, chosen uniformly (pbrt 3rd ed., 15.2.1).
     MediumSample Sample(const Ray& ray, Sampler& sampler) const {
+        MediumSample sample = Scatter(ray, sampler);
+        if (!IsBlack(emission)) sample.emitted = Emitted(ray.tMax);
+        return sample;
+    }
+
+    // Returns the radiance that `length` of the medium sends unscattered to its start.
+    Rgb Emitted(float length) const {
+        const float finite = std::min(length, std::numeric_limits<float>::max());
+        const Rgb lost = -(-sigmaT * finite).unaryExpr([](float x) { return std::expm1(x); });
+        return (sigmaT > 0).select(emission * lost / sigmaT, Rgb::Zero());
+    }
+
+  private:
+    MediumSample Scatter(const Ray& ray, Sampler& sampler) const {
         const float length = ray.tMax;
         // A purely absorbing medium attenuates every path, instead of ending some.
         if (IsBlack(sigmaS)) return {.weight = Transmittance(length)};
@@ -47,26 +65,35 @@ struct HomogeneousMedium {
     }
 };
 
-// Represents a medium whose density is given by a grid, which fills the unit cube of its own space.
-// The densities are at the centres of cells, and 0 beyond the outermost; outside there is nothing.
+// The radiance with which the absorption of a medium counts: a product, of what there is.
+struct MediumEmission {
+    Rgb Le = Rgb::Ones();
+    std::optional<Grid<float>> scale = {};
+    std::optional<Grid<Rgb>> color = {};
+    std::optional<Temperatures> temperatures = {};
+
+    Rgb operator()(const Vec3f& p) const;
+};
+
+// Represents a medium whose density is given by a grid or a formula in the unit cube of its own
+// space; outside there is nothing.
 struct GridMedium {
     float sigmaT;  // greatest extinction per unit of length in the world where the density is 1
     Rgb albedo;    // scattering over that
+    Rgb absorption = Rgb::Zero();  // over that
     std::optional<Rgb> tint = {};  // extinction over that, where colours differ
     float g;                       // of the phase function
-    Vec3i size = Vec3i::Ones();
-    std::vector<float> density;  // x fastest, then y
+    std::variant<Grid<float>, RgbDensity, CloudDensity, SparseGrid> density = {};
     float maxDensity = 0;
     Mat4d gridFromWorld = Mat4d::Identity();
-
-    // Interpolates the density at a point of grid space.
-    float Density(const Vec3f& p) const;
+    std::optional<MediumEmission> emission = {};
 
     // Estimates the transmittance along the ray, whose direction is unit, up to tMax: by ratio
     // tracking, with Russian roulette below 0.1 (pbrt-v3; Novak et al. 2014).
     Rgb Transmittance(const Ray& worldRay, Sampler& sampler) const;
 
     // Finds where the ray, of unit direction, scatters: by delta tracking (Woodcock et al. 1965).
+    // Each tentative collision adds its share of the emission.
     MediumSample Sample(const Ray& worldRay, Sampler& sampler) const;
 };
 

@@ -64,8 +64,7 @@ struct MediumTable {
 
     MediumTable() = default;
     // Throws Error with file and line for unknown kinds, grids whose counts do not agree, negative
-    // or infinite coefficients, extinction that differs between channels of a grid, and grids so
-    // dense that rays could not be traced through them.
+    // or infinite coefficients, and grids so dense that rays could not be traced through them.
     MediumTable(const Description&, Warnings&);
 
     // Returns the media of a ray that leaves the shape on the side of its normal or on the other;
@@ -82,6 +81,9 @@ struct MediumTable {
             current.Enter(sides.inside);
         return current;
     }
+
+    // Returns whether one of them emits light.
+    bool Emit() const;
 
     // Returns in which channels nothing gets through the medium if it is infinite.
     Eigen::Array<bool, 3, 1> Swallows(int medium) const {

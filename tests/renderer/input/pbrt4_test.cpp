@@ -136,8 +136,15 @@ TEST_F(Pbrt4, Errors) {
                 "an infinite light has \"L\" or \"filename\"");
     ExpectError("Attribute \"camera\" \"float fov\" 1", "Attribute \"camera\" is unknown");
     ExpectError("ColorSpace \"adobe\"", "ColorSpace \"adobe\" is unknown");
-    ExpectError("MakeNamedMedium \"m\" \"string type\" \"rgbgrid\"",
-                "medium \"rgbgrid\" is not supported");
+    const std::string medium = "MakeNamedMedium \"m\" \"string type\" ";
+    ExpectError(medium + "\"smoke\"", "medium \"smoke\" is unknown; cloud, homogeneous, nanovdb");
+    ExpectError(medium + "\"rgbgrid\" \"rgb Le\" [1 1 1] \"rgb sigma_s\" [1 1 1]",
+                "medium \"rgbgrid\" needs \"rgb sigma_a\"");
+    ExpectError(medium + "\"nanovdb\"", "medium \"nanovdb\" needs \"string filename\"");
+    ExpectError(medium + "\"cloud\" \"float scale\" 2",
+                "medium \"cloud\" has no parameter \"float scale\"");
+    ExpectError(medium + "\"uniformgrid\" \"rgb Le\" [1 1 1] \"float temperature\" [1]",
+                "medium \"uniformgrid\" has both \"Le\" and \"temperature\"");
     ExpectError("Material \"coateddiffuse\" \"spectrum albedo\" [400 1 700 1]",
                 "a coat whose layer scatters");
     ExpectError("Texture \"t\" \"float\" \"constant\" Texture \"t\" \"float\" \"constant\"",

@@ -39,6 +39,51 @@ constexpr const char* kWhiteSky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
 constexpr const char* kMediumBall =
     "Material \"none\"\nMediumInterface \"m\" \"\"\nShape \"sphere\" \"float radius\" 2\n";
 
+// pbrt-v4's media that emit, in a box without lights: Le sigma_a / sigma_t (1 - exp(-sigma_t d)),
+// seen along its depth of 2, but not where paths have no bounce.
+TEST(Medium, EmitsInPbrtV4) {
+    const auto mean = [](const std::string& medium, int depth) {
+        Warnings warnings;
+        const auto scene = SceneOf(
+            fmt::format(
+                "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n"
+                "Integrator \"volpath\" \"integer maxdepth\" {}\nLookAt 0 0 -3 0 0 0 0 1 0\n"
+                "Camera \"orthographic\" \"float screenwindow\" [-.1 .1 -.1 .1]\nWorldBegin\n"
+                "MakeNamedMedium \"m\" \"string type\" {}\nMaterial \"interface\"\n"
+                "MediumInterface \"m\" \"\"\nScale 10 10 1\nShape \"trianglemesh\" "
+                "\"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] "
+                "\"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7]\n",
+                depth, medium),
+            {}, &warnings);
+        EXPECT_EQ(warnings.Total(), 0);
+        return MeanOf(MeasurePixels(*scene, Estimator::Combined, SamplerKind::Random, 2000, 1));
+    };
+    const std::string absorbs = " \"rgb sigma_s\" [0 0 0] \"rgb sigma_a\" [.2 .4 .1] ";
+    const Eigen::Array3d slab = 1 - (-2 * Eigen::Array3d(0.2, 0.4, 0.1)).exp();
+    const auto expect = [&](const std::string& medium, const Eigen::Array3d& Le) {
+        const ImageMean found = mean(medium, 1);
+        EXPECT_TRUE(((found.mean - Le * slab).abs() <= 4.5 * found.error + 2e-4 * Le).all())
+            << medium << found.mean.transpose() << " not " << (Le * slab).transpose();
+        EXPECT_EQ(mean(medium, 0).mean.maxCoeff(), 0);
+    };
+    expect("\"homogeneous\" \"rgb Le\" [1 2 3] \"float Lescale\" 2" + absorbs, {2, 4, 6});
+    expect("\"homogeneous\" \"spectrum Le\" \"stdillum-D65\"" + absorbs, {1, 1, 1});
+    // A grid is the same between the middles of its cells.
+    const auto eight = [](const std::string& what, const std::string& value) {
+        std::string text = " \"" + what + "\" [";
+        for (int i = 0; i < 8; ++i) text += value + ' ';
+        return text + "]";
+    };
+    const std::string box =
+        " \"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 \"point3 p0\" [-9 -9 -9] "
+        "\"point3 p1\" [9 9 9]";
+    expect("\"uniformgrid\" \"rgb Le\" [1 2 3]" + eight("float density", "1") + box + absorbs,
+           {1, 2, 3});
+    expect("\"rgbgrid\" \"float Lescale\" .01" + box + eight("rgb Le", "1 2 3") +
+               eight("rgb sigma_a", ".2 .4 .1") + eight("rgb sigma_s", "0 0 0"),
+           106.8569 * Eigen::Array3d(.01, .02, .03));
+}
+
 // Nothing is lost in a medium of albedo 1, however often it scatters: 1,000 times and more.
 TEST(Medium, WhiteFurnace) {
     for (const Estimator estimator : kEstimators)

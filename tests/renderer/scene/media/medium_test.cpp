@@ -2,11 +2,18 @@
 #include "renderer/scene/media/medium_table.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cstring>
+#include <random>
 
 #include "renderer/bsdf/subsurface.h"
+#include "renderer/input/spectrum.h"
+#include "renderer/scene/media/nanovdb.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
+#include "tests/shared_folder.h"
 
 namespace lull {
 namespace {
@@ -58,12 +65,14 @@ struct Moments {
 };
 
 // Both the estimates of transmittance and the rays that pass have the mean exp(-depth); those that
-// scatter have the albedo of the rest. `depth` is that of the ray, by channel.
-void ExpectBeerLambert(const MediumTable& table, const Ray& ray, const Eigen::Array3d& depth,
-                       const Eigen::Array3d& albedo) {
+// scatter, and the emission on the way, have the means given. `depth` is that of the ray, by
+// channel.
+void ExpectMeans(const MediumTable& table, const Ray& ray, const Eigen::Array3d& depth,
+                 const Eigen::Array3d& expectedScattered, const Eigen::Array3d& expectedEmitted,
+                 int count = 200000) {
     Sampler sampler(SamplerKind::Random, 1);
-    Moments transmitted, passed, scattered;
-    for (int i = 0; i < 200000; ++i) {
+    Moments transmitted, passed, scattered, emitted;
+    for (int i = 0; i < count; ++i) {
         sampler.StartSample({0, 0}, uint32_t(i));
         transmitted.Add(table.Transmittance(0, ray, sampler));
         const MediumSample s = table.Sample(0, ray, sampler);
@@ -71,10 +80,45 @@ void ExpectBeerLambert(const MediumTable& table, const Ray& ray, const Eigen::Ar
         ASSERT_TRUE(!s.t || (*s.t >= 0 && *s.t <= ray.tMax * 1.00001f));
         passed.Add(s.t ? Rgb(Rgb::Zero()) : s.weight);
         scattered.Add(s.t ? s.weight : Rgb(Rgb::Zero()));
+        emitted.Add(s.emitted);
     }
     transmitted.ExpectMean((-depth).exp());
     passed.ExpectMean((-depth).exp());
-    scattered.ExpectMean(albedo * (1 - (-depth).exp()));
+    scattered.ExpectMean(expectedScattered);
+    emitted.ExpectMean(expectedEmitted);
+}
+
+// Those that scatter have the albedo of the rest.
+void ExpectBeerLambert(const MediumTable& table, const Ray& ray, const Eigen::Array3d& depth,
+                       const Eigen::Array3d& albedo) {
+    ExpectMeans(table, ray, depth, albedo * (1 - (-depth).exp()), Eigen::Array3d::Zero());
+}
+
+// A point of a medium: coefficients per unit of length in the world, and radiance.
+struct Point {
+    Rgb sigmaA = Rgb::Zero(), sigmaS = Rgb::Zero(), Le = Rgb::Zero();
+};
+
+// Expects the integrals along a ray of unit direction, in a medium without transform that is
+// `pointAt` in the box from p0 to p1.
+template <typename PointAt>
+void ExpectIntegrals(const MediumTable& table, const Ray& ray, const Vec3f& p0, const Vec3f& p1,
+                     const PointAt& pointAt, int count = 200000) {
+    Eigen::Array3d depth = Eigen::Array3d::Zero(), scattered = depth, emitted = depth;
+    constexpr int kSteps = 20000;
+    const double step = double(ray.tMax) / kSteps;
+    for (int i = 0; i < kSteps; ++i) {
+        const Vec3f p = ray.o + (float(i) + 0.5f) * float(step) * ray.d;
+        if ((p.array() < p0.array()).any() || (p.array() > p1.array()).any()) continue;
+        const Point at = pointAt(p, Vec3f((p - p0).cwiseQuotient(p1 - p0)));
+        const Eigen::Array3d sigmaT = (at.sigmaA + at.sigmaS).cast<double>();
+        const Eigen::Array3d through = (-depth - 0.5 * step * sigmaT).exp() * step;
+        scattered += through * at.sigmaS.cast<double>();
+        emitted += through * (at.sigmaA * at.Le).cast<double>();
+        depth += step * sigmaT;
+    }
+    ASSERT_GT(depth.maxCoeff(), 0.3);
+    ExpectMeans(table, ray, depth, scattered, emitted, count);
 }
 
 TEST(HomogeneousMedium, FollowsBeerAndLambert) {
@@ -125,11 +169,12 @@ TEST(GridMedium, FollowsBeerAndLambert) {
     place(1, 3) = -0.5;
     const MediumTable table = MakeTable("heterogeneous", GridParameters(density), place);
     const auto& grid = std::get<GridMedium>(table.media[0]);
+    const auto& values = std::get<Grid<float>>(grid.density);
     // At the middles of cells the density is the grid's; outside there is none.
-    EXPECT_NEAR(grid.Density(Vec3f(0.75f, 0.25f, 0.5f)), 0, 1e-6);
-    EXPECT_NEAR(grid.Density(Vec3f(0.25f, 0.75f, 0.5f)), 3, 1e-5);
-    EXPECT_NEAR(grid.Density(Vec3f(0.5f, 0.5f, 1 / 6.f)), 0.875, 1e-5);
-    EXPECT_EQ(grid.Density(Vec3f(2, 2, 2)), 0);
+    EXPECT_NEAR(values(Vec3f(0.75f, 0.25f, 0.5f)), 0, 1e-6);
+    EXPECT_NEAR(values(Vec3f(0.25f, 0.75f, 0.5f)), 3, 1e-5);
+    EXPECT_NEAR(values(Vec3f(0.5f, 0.5f, 1 / 6.f)), 0.875, 1e-5);
+    EXPECT_EQ(values(Vec3f(2, 2, 2)), 0);
 
     const Ray ray{Vec3f(-3, -0.3f, 1), Vec3f(0.9f, 0.12f, 0.5f).normalized() * 2, 3};
     const Mat4d inverse = place.inverse();
@@ -138,8 +183,7 @@ TEST(GridMedium, FollowsBeerAndLambert) {
     for (int i = 0; i < kSteps; ++i) {
         const Vec3f p = TransformPoint(inverse, Vec3f(ray.o + (i + 0.5f) / kSteps * 3 * ray.d));
         const Vec3f q = (p - Vec3f(-1, 0, 2)).cwiseQuotient(Vec3f(2, 1, 3));
-        if ((q.array() >= 0).all() && (q.array() <= 1).all())
-            depth += grid.Density(q) * 6.0 / kSteps;
+        if ((q.array() >= 0).all() && (q.array() <= 1).all()) depth += values(q) * 6.0 / kSteps;
     }
     ASSERT_GT(depth, 0.5);
     ExpectBeerLambert(table, ray, Eigen::Array3d::Constant(depth), {0.75, 0.5, 1});
@@ -177,6 +221,269 @@ TEST(GridMedium, HasAnEndHoweverFarAway) {
         EXPECT_FALSE(table.Sample(0, ray, sampler).t);
         EXPECT_TRUE((table.Transmittance(0, ray, sampler) == 1).all());
     }
+}
+
+// Radiance through a slab: Le sigma_a / sigma_t (1 - exp(-sigma_t d)).
+TEST(HomogeneousMedium, Emits) {
+    const MediumTable table = MakeTable(
+        "homogeneous", {RgbParameter("sigma_a", 0.5f, 1, 0), RgbParameter("sigma_s", 0, 1, 0),
+                        RgbParameter("emission", 3, 5, 7)});
+    EXPECT_TRUE(table.Emit());
+    Sampler sampler(SamplerKind::Random, 1);
+    sampler.StartSample({0, 0}, 0);
+    const Ray ray{Vec3f::Zero(), 2 * Vec3f::UnitX(), 2};
+    const auto emitted = [&](const Ray& r) { return table.Sample(0, r, sampler).emitted; };
+    EXPECT_TRUE(
+        emitted(ray).isApprox(Rgb(3 * (1 - std::exp(-2.f)), 2.5f * (1 - std::exp(-8.f)), 0)));
+    EXPECT_TRUE(emitted({ray.o, ray.d, kInfinity}).isApprox(Rgb(3, 2.5f, 0)));
+    EXPECT_TRUE(emitted({ray.o, ray.d, 1e-6f}).isApprox(Rgb(3e-6f, 10e-6f, 0), 1e-4f));
+    EXPECT_FALSE(MakeTable("homogeneous",
+                           {RgbParameter("sigma_a", 0, 0, 0), RgbParameter("emission", 3, 5, 7)})
+                     .Emit());
+}
+
+const Vec3f kP0(-1, 0, 2), kP1(1, 1, 5);
+const Ray kAcross{Vec3f(-1.5f, -0.2f, 1.5f), Vec3f(0.6f, 0.25f, 0.7f).normalized(), 4};
+
+TEST(GridMedium, EmitsWithTheScaleOfItsGrid) {
+    const std::vector<float> density = {0, 1, 2, 0.5f, 1.5f, 0, 3, 1, 0.2f, 0.7f, 0, 2};
+    const std::vector<float> scale = {1, 0, 0.5f, 2, 1, 0, 0, 3, 1, 1, 2, 0};
+    auto parameters = GridParameters(density);
+    parameters.push_back(RgbParameter("emission", 2, 1, 4));
+    for (const bool isScaled : {false, true}) {
+        if (isScaled) parameters.push_back(FloatParameter("Lescale", scale));
+        const MediumTable table = MakeTable("heterogeneous", parameters);
+        const Grid<float> densities{{2, 2, 3}, density}, scales{{2, 2, 3}, scale};
+        ExpectIntegrals(table, kAcross, kP0, kP1, [&](const Vec3f&, const Vec3f& u) {
+            const float d = densities(u), s = isScaled ? scales(u) : 1;
+            return Point{Rgb(0.25f, 0.5f, 0) * d, Rgb(0.75f, 0.5f, 1) * d, Rgb(2, 1, 4) * s};
+        });
+    }
+}
+
+// As pbrt-v4 has it: the radiance of a black body whose spectrum is 1 at its peak.
+TEST(GridMedium, GlowsByItsTemperatures) {
+    const std::vector<float> density(12, 1.f);
+    const std::vector<float> celsius = {900,  1000, 1100, 2000, 1500, 1200,
+                                        1300, 100,  1250, 1800, -273, 1727};
+    auto parameters = GridParameters(density);
+    parameters.push_back(FloatParameter("temperature", celsius));
+    parameters.push_back(FloatParameter("temperatureoffset", {-273}));
+    parameters.push_back(FloatParameter("temperaturescale", {1.5f}));
+    const MediumTable table = MakeTable("heterogeneous", parameters);
+    const Grid<float> densities{{2, 2, 3}, density}, temperatures{{2, 2, 3}, celsius};
+    ExpectIntegrals(table, kAcross, kP0, kP1, [&](const Vec3f&, const Vec3f& u) {
+        const double kelvin = (double(temperatures(u)) + 273) * 1.5;
+        const Rgb Le =
+            kelvin > 100 ? Rgb(106.8569f * RgbFromBlackbody(kelvin).max(0.f)) : Rgb(0, 0, 0);
+        const float d = densities(u);
+        return Point{Rgb(0.25f, 0.5f, 0) * d, Rgb(0.75f, 0.5f, 1) * d, Le};
+    });
+    parameters.push_back(FloatParameter("temperaturescale", {0.01f}));
+    EXPECT_FALSE(MakeTable("heterogeneous", parameters).Emit());
+}
+
+TEST(RgbGrid, HasColoursOfItsOwn) {
+    std::vector<float> sigmaA, Le;
+    Grid<Rgb> absorption{{2, 2, 3}, {}}, emission = absorption;
+    for (int i = 0; i < 12; ++i) {
+        const Rgb a(0.1f * float(i), 0.5f, i % 3 ? 0 : 2), L(float(i), 2, 1);
+        sigmaA.insert(sigmaA.end(), a.data(), a.data() + 3);
+        Le.insert(Le.end(), L.data(), L.data() + 3);
+        absorption.values.push_back(a);
+        emission.values.push_back(L);
+    }
+    std::vector<Parameter> parameters = GridParameters({});
+    std::erase_if(parameters, [](const Parameter& p) {
+        return p.name == "density" || p.name.starts_with("sigma");
+    });
+    parameters.push_back({ParameterType::Spectrum, "sigma_a", LocAt(7), sigmaA});
+    parameters.push_back({ParameterType::Spectrum, "Le", LocAt(7), Le});
+    parameters.push_back(FloatParameter("Lescale", {0.25f}));
+    parameters.push_back(FloatParameter("scale", {0.5f}));
+    // The scattering that is not given is 1 everywhere, and RGB stands for so many times D65.
+    ExpectIntegrals(MakeTable("rgbgrid", parameters), kAcross, kP0, kP1,
+                    [&](const Vec3f&, const Vec3f& u) {
+                        return Point{0.5f * absorption(u), Rgb::Constant(0.5f),
+                                     0.25f * 106.8569f * emission(u)};
+                    });
+    parameters.back() = IntParameter("nx", 3);
+    EXPECT_TRUE(Contains(ErrorOf([&] { MakeTable("rgbgrid", parameters); }),
+                         "scene.pbrt:3: medium \"m\" has 12 values of \"sigma_a\" for a grid of"));
+}
+
+TEST(Cloud, HasTheDensityOfPbrtV4) {
+    struct Case {
+        Vec3f p;
+        float density, wispiness, frequency, expected;
+    };
+    // By pbrt-v4's own functions.
+    constexpr float kTolerance = 2e-5f;
+    for (const Case& c : {Case{{0.31f, 0.62f, 0.17f}, 1, 1, 5, 0.5080121f},
+                          {{0.31f, 0.62f, 0.17f}, 1, 0, 5, 0.4088092f},
+                          {{0.71f, 0.55f, 0.93f}, 2, 1, 5, 0.800458f},
+                          {{0.12f, 0.8f, 0.44f}, 3, 1, 3, 0.7101943f},
+                          {{0.5f, 0.45f, 0.21f}, 1, 1, 5, 0.3015476f},
+                          {{0.2f, 0.9f, 0.64f}, 10, 0.5f, 7, 0},
+                          {{0.3f, -0.1f, 0.8f}, 1, 1, 5, 1},
+                          {{0.3f, 1.1f, 0.8f}, 1, 1, 5, 0}}) {
+        const CloudDensity cloud{Vec3f(0, -1, 0), Vec3f(1, 2, 4), c.density, c.wispiness,
+                                 c.frequency};
+        const Vec3f u(c.p.x(), (c.p.y() + 1) / 2, c.p.z() / 4);
+        EXPECT_NEAR(cloud(u), c.expected, kTolerance) << c.p.transpose();
+    }
+    const MediumTable table =
+        MakeTable("cloud", {PointParameter("p0", {-1, 0, 2}), PointParameter("p1", {1, 1, 5}),
+                            RgbParameter("sigma_a", 0, 1, 0), RgbParameter("sigma_s", 2, 1, 0.5f)});
+    const CloudDensity cloud{kP0, kP1 - kP0, 1, 1, 5};
+    ExpectIntegrals(
+        table, kAcross, kP0, kP1,
+        [&](const Vec3f&, const Vec3f& u) {
+            const float d = cloud(u);
+            return Point{Rgb(0, 1, 0) * d, Rgb(2, 1, 0.5f) * d};
+        },
+        30000);
+}
+
+// The file, fields.nvdb, is of NanoVDB's own GridBuilder and io::writeGrids (OpenVDB 10, ZIP): at
+// voxels of 0.25 whose first is at (1, 2, 3), from (-5, -3, 2) to (9, 6, 7), "density" and
+// "temperature" as below, and "heights" in doubles.
+float DensityAt(const Vec3i& v) {
+    return float((v.x() * v.x() + 3 * v.y() * v.y() + 7 * v.z() * v.z()) % 11) / 8;
+}
+float TemperatureAt(const Vec3i& v) { return 1000 + 100 * float((v.x() + v.y() + v.z()) & 7); }
+
+std::string FieldsFile() { return LULL_TESTS_DIR "/renderer/scene/media/fields.nvdb"; }
+
+// Interpolates between values in the box, and 0 outside.
+template <typename ValueAt>
+float Interpolated(const Vec3f& x, const ValueAt& valueAt) {
+    float sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        Vec3i v;
+        float weight = 1;
+        for (int i = 0; i < 3; ++i) {
+            v[i] = int(std::floor(x[i])) + (corner >> i & 1);
+            weight *= 1 - std::abs(x[i] - float(v[i]));
+        }
+        const bool isThere = (v.array() >= Vec3i(-5, -3, 2).array()).all() &&
+                             (v.array() <= Vec3i(9, 6, 7).array()).all();
+        if (isThere) sum += weight * valueAt(v);
+    }
+    return sum;
+}
+
+TEST(NanoVdb, IsTheGridThatWasWritten) {
+    const MediumTable table = MakeTable(
+        "nanovdb", {StringParameter("filename", FieldsFile()), RgbParameter("sigma_a", 0.5f, 1, 0),
+                    RgbParameter("sigma_s", 1, 1, 2), FloatParameter("Lescale", {0.1f})});
+    // pbrt-v4's box, which goes on to the next voxels.
+    const Vec3f low(-0.25f, 1.25f, 3.5f), high(3.5f, 3.75f, 5);
+    const auto& grid = std::get<SparseGrid>(std::get<GridMedium>(table.media[0]).density);
+    EXPECT_EQ(grid.values.size(), 6u * 512);
+    const auto voxel = [](const Vec3f& p) { return Vec3f((p - Vec3f(1, 2, 3)) / 0.25f); };
+    const auto pointAt = [&](const Vec3f& p, const Vec3f& u) {
+        const float d = Interpolated(voxel(p), DensityAt);
+        EXPECT_NEAR(grid(u), d, 1e-4) << p.transpose();
+        const float kelvin = Interpolated(voxel(p), TemperatureAt);
+        const Rgb Le = kelvin > 100 ? Rgb(10.68569f * RgbFromBlackbody(double(kelvin)).max(0.f))
+                                    : Rgb(Rgb::Zero());
+        return Point{Rgb(0.5f, 1, 0) * d, Rgb(1, 1, 2) * d, Le};
+    };
+    for (const Vec3f& d : {Vec3f(0.7f, 0.4f, 0.2f), Vec3f(-0.7f, -0.4f, -0.1f), Vec3f(1, 0, 0)}) {
+        const Vec3f unit = d.normalized();
+        ExpectIntegrals(table, {Vec3f(1.6f, 2.4f, 4.2f) - 2 * unit, unit, 4.5f}, low, high, pointAt,
+                        50000);
+    }
+    EXPECT_EQ(table
+                  .Sample(0, {Vec3f(0, 0, 0), Vec3f::UnitX(), kInfinity},
+                          *std::make_unique<Sampler>(SamplerKind::Random, 1))
+                  .t.has_value(),
+              false);
+}
+
+TEST(NanoVdb, RefusesWhatItCannotShow) {
+    const auto error = [](std::vector<Parameter> parameters) {
+        return ErrorOf([&] { MakeTable("nanovdb", std::move(parameters)); });
+    };
+    const auto file = StringParameter("filename", FieldsFile());
+    EXPECT_TRUE(
+        Contains(error({file, StringParameter("gridname", "smoke")}), "has no grid \"smoke\""));
+    EXPECT_TRUE(Contains(error({file, StringParameter("gridname", "heights")}),
+                         "fields.nvdb: the grid \"heights\" is of type double"));
+    EXPECT_TRUE(Contains(error({StringParameter("filename", "missing.nvdb")}), "scene.pbrt:3: "));
+    const TemporaryDirectory folder;
+    const std::string bytes = ReadBytes(FieldsFile());
+    const auto changed = [&](size_t at, char value) {
+        std::string other = bytes;
+        other[at] = value;
+        return error({StringParameter("filename", folder.Write("f.nvdb", other))});
+    };
+    EXPECT_TRUE(Contains(changed(0, 'M'), "f.nvdb: is no NanoVDB file"));
+    EXPECT_TRUE(Contains(changed(11, 0), "f.nvdb: has format 0 of NanoVDB"));
+    EXPECT_TRUE(Contains(changed(14, 2), "f.nvdb: is packed by BLOSC"));
+    EXPECT_TRUE(Contains(changed(22, 1), "f.nvdb: the NanoVDB file is damaged"));  // its size
+    EXPECT_TRUE(Contains(changed(16 + 36, 1), "f.nvdb: the grid \"density\" is no fog volume"));
+    EXPECT_TRUE(Contains(
+        error({StringParameter("filename", folder.Write("f.nvdb", bytes.substr(0, 2000)))}),
+        "damaged or cut short"));
+}
+
+// Whatever a file has instead of its numbers, it is read or refused.
+TEST(NanoVdb, SurvivesDamage) {
+    const TemporaryDirectory folder;
+    const std::string zipped = ReadBytes(FieldsFile());
+    // Unpacks the first grid, so that its nodes can be damaged.
+    uint64_t size, packedSize;
+    std::memcpy(&size, &zipped[16], 8);
+    std::memcpy(&packedSize, &zipped[24], 8);
+    std::string plain = zipped.substr(0, 16 + 176 + sizeof("density"));
+    plain[12] = 1;
+    plain[14] = 0;
+    std::memcpy(&plain[24], &size, 8);
+    std::string grid(size, 0);
+    uLongf unpacked = size;
+    // Behind the heads of all grids, and its own size.
+    const size_t start =
+        16 + 3 * 176 + sizeof("density") + sizeof("temperature") + sizeof("heights");
+    ASSERT_EQ(uncompress(reinterpret_cast<Bytef*>(grid.data()), &unpacked,
+                         reinterpret_cast<const Bytef*>(&zipped[start + 8]), packedSize - 8),
+              Z_OK);
+    plain += grid;
+    std::vector<size_t> filled;
+    for (size_t i = 0; i < plain.size(); ++i)
+        if (plain[i] != 0) filled.push_back(i);
+    std::mt19937 random(1);
+    int read = 0, refused = 0;
+    for (int i = 0; i < 120; ++i) {
+        std::string bytes = plain;
+        const size_t head = std::min<size_t>(filled.size(), 400);
+        for (int n = 0; n < 3; ++n)
+            bytes[filled[random() % (i % 2 ? filled.size() : head)]] = char(random());
+        if (i % 8 == 0) bytes.resize(random() % bytes.size());
+        try {
+            ReadNanoVdb(folder.Write("f.nvdb", bytes), "density", {});
+            ++read;
+        } catch (const Error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(read, 10);
+    EXPECT_GT(refused, 10);
+}
+
+// Houdini 18.5 wrote an older format.
+TEST(NanoVdb, ReadsOldFiles) {
+    LULL_SHARED_FILE(file, "pbrt4-scenes/houdini/resources/sphere.nvdb");
+    const auto grid = ReadNanoVdb(file.string(), "density", {});
+    ASSERT_TRUE(grid);
+    double sum = 0;
+    for (int i = 0; i < 32 * 32 * 32; ++i)
+        sum += double(grid->grid.Value({i % 32, i / 32 % 32, i / 1024}));
+    EXPECT_NEAR(sum, 17166.68, 0.01);  // a ball of 16 voxels that fades to its surface
+    EXPECT_EQ(grid->high, Vec3f(32, 32, 32));
+    EXPECT_NEAR(grid->voxelFromMedium(0, 0), 14.2222, 1e-3);
+    EXPECT_FALSE(ReadNanoVdb(file.string(), "temperature", {}));
 }
 
 TEST(MediumTable, KnowsPresetsAndDefaults) {
