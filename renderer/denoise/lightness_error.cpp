@@ -76,23 +76,37 @@ struct Estimate {
     }
 };
 
+// The samples' estimate of the square of the mean of roots, and the part of it to be expected.
+struct SampleEstimate {
+    Estimate most;  // by an inequality
+    double tightness = 1;
+
+    Estimate Expected() const { return {tightness * most.mean, Sqr(tightness) * most.variance}; }
+};
+
 // Returns the samples' estimate. By Cauchy's inequality the square is at most mean(1 / w) mean(w
 // s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s).
 // Little is known of s itself, but much of its variances, which are correlated with it; noisier
-// sub-blocks get smaller weights, so that their uncertainty does not dominate.
-Estimate FromSamples(std::span<const Squares> all) {
+// sub-blocks get smaller weights, so that their uncertainty does not dominate. With many samples
+// most of the error is in few sub-blocks, and variances say little of where. How tight the
+// inequality is, the squared difference of the halves tells, to which s is taken to be
+// proportional.
+SampleEstimate FromSamples(std::span<const Squares> all, double least) {
     const double n = double(all.size());
     double deviations = 0;
     for (const Squares& s : all) deviations += std::sqrt(s.variance) / n;
-    double inverse = 0, mean = 0, variance = 0;
+    double inverse = 0, mean = 0, variance = 0, ofLeast = 0;
     for (const Squares& s : all) {
         const double deviation = std::max({std::sqrt(s.variance), kLeast * deviations, 1e-12});
         const double w = 1 / std::sqrt(deviation);
         inverse += 1 / (w * n);
         mean += w * s.estimate / n;
         variance += w * w * s.variance / (n * n);
+        ofLeast += w * s.least / n;
     }
-    return {inverse * mean, inverse * inverse * variance};
+    SampleEstimate result{{inverse * mean, inverse * inverse * variance}};
+    if (ofLeast > 0) result.tightness = Sqr(least) / (inverse * ofLeast);
+    return result;
 }
 
 // Returns the usual error for this difference of the denoised halves.
@@ -225,10 +239,11 @@ LightnessError MeasureLightnessError(const EstimatedError& error, const PixelRec
             all.push_back(SquaresOf(sums));
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
         }
-    const Estimate samples = FromSamples(all), combined = Together(samples, Usual(result.least));
-    result.estimate = std::max(combined.Root(0), result.least);
-    result.upper =
-        std::max({combined.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
+    const SampleEstimate samples = FromSamples(all, result.least);
+    const Estimate usual = Usual(result.least);
+    result.estimate = std::max(Together(samples.Expected(), usual).Root(0), result.least);
+    result.upper = std::max({Together(samples.most, usual).Root(kUpper),
+                             kTrust * samples.most.Root(kUpper), result.estimate});
     return result;
 }
 

@@ -6,11 +6,13 @@
 // recordings have its measurements, on which the same decisions are made.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -135,14 +137,22 @@ double UndecidedNoise(const Model& model);
 // A rule checks a block at first, first + every, first + 2 every, ... spp; or, where pictures come
 // at any spp, at whatever comes `every` spp or more after the last check.
 struct Checks {
-    int first = 1;      // the least spp of a check, > 0
-    int every = 1;      // spp from one to the next, > 0
-    double growth = 1;  // of the spp from one to the next, at the least
-    bool any = false;   // pictures come at any spp
+    int first = 1;  // the least spp of a check, > 0
+    int every = 1;  // spp from one to the next, > 0
+    // Of the spp from one to the next, at the least. Near the threshold it is the growth in which
+    // a number that falls as 1 / spp, as visible differences do at the fastest, comes down to it,
+    // but kLeastGrowth if that is more.
+    double growth = 1;
+    bool any = false;  // pictures come at any spp
 
-    // Returns whether a check is due at `spp` > 0, after one at `last` spp; 0: there was none.
-    bool AreDue(int spp, int last = 0) const {
-        if (spp < first || spp < growth * last) return false;
+    static constexpr double kLeastGrowth = 1.03;
+
+    // Returns whether a check is due at `spp` > 0, after one at `last` spp whose number was `over`
+    // times the threshold; 0: there was none.
+    bool AreDue(int spp, int last = 0,
+                double over = std::numeric_limits<double>::infinity()) const {
+        const double needed = std::min(growth, std::max(kLeastGrowth, over));
+        if (spp < first || spp < needed * last) return false;
         return any ? last == 0 || spp - last >= every : (spp - first) % every == 0;
     }
 };
@@ -234,7 +244,7 @@ class RuleCriterion final : public Criterion {
   public:
     RuleCriterion(std::shared_ptr<const Rule> rule, const BlockInfo& block);
 
-    bool IsDue(int spp) const { return rule->checks.AreDue(spp, last); }
+    bool IsDue(int spp) const { return rule->checks.AreDue(spp, last, value / rule->threshold); }
     // Decides after a pass. Signals and PeakOverLimit() (0: not known) are read only where a check
     // is due. Throws std::invalid_argument as the statistic does.
     Decision Decide(int spp, Signals signals, double peakOverLimit = 0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -135,6 +136,38 @@ TEST(Checks, WaitUntilTheSamplesHaveGrown) {
               (std::vector<int>{40, 80, 160, 320, 640, 1280}));
     EXPECT_EQ(ChecksUpTo(60, {.first = 20, .growth = 1.25}, 10),
               (std::vector<int>{20, 30, 40, 50}));
+}
+
+TEST(Checks, AreSoonerWhereTheNumberIsNearTheThreshold) {
+    const Checks checks{.first = 20, .growth = 1.25};
+    // The first of the passes that is due after a check at 2000 spp.
+    const auto next = [&](double over) {
+        int spp = 2020;
+        while (!checks.AreDue(spp, 2000, over)) spp += 20;
+        return spp;
+    };
+    EXPECT_EQ(next(3), 2500);
+    EXPECT_EQ(next(1.105), 2220);
+    EXPECT_EQ(next(1), 2060);
+    EXPECT_TRUE(Checks().AreDue(2001, 2000, 3));
+}
+
+TEST(RuleCriterion, ChecksWhereTheNumberFallsToTheThreshold) {
+    const auto rule = std::make_shared<const Rule>(OwnRule({.first = 20, .growth = 1.25}, 1));
+    // Below the threshold from 1011 spp on.
+    const auto error = [](int spp) { return 0.5 * 1010 / spp; };
+    auto criterion = std::make_unique<RuleCriterion>(rule, BlockInfo());
+    std::vector<int> checks;
+    for (int spp = 20; checks.empty() || error(checks.back()) >= 0.5; spp += 20) {
+        const Decision decision = criterion->Decide(spp, error(spp));
+        if (decision.checked) checks.push_back(spp);
+        EXPECT_EQ(decision.stop, spp == 1020);
+        auto restored = std::make_unique<RuleCriterion>(rule, BlockInfo());
+        restored->Restore(criterion->Save());
+        criterion = std::move(restored);
+    }
+    EXPECT_EQ(checks, (std::vector<int>{20, 40, 60, 80, 100, 140, 180, 240, 300, 380, 480, 600, 760,
+                                        960, 1020}));
 }
 
 }  // namespace
