@@ -129,8 +129,8 @@ void CheckExtensions(const std::string& file, const nlohmann::json& root, Warnin
 
 using Bytes = std::vector<unsigned char>;
 
-// Reads the buffers, of which the first without a URI is `data`, and tells the library their numbers in
-// place of names of files. They may be longer than they say (3.6.1.1).
+// Reads the buffers, of which the first without a URI is `data`, and tells the library their
+// numbers in place of names of files. They may be longer than they say (3.6.1.1).
 std::vector<Bytes> TakeBuffers(const std::filesystem::path& folder, std::string_view data,
                                nlohmann::json* root, GltfDocument* document) {
     std::vector<Bytes> buffers;
