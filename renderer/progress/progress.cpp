@@ -88,9 +88,9 @@ std::string FormatDuration(double seconds) {
 }
 
 std::string FormatRange(const std::array<double, 2>& seconds) {
-    const auto [unit, name] = seconds[1] < 120    ? std::pair(1, "s")
-                              : seconds[1] < 7200 ? std::pair(60, "min")
-                                                  : std::pair(3600, "h");
+    const auto [unit, name] = seconds[1] < 300     ? std::pair(1, "s")
+                              : seconds[1] < 18000 ? std::pair(60, "min")
+                                                   : std::pair(3600, "h");
     return fmt::format("{:.0f} to {:.0f} {}", std::floor(seconds[0] / unit),
                        std::ceil(seconds[1] / unit), name);
 }

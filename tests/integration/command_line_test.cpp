@@ -295,7 +295,7 @@ TEST(CommandLine, NamesQualities) {
     const SceneDirectory directory;
     const auto thresholds = [&](const std::string& options) {
         ExpectSuccess(directory,
-                      "render scene.pbrt --resolution 100x90 --block 45 --stop lnoise:1.2 "
+                      "render scene.pbrt --resolution 100x90 --block 45 --stop lnoise:0.4 "
                       "--max-spp 600 --quiet -o i.exr " +
                           options);
         return ReadBytes(directory.File("i.thresholds.csv"));

@@ -8,7 +8,7 @@ namespace lull::importance_test {
 namespace {
 
 constexpr const char* kRender =
-    "render scene.pbrt --resolution 120x80 --block 40 --max-spp 900 --quiet -o i.exr ";
+    "render scene.pbrt --resolution 120x80 --block 40 --quiet -o i.exr ";
 
 // The left third of the mask is white, the next grey (128 of 255), the last black.
 struct MaskDirectory : TemporaryDirectory {
@@ -34,7 +34,7 @@ struct MaskDirectory : TemporaryDirectory {
 TEST(Importance, IsTheCautionOfBlocks) {
     const MaskDirectory directory;
     for (const std::string rule :
-         {"--stop lnoise:1.3 ", "--stop entropy:1.2 ", "--stop learned "}) {
+         {"--stop lnoise:0.4 ", "--stop entropy:0.4 ", "--stop learned "}) {
         const std::vector<int> by[] = {directory.Stops(rule + "--caution 2"),
                                        directory.Stops(rule + "--caution 1.5"),
                                        directory.Stops(rule)};
@@ -52,7 +52,7 @@ TEST(Importance, IsTheCautionOfBlocks) {
 // Each eye of a pair has the whole mask, and a crop its part.
 TEST(Importance, CoversTheImage) {
     const MaskDirectory directory;
-    const std::string pair = "--stop lnoise:1.3 --stereo 0.1 ";
+    const std::string pair = "--stop lnoise:0.4 --stereo 0.1 ";
     const std::vector<int> careful = directory.Stops(pair + "--caution 2"),
                            plain = directory.Stops(pair);
     const std::vector<int> stops = directory.Stops(pair + "--importance mask.png");
@@ -61,17 +61,17 @@ TEST(Importance, CoversTheImage) {
         EXPECT_EQ(stops[i], careful[i]) << i;
         EXPECT_EQ(stops[i + 2], plain[i + 2]) << i;
     }
-    const std::string crop = "--stop lnoise:1.3 --crop 80,120,0,80px ";
+    const std::string crop = "--stop lnoise:0.4 --crop 80,120,0,80px ";
     EXPECT_EQ(directory.Stops(crop + "--importance mask.png"), directory.Stops(crop));
 }
 
 TEST(Importance, IsPartOfTheRuleWhereARenderResumes) {
     const MaskDirectory directory;
-    const std::string rule = "--stop lnoise:1.3 ";
+    const std::string rule = "--stop lnoise:0.4 ";
     directory.Stops(rule + "--importance mask.png");
     const std::string whole = ReadBytes(directory.File("i.thresholds.csv"));
     const std::string keep = rule + "--checkpoint c.h5 --resume --keep-checkpoint ";
-    directory.Stops(keep);
+    directory.Stops(keep + "--max-spp 20");  // before the first block stops
     EXPECT_TRUE(Contains(RunLull(directory, kRender + keep + "--importance mask.png").err,
                          "with another rule"));
     EXPECT_EQ(ReadBytes(directory.File("i.thresholds.csv")), whole);

@@ -113,8 +113,9 @@ TEST(ProgressText, HasARangeOfTimes) {
 TEST(FormatRange, IsRoundedOutwards) {
     EXPECT_EQ(FormatRange({0, 0.2}), "0 to 1 s");
     EXPECT_EQ(FormatRange({61.5, 119.5}), "61 to 120 s");
-    EXPECT_EQ(FormatRange({90, 130}), "1 to 3 min");
-    EXPECT_EQ(FormatRange({4000, 8000}), "1 to 3 h");
+    EXPECT_EQ(FormatRange({90, 310}), "1 to 6 min");
+    EXPECT_EQ(FormatRange({4000, 8000}), "66 to 134 min");
+    EXPECT_EQ(FormatRange({10000, 20000}), "2 to 6 h");
 }
 
 TEST(ProgressText, GuessesNothingWithoutARate) {

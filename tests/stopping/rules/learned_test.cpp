@@ -193,6 +193,7 @@ TEST(Learned, SaysHowWhatIsFollowedFalls) {
     const RuleTrend noise = ParseRule("learned:" + file.path).trend;
     EXPECT_NEAR(noise.undecided, 0.7, 1e-3);
     EXPECT_EQ(noise.reference, settings.visibility.reference);
+    EXPECT_EQ(noise.nearness, settings.visibility.nearness);
     EXPECT_TRUE(noise.saturates);
     settings.features = {Feature::VisibleDrop, Feature::H};
     WriteModel(file.path, ConstantNetwork(2, 0.5f), settings);
