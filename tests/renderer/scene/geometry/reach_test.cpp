@@ -41,8 +41,8 @@ TEST(Reach, RefusesUsedVerticesTooFarAway) {
     const std::string mesh =
         "Scale 1e10 1 1\nShape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0 1e37 0 0] "
         "\"integer indices\" ";
-    EXPECT_EQ(ErrorIn("", mesh + "[0 1 3]"),
-              "test.pbrt:4: vertex 3 is not finite once transformed");
+    EXPECT_TRUE(Contains(ErrorIn("", mesh + "[0 1 3]"),
+                         "test.pbrt:4: vertex 3 is not finite once transformed"));
     EXPECT_EQ(ErrorIn("", mesh + "[0 1 2]"), "");
 }
 
