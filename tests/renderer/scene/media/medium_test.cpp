@@ -254,8 +254,9 @@ TEST(GridMedium, EmitsWithTheScaleOfItsGrid) {
         if (isScaled) parameters.push_back(FloatParameter("Lescale", scale));
         const MediumTable table = MakeTable("heterogeneous", parameters);
         const Grid<float> densities{{2, 2, 3}, density}, scales{{2, 2, 3}, scale};
+        const Grid<float> whole{{1, 1, 1}, {1}};  // what pbrt-v4 has without "Lescale"
         ExpectIntegrals(table, kAcross, kP0, kP1, [&](const Vec3f&, const Vec3f& u) {
-            const float d = densities(u), s = isScaled ? scales(u) : 1;
+            const float d = densities(u), s = isScaled ? scales(u) : whole(u);
             return Point{Rgb(0.25f, 0.5f, 0) * d, Rgb(0.75f, 0.5f, 1) * d, Rgb(2, 1, 4) * s};
         });
     }
@@ -270,14 +271,15 @@ TEST(GridMedium, GlowsByItsTemperatures) {
     parameters.push_back(FloatParameter("temperature", celsius));
     parameters.push_back(FloatParameter("temperatureoffset", {-273}));
     parameters.push_back(FloatParameter("temperaturescale", {1.5f}));
+    parameters.push_back(FloatParameter("Lescale", std::vector<float>(12, 2.f)));
     const MediumTable table = MakeTable("heterogeneous", parameters);
     const Grid<float> densities{{2, 2, 3}, density}, temperatures{{2, 2, 3}, celsius};
     ExpectIntegrals(table, kAcross, kP0, kP1, [&](const Vec3f&, const Vec3f& u) {
         const double kelvin = (double(temperatures(u)) + 273) * 1.5;
         const Rgb Le =
             kelvin > 100 ? Rgb(106.8569f * RgbFromBlackbody(kelvin).max(0.f)) : Rgb(0, 0, 0);
-        const float d = densities(u);
-        return Point{Rgb(0.25f, 0.5f, 0) * d, Rgb(0.75f, 0.5f, 1) * d, Le};
+        const float d = densities(u);  // which is 1 in the middle, as half of the scale is
+        return Point{Rgb(0.25f, 0.5f, 0) * d, Rgb(0.75f, 0.5f, 1) * d, 2 * d * Le};
     });
     parameters.push_back(FloatParameter("temperaturescale", {0.01f}));
     EXPECT_FALSE(MakeTable("heterogeneous", parameters).Emit());
