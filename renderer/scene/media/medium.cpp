@@ -144,7 +144,8 @@ Properties PropertiesAt(const GridMedium&, const RgbDensity& density, const Vec3
     return {most, sigmaT / most, sigmaS / most, sigmaA / most};
 }
 
-// Where colours differ, collisions are those of the greatest extinction, and others weigh in.
+// Where colours differ, collisions are those of the mean extinction, below that of some channel at
+// least: each channel can pass.
 template <typename Density>
 MediumSample SampleTinted(const GridMedium& medium, const Density& density,
                           const Crossing& crossing, Sampler& sampler) {
@@ -156,12 +157,13 @@ MediumSample SampleTinted(const GridMedium& medium, const Density& density,
         const float share = std::clamp(at.density / steps.maxDensity, 0.f, 1.f);
         if (medium.emission)
             sample.emitted += sample.weight * at.absorption * share * (*medium.emission)(p);
-        if (sampler.Get1D() < share) {
+        const float mean = at.extinction.mean(), q = share * mean;
+        if (sampler.Get1D() < q) {
             sample.t = t;
-            sample.weight *= at.scattering;
+            sample.weight *= at.scattering / mean;
             break;
         }
-        sample.weight *= (1 - at.extinction * share) / (1 - share);
+        sample.weight *= (1 - at.extinction * share) / (1 - q);
     }
     return sample;
 }

@@ -169,8 +169,9 @@ GridMedium ReadUniformGrid(const MediumEntity& entity, GridMedium medium) {
         emission.temperatures = ReadTemperatures(entity, std::move(grid), coldest, hottest);
         if (emission.temperatures) emission.Le = Rgb::Ones();
     }
-    if (!params.GetFloats(ParameterType::Float, "Lescale").empty())
-        emission.scale = ReadGrid<float>(entity, "Lescale");
+    // As in pbrt-v4, a scale of 1 is that of a grid of one cell: it falls towards the sides.
+    const bool isScaled = !params.GetFloats(ParameterType::Float, "Lescale").empty();
+    emission.scale = isScaled ? ReadGrid<float>(entity, "Lescale") : Grid<float>{.values = {1}};
     if (!IsBlack(emission.Le)) medium.emission = std::move(emission);
     Place(entity, MatrixOfBox(entity), &medium);
     return medium;

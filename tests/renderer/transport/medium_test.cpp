@@ -77,7 +77,8 @@ TEST(Medium, EmitsInPbrtV4) {
     const std::string box =
         " \"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 \"point3 p0\" [-9 -9 -9] "
         "\"point3 p1\" [9 9 9]";
-    expect("\"uniformgrid\" \"rgb Le\" [1 2 3]" + eight("float density", "1") + box + absorbs,
+    expect("\"uniformgrid\" \"rgb Le\" [1 2 3]" + eight("float density", "1") +
+               eight("float Lescale", "1") + box + absorbs,
            {1, 2, 3});
     expect("\"rgbgrid\" \"float Lescale\" .01" + box + eight("rgb Le", "1 2 3") +
                eight("rgb sigma_a", ".2 .4 .1") + eight("rgb sigma_s", "0 0 0"),
