@@ -117,6 +117,15 @@ const Parameter* Parameters::Find(ParameterType type, const std::string& name) c
     return parameter;
 }
 
+std::optional<Parameter> Parameters::Take(ParameterType type, const std::string& name) {
+    const auto it = std::ranges::find_if(
+        parameters, [&](const Parameter& p) { return p.type == type && p.name == name; });
+    if (it == parameters.end()) return {};
+    Parameter taken = std::move(*it);
+    parameters.erase(it);
+    return taken;
+}
+
 std::span<const float> Parameters::GetFloats(ParameterType type, const std::string& name) const {
     const Parameter* parameter = Find(type, name);
     if (!parameter) return {};

@@ -104,6 +104,8 @@ class Parameters {
 
     // Return the parameter with all its values, or null.
     const Parameter* Find(ParameterType type, const std::string& name) const;
+    // Removes the parameter and returns it, if it is there.
+    std::optional<Parameter> Take(ParameterType type, const std::string& name);
     // Return the values, empty where absent.
     std::span<const float> GetFloats(ParameterType type, const std::string& name) const;
     std::span<const int> GetInts(const std::string& name) const;

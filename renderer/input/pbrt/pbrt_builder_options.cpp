@@ -55,7 +55,7 @@ Entity PbrtBuilder::Translated(EntityKind kind, Entity entity) {
     if (!IsV4()) return entity;
     const auto preset = state.attributes.find(kind);
     if (preset != state.attributes.end()) AddPresets(preset->second, &entity.parameters);
-    return TranslateV4({kind, description, state, warnings}, entity);
+    return TranslateV4({kind, description, state, warnings}, std::move(entity));
 }
 
 void PbrtBuilder::ReadOption(EntityKind kind, Entity* entity, const char* directive) {

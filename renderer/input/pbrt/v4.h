@@ -25,7 +25,7 @@ struct V4Context {
 
 // Returns the entity in the Description's terms. Throws Error, with the place, for unknown kinds
 // and parameters, with what pbrt-v4 has for those of pbrt-v3, and for what is not supported.
-Entity TranslateV4(const V4Context& context, const Entity& entity);
+Entity TranslateV4(const V4Context& context, Entity entity);
 
 // Throws Error for a kind of film, camera, sampler or material that pbrt-v3 alone has, with that of
 // pbrt-v4.
@@ -88,7 +88,7 @@ Mat3f WhiteBalance(float kelvin);
 // Reads the parameters of a pbrt-v4 entity, and writes those of another.
 class V4Reader {
   public:
-    V4Reader(const V4Context& context, const Entity& from)
+    V4Reader(const V4Context& context, Entity& from)
         : given(from.parameters), write(&written, from.loc), context(context), from(from) {}
     V4Reader(const V4Reader&) = delete;
     V4Reader& operator=(const V4Reader&) = delete;
@@ -110,6 +110,8 @@ class V4Reader {
     void Copy(ParameterType type, const char* name, const char* to);
     void Copy(ParameterType type, std::initializer_list<const char*> names);
     void CopyFloat(const char* name, const char* to = nullptr);
+    // Moves parameters that may be large; no look-up finds them afterwards.
+    void Move(ParameterType type, std::initializer_list<const char*> names);
     // Copies a texture, or writes the reflectance or, with `otherwise`, that.
     void CopyReflectance(const char* name, const char* to, float otherwise);
     // Copies a texture, or writes the spectrum of a surface, if there is one.
@@ -122,15 +124,15 @@ class V4Reader {
     const std::string& Name() const { return from.name; }
     const V4Context& Context() const { return context; }
 
-    // Returns the entity written. Throws Error if a parameter of the other is unknown.
-    Entity Finish(const std::string& name, const std::string& owner) const;
+    // Returns the entity written, once. Throws Error if a parameter of the other is unknown.
+    Entity Finish(const std::string& name, const std::string& owner);
 
     const Parameters& given;      // those that were looked up count as known
     const ParameterWriter write;  // of the other entity
 
   private:
     const V4Context& context;
-    const Entity& from;
+    Entity& from;
     Parameters written;
 };
 

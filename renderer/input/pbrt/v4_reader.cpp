@@ -82,6 +82,14 @@ void V4Reader::Copy(ParameterType type, std::initializer_list<const char*> names
     for (const char* name : names) Copy(type, name, name);
 }
 
+void V4Reader::Move(ParameterType type, std::initializer_list<const char*> names) {
+    for (const char* name : names)
+        if (std::optional<Parameter> parameter = from.parameters.Take(type, name)) {
+            parameter->lookedUp = false;
+            written.Add(std::move(*parameter));
+        }
+}
+
 void V4Reader::CopyFloat(const char* name, const char* to) {
     Copy(ParameterType::Float, name, to ? to : name);
     Copy(ParameterType::Texture, name, to ? to : name);
@@ -114,14 +122,14 @@ TextureRef V4Reader::AddImage(const std::string& file, bool isData) const {
     return {file, -1, int(context.description.textures.size()) - 1};
 }
 
-Entity V4Reader::Finish(const std::string& name, const std::string& owner) const {
+Entity V4Reader::Finish(const std::string& name, const std::string& owner) {
     for (const Parameter& parameter : given.All())
         if (!parameter.lookedUp)
             throw Error(parameter.loc,
                         fmt::format("{} has no parameter \"{} {}\" in pbrt-v4{}", owner,
                                     NameOf(parameter.type), Printable(parameter.name),
                                     given.Mistyped(parameter.name)));
-    return {name, written, from.loc};
+    return {name, std::move(written), from.loc};
 }
 
 void AddPresets(const Parameters& presets, Parameters* parameters) {
@@ -135,7 +143,7 @@ void AddPresets(const Parameters& presets, Parameters* parameters) {
     }
 }
 
-Entity TranslateV4(const V4Context& context, const Entity& entity) {
+Entity TranslateV4(const V4Context& context, Entity entity) {
     using Translate = Entity (*)(V4Reader&);
     // By EntityKind.
     constexpr Translate kTranslations[] = {

@@ -225,15 +225,15 @@ Entity TranslateShape(V4Reader& in) {
     CopyAlpha(&in);
     if (kind == "bilinearmesh") return TranslatePatches(in);
     if (kind == "trianglemesh") {
-        in.Copy(ParameterType::Integer, {"indices", "faceIndices"});
-        in.Copy(ParameterType::Point3, {"P"});
-        in.Copy(ParameterType::Point2, {"uv"});
-        in.Copy(ParameterType::Normal, {"N"});
-        in.Ignore({"S"});
         // Three points are a triangle.
         if (!in.given.Find(ParameterType::Integer, "indices") &&
             in.given.GetFloats(ParameterType::Point3, "P").size() == 9)
             in.write.Ints("indices", {0, 1, 2});
+        in.Move(ParameterType::Integer, {"indices", "faceIndices"});
+        in.Move(ParameterType::Point3, {"P"});
+        in.Move(ParameterType::Point2, {"uv"});
+        in.Move(ParameterType::Normal, {"N"});
+        in.Ignore({"S"});
     } else if (kind == "plymesh") {
         in.Copy(ParameterType::String, {"filename"});
         if (in.given.GetTexture("displacement"))
@@ -242,8 +242,8 @@ Entity TranslateShape(V4Reader& in) {
                 "use the material's \"displacement\", which tilts its normals");
         in.Ignore({"edgelength"});
     } else if (kind == "loopsubdiv") {
-        in.Copy(ParameterType::Integer, {"levels", "indices"});
-        in.Copy(ParameterType::Point3, {"P"});
+        in.Move(ParameterType::Integer, {"levels", "indices"});
+        in.Move(ParameterType::Point3, {"P"});
         in.Copy(ParameterType::String, {"scheme"});
     } else if (kind == "sphere" || kind == "cylinder" || kind == "disk") {
         in.Copy(ParameterType::Float,

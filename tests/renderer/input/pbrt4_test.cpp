@@ -73,6 +73,19 @@ TEST_F(Pbrt4, Defaults) {
     EXPECT_EQ(d.materials[size_t(d.shapes[0].material)].name, "matte");
 }
 
+TEST_F(Pbrt4, LargeMeshesAreNotCopied) {
+    Description description;
+    Warnings warnings;
+    const GraphicsState state;
+    Entity mesh{"trianglemesh", {}, {}};
+    mesh.parameters.Add({ParameterType::Point3, "P", {}, std::vector<float>(9)});
+    const float* values = mesh.parameters.GetFloats(ParameterType::Point3, "P").data();
+    const Entity shape =
+        TranslateV4({EntityKind::Shape, description, state, warnings}, std::move(mesh));
+    EXPECT_EQ(shape.parameters.GetFloats(ParameterType::Point3, "P").data(), values);
+    EXPECT_EQ(shape.parameters.GetInts("indices").size(), 3u);
+}
+
 // TransformEnd takes back everything; names are known from then on everywhere.
 TEST_F(Pbrt4, ScopesAndNames) {
     const Description d = ParseV4(
