@@ -76,21 +76,18 @@ struct Estimate {
     }
 };
 
-// The samples' estimate of the square of the mean of roots, and the part of it to be expected.
+// The samples' estimates of the square of the mean of roots: the most that it is, and the expected.
 struct SampleEstimate {
-    Estimate most;  // by an inequality
-    double tightness = 1;
-
-    Estimate Expected() const { return {tightness * most.mean, Sqr(tightness) * most.variance}; }
+    Estimate most, expected;
 };
 
-// Returns the samples' estimate. By Cauchy's inequality the square is at most mean(1 / w) mean(w
+// Returns the samples' estimates. By Cauchy's inequality the square is at most mean(1 / w) mean(w
 // s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s).
 // Little is known of s itself, but much of its variances, which are correlated with it; noisier
 // sub-blocks get smaller weights, so that their uncertainty does not dominate. With many samples
-// most of the error is in few sub-blocks, and variances say little of where. How tight the
-// inequality is, the squared difference of the halves tells, to which s is taken to be
-// proportional.
+// most of the error is in few sub-blocks, of which variances say little. It is less concentrated
+// than the squared difference of the halves, which can agree where they are wrong: it is expected
+// half way, in logarithms, between the most and what the inequality leaves of that difference.
 SampleEstimate FromSamples(std::span<const Squares> all, double least) {
     const double n = double(all.size());
     double deviations = 0;
@@ -104,9 +101,9 @@ SampleEstimate FromSamples(std::span<const Squares> all, double least) {
         variance += w * w * s.variance / (n * n);
         ofLeast += w * s.least / n;
     }
-    SampleEstimate result{{inverse * mean, inverse * inverse * variance}};
-    if (ofLeast > 0) result.tightness = Sqr(least) / (inverse * ofLeast);
-    return result;
+    const double left = ofLeast > 0 ? least / std::sqrt(inverse * ofLeast) : 1;
+    const Estimate most{inverse * mean, inverse * inverse * variance};
+    return {most, {left * most.mean, Sqr(left) * most.variance}};
 }
 
 // Returns the usual error for this difference of the denoised halves.
@@ -241,7 +238,7 @@ LightnessError MeasureLightnessError(const EstimatedError& error, const PixelRec
         }
     const SampleEstimate samples = FromSamples(all, result.least);
     const Estimate usual = Usual(result.least);
-    result.estimate = std::max(Together(samples.Expected(), usual).Root(0), result.least);
+    result.estimate = std::max(Together(samples.expected, usual).Root(0), result.least);
     result.upper = std::max({Together(samples.most, usual).Root(kUpper),
                              kTrust * samples.most.Root(kUpper), result.estimate});
     return result;
