@@ -148,8 +148,8 @@ class Help : public CLI::Formatter {
             if (option.get_required()) text += " REQUIRED";
         }
         const auto add = [&](const char* relation, const auto& others) {
-            if (!others.empty()) text += std::string(" ") + relation + ":";
-            for (const CLI::Option* other : others) text += " " + other->get_name();
+            if (!others.empty()) text += fmt::format(" {}:", relation);
+            for (const CLI::Option* other : others) text += fmt::format(" {}", other->get_name());
         };
         add("Needs", option.get_needs());
         add("Excludes", option.get_excludes());
