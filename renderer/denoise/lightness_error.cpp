@@ -76,34 +76,23 @@ struct Estimate {
     }
 };
 
-// The samples' estimates of the square of the mean of roots: the most that it is, and the expected.
-struct SampleEstimate {
-    Estimate most, expected;
-};
-
-// Returns the samples' estimates. By Cauchy's inequality the square is at most mean(1 / w) mean(w
+// Returns the samples' estimate. By Cauchy's inequality the square is at most mean(1 / w) mean(w
 // s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s).
 // Little is known of s itself, but much of its variances, which are correlated with it; noisier
-// sub-blocks get smaller weights, so that their uncertainty does not dominate. With many samples
-// most of the error is in few sub-blocks, of which variances say little. It is less concentrated
-// than the squared difference of the halves, which can agree where they are wrong: it is expected
-// half way, in logarithms, between the most and what the inequality leaves of that difference.
-SampleEstimate FromSamples(std::span<const Squares> all, double least) {
+// sub-blocks get smaller weights, so that their uncertainty does not dominate.
+Estimate FromSamples(std::span<const Squares> all) {
     const double n = double(all.size());
     double deviations = 0;
     for (const Squares& s : all) deviations += std::sqrt(s.variance) / n;
-    double inverse = 0, mean = 0, variance = 0, ofLeast = 0;
+    double inverse = 0, mean = 0, variance = 0;
     for (const Squares& s : all) {
         const double deviation = std::max({std::sqrt(s.variance), kLeast * deviations, 1e-12});
         const double w = 1 / std::sqrt(deviation);
         inverse += 1 / (w * n);
         mean += w * s.estimate / n;
         variance += w * w * s.variance / (n * n);
-        ofLeast += w * s.least / n;
     }
-    const double left = ofLeast > 0 ? least / std::sqrt(inverse * ofLeast) : 1;
-    const Estimate most{inverse * mean, inverse * inverse * variance};
-    return {most, {left * most.mean, Sqr(left) * most.variance}};
+    return {inverse * mean, inverse * inverse * variance};
 }
 
 // Returns the usual error for this difference of the denoised halves.
@@ -236,11 +225,10 @@ LightnessError MeasureLightnessError(const EstimatedError& error, const PixelRec
             all.push_back(SquaresOf(sums));
             result.least += std::sqrt(all.back().least) / (kSide * kSide);
         }
-    const SampleEstimate samples = FromSamples(all, result.least);
-    const Estimate usual = Usual(result.least);
-    result.estimate = std::max(Together(samples.expected, usual).Root(0), result.least);
-    result.upper = std::max({Together(samples.most, usual).Root(kUpper),
-                             kTrust * samples.most.Root(kUpper), result.estimate});
+    const Estimate samples = FromSamples(all), combined = Together(samples, Usual(result.least));
+    result.estimate = std::max(combined.Root(0), result.least);
+    result.upper =
+        std::max({combined.Root(kUpper), kTrust * samples.Root(kUpper), result.estimate});
     return result;
 }
 

@@ -105,6 +105,14 @@ namespace {
 // What a medium does with a path.
 enum class MediumEvent { Passes, Scatters, Ends };
 
+// Adds what the medium about a path emits. By itself, as the sums of other scenes are then rounded
+// alike with and without a recorder.
+template <typename Recorder>
+[[gnu::noinline]] void AddEmission(int index, const Rgb& emitted, Recorder& recorder, Path* path) {
+    path->L += path->beta * emitted;
+    recorder.FindLight(*path, index, emitted);
+}
+
 // Follows the path's ray, which nothing else stops before `end`, through the medium about it. Where
 // that scatters it, adds direct light and continues from there.
 template <typename Media, typename Recorder>
@@ -114,10 +122,8 @@ template <typename Media, typename Recorder>
     const Scene& scene = context.scene;
     const MediumSample inMedium = context.media.Sample(path->ray, end, context.sampler);
     // As in pbrt-v4, media do not emit along the last ray.
-    if (scene.mediaEmit && !isLast) {
-        path->L += path->beta * inMedium.emitted;
-        recorder.FindLight(*path, scene.lights.Count(), inMedium.emitted);
-    }
+    if (scene.mediaEmit && !isLast)
+        AddEmission(scene.lights.Count(), inMedium.emitted, recorder, path);
     path->beta *= inMedium.weight;
     if (IsBlack(path->beta)) return MediumEvent::Ends;
     if (!inMedium.t) return MediumEvent::Passes;

@@ -74,24 +74,6 @@ TEST(LightnessError, IsBoundedDespiteOneNoisyPart) {
     EXPECT_GT(noisy.upper, calm);
 }
 
-// The noise of the samples, which is the same everywhere, does not say where the error is; the
-// difference of the halves does. The mean over sub-blocks is 0.39 of that, the root of the mean
-// square 0.95.
-TEST(LightnessError, IsThatOfAFewParts) {
-    EstimatedError error{Planes(100, 100, 1, 50), Planes(100, 100, 1), Planes(100, 100, 1, 1),
-                         Planes(100, 100, 1),     Planes(100, 100, 1), {}};
-    for (const float ratio : {1.f, 1.5f}) {
-        for (int y = 0; y < 100; ++y)
-            for (int x = 0; x < 100; ++x) {
-                error.least.Row(0, y)[x] = y < 10 ? 9 : 0.01f;
-                error.squared.Row(0, y)[x] = Sqr(ratio) * error.least.Row(0, y)[x];
-            }
-        const LightnessError part = MeasureLightnessError(error, {{0, 0}, {100, 100}});
-        EXPECT_NEAR(part.estimate / part.least, ratio * std::sqrt(0.953 / 0.39), 0.03 * ratio);
-        EXPECT_GT(part.upper, part.estimate);
-    }
-}
-
 TEST(LightnessError, IsNothingWhereNothingIsWrong) {
     const Planes truth(50, 50, 3, 0.3f);
     const DenoisedPicture denoised = Denoise(AddNoise(truth, FlatFeatures(50, 50), 0, 1));

@@ -58,11 +58,11 @@ TEST(TakePicture, IsThePictureOfTheFilm) {
             FilmPixel sums = tile.At({x, y});
             for (uint32_t k = 0; k < 8; ++k) {
                 PathSample sample{.index = k, .radiance = Rgb(1, float(x + k), float(y % 7))};
-                sample.hit.found = true;
-                sample.hit.weight = 1;
-                sample.hit.depth = float(1 + (x * y + int(k)) % 13);
-                sample.hit.albedo = Rgb(0.1f * float(x % 5), 0.5f, 0.02f * float(k));
-                if (x == 20) sample.hit.emission = Rgb(3, 2, 1);
+                sample.features.found = true;
+                sample.features.weight = 1;
+                sample.features.depth = float(1 + (x * y + int(k)) % 13);
+                sample.features.albedo = Rgb(0.1f * float(x % 5), 0.5f, 0.02f * float(k));
+                if (x == 20) sample.features.emission = Rgb(3, 2, 1);
                 sums.Add(sample.radiance, false);
                 film.layers.Add({x, y}, sample);
             }

@@ -20,15 +20,24 @@ std::vector<ExrChannel> ChannelsOfFilm(const Film& film) {
     return ChannelsOf({.film = film, .nameOfObject = name, .nameOfMaterial = name}).channels;
 }
 
+// With the denoiser's features AOVs are of the same hits, through mirrors and glass.
+LayerOptions LayersOf(const std::vector<std::string>& aovs, bool features) {
+    LayerOptions options{.aovs = ParseAovs(aovs), .features = features};
+    options.aovs.throughSpecular = features;
+    return options;
+}
+
 // One pixel with its layers.
 struct OnePixel {
     Film film;
 
     explicit OnePixel(const std::vector<std::string>& aovs, bool features = false)
-        : film(kPixel, {.layers = {.aovs = ParseAovs(aovs), .features = features}}) {}
+        : film(kPixel, {.layers = LayersOf(aovs, features)}) {}
     void Add(const FirstHit& hit, const Rgb& radiance = Rgb::Zero()) {
-        film.layers.Add(kPixel.min,
-                        {.index = film.At(kPixel.min).count, .radiance = radiance, .hit = hit});
+        film.layers.Add(kPixel.min, {.index = film.At(kPixel.min).count,
+                                     .radiance = radiance,
+                                     .hit = hit,
+                                     .features = hit});
         AddTo(&film, kPixel.min, radiance);
     }
     float Value(const std::string& channel) const {
