@@ -144,7 +144,7 @@ class Others(unittest.TestCase):
     def test_example_runs(self):
         example = ROOT / "renderer/python/examples/three_rules.py"
         said = subprocess.run([sys.executable, "-B", example, CORNELL, "--resolution", "50x40",
-                               "--cap", "60"], capture_output=True, text=True,
+                               "--max-spp", "60"], capture_output=True, text=True,
                               env=dict(os.environ, PYTHONPATH=sys.path[0]))
         self.assertEqual(said.returncode, 0, said.stderr)
         for rule in "learned", "lnoise:0.5", "denoised":
