@@ -3,8 +3,8 @@
 
     python3 tests/shared_bugs.py build/release/renderer/lull [FOLDER...] [--bugs ../shared/bugs]
 
-FOLDER is the start of a name, such as 54; without any, all run that take seconds. Needs numpy, OpenImageIO and Pillow. Prints a
-line for each folder and each wrong value, and ends with 1 if there is one.
+FOLDER is the start of a name, such as 54; without any, all run that take seconds. Needs numpy, Pillow and OpenImageIO, with maketx.
+Prints a line for each folder and each wrong value, and ends with 1 if there is one.
 """
 import argparse
 import os
