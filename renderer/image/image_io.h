@@ -49,7 +49,7 @@ struct ExrImage {
     std::map<std::string, ExrAttribute> attributes;
     // Read from files of several, such as those of two eyes: the first is that of the channels; the
     // names of others come before theirs, as in right.R.
-    std::vector<std::string> views;
+    std::vector<std::string> views = {};
 
     // Returns the channel of that name, or null.
     const ExrChannel* Find(const std::string& name) const;

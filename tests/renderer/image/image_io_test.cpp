@@ -261,7 +261,7 @@ TEST(ReadImage, SaysWhatIsWrong) {
 TEST(ReadImage, RefusesWhatIsCutShort) {
     const TemporaryDirectory directory;
     const ExrChannel grey{"Y", std::vector<float>(120), true};
-    WriteExr(directory.File("a.exr"), ExrImage{3, 40, Vec2i::Zero(), {0, 0}, {grey}, {}, {}});
+    WriteExr(directory.File("a.exr"), ExrImage{3, 40, Vec2i::Zero(), {0, 0}, {grey}, {}});
     const auto refuse = [&](const std::string& bytes, size_t most) {
         for (size_t size = 8; size < most; ++size)
             EXPECT_THROW(ReadImage("cut", "", std::as_bytes(std::span(bytes.data(), size))), Error)

@@ -12,7 +12,7 @@ namespace {
 
 // Makes an image whose values all differ and are halves.
 ExrImage MakeExr(int width, int height, const std::vector<std::string>& names, bool isHalf) {
-    ExrImage image{width, height, Vec2i::Zero(), {0, 0}, {}, {}, {}};
+    ExrImage image{width, height, Vec2i::Zero(), {0, 0}, {}, {}};
     for (size_t c = 0; c < names.size(); ++c) {
         ExrChannel& channel = image.channels.emplace_back(ExrChannel{names[c], {}, isHalf});
         for (int i = 0; i < width * height; ++i)
