@@ -92,8 +92,8 @@ inline constexpr const char* kDenoisedRuleName = "denoised";
 
 // Reads the threshold T, which the context's caution divides. The block is checked first at 20
 // spp and then wherever the spp have grown by a quarter, as denoising it takes as long as some
-// samples, or sooner near T (Checks::growth); it stops as soon as the estimate is below T. Throws std::invalid_argument
-// for a bad threshold, and where the program does not measure this.
+// samples, or sooner near T (Checks::growth); it stops as soon as the estimate is below T. Throws
+// std::invalid_argument for a bad threshold, and where the program does not measure this.
 Rule ReadDenoised(const std::string& argument, const RuleContext& context);
 
 }  // namespace lull
