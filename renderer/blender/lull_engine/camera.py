@@ -14,7 +14,7 @@ def resolution(render):
 
 
 def views(render):
-    """Returns the names of the pictures of a render, such as those of two eyes; that of a single one is empty."""
+    """Returns the names of the views of a render, such as left and right; a single view has an empty name."""
     named = [v.name for v in render.views if v.use and (render.views_format == 'MULTIVIEW' or v.name in ("left", "right"))]
     return named if render.use_multiview else [""]
 

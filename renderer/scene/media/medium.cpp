@@ -201,16 +201,15 @@ MediumSample GridMedium::Sample(const Ray& worldRay, Sampler& sampler) const {
     if (!(sigmaT * maxDensity > 0)) return {};
     const Crossing crossing(gridFromWorld, worldRay);
     return Visit(density, [&]<typename Density>(const Density& field) {
-        constexpr bool isRgb = std::is_same_v<Density, RgbDensity>;
-        if constexpr (isRgb) return SampleTinted(*this, field, crossing, sampler);
-        if (tint || emission) return SampleTinted(*this, field, crossing, sampler);
-        if constexpr (!isRgb) {
-            StepsOf<Density> steps(*this, field, crossing);
-            for (float t = crossing.tMin; steps.Next(&t, sampler);)
-                if (field(crossing(t)) > sampler.Get1D() * steps.maxDensity)
-                    return MediumSample{.t = t, .weight = albedo};
-        }
-        return MediumSample{};
+        if constexpr (!std::is_same_v<Density, RgbDensity>)
+            if (!tint && !emission) {
+                StepsOf<Density> steps(*this, field, crossing);
+                for (float t = crossing.tMin; steps.Next(&t, sampler);)
+                    if (field(crossing(t)) > sampler.Get1D() * steps.maxDensity)
+                        return MediumSample{.t = t, .weight = albedo};
+                return MediumSample{};
+            }
+        return SampleTinted(*this, field, crossing, sampler);
     });
 }
 
