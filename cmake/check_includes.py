@@ -77,6 +77,7 @@ OTHERS = {
     "cstdint": r"\b(?:u?int(?:8|16|32|64)_t|u?intptr_t|U?INT(?:8|16|32|64)_(?:MAX|MIN))\b",
     "cstdlib": r"std::(?:getenv|strtod|strtof|strtol|strtoul|strtoull|strtoll|exit|abort|atoi|atof|malloc|free|system|_Exit|quick_exit)\b"
                r"|\bEXIT_(?:SUCCESS|FAILURE)\b",
+    "fmt/ranges.h": r"\bfmt::join\b",  # its declaration moved there
     "typeinfo": r"\btypeid\b",
 }
 # Headers that the standard says declare the names of another too, as far as those are used here.

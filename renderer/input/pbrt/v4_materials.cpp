@@ -1,5 +1,6 @@
 // Materials and lights of pbrt-v4.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
