@@ -109,11 +109,15 @@ class Leader {
     }
 
     // Learns from the samples of all ranks, which are here, once a round: whoever goes on from the
-    // checkpoint has to know what was learned.
+    // checkpoint has to know what was learned. The others forget the spreads when the next round
+    // begins, and may have sent them again.
     void LearnLight() {
         LightRounds& rounds = *context.lightRounds;
-        if (rounds.End() == 0 || std::exchange(learnedEnd, rounds.End()) == rounds.End()) return;
-        rounds.Learn(film);
+        if (rounds.End() == 0) return;
+        if (std::exchange(learnedEnd, rounds.End()) == rounds.End())
+            film->ForgetSpreads();
+        else
+            rounds.Learn(film);
     }
 
     // Traces a rank's part, and gives signs of life meanwhile.

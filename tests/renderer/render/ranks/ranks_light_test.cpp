@@ -14,6 +14,7 @@ struct Part {
     const Shared* before = nullptr;  // goes on from there
     Habits how = {};
     int64_t tiles = 1 << 30;  // of the first rank, which is then interrupted
+    int checkpoints = 0;      // after which it is interrupted; 0: it is not
 };
 
 Shared RenderPart(const Scene& scene, int ranks, const Part& part = {}) {
@@ -22,11 +23,19 @@ Shared RenderPart(const Scene& scene, int ranks, const Part& part = {}) {
     for (std::unique_ptr<LightRounds>& light : lights)
         light = std::make_unique<LightRounds>(scene, whole, Sampler(SamplerKind::Random, 0));
     std::atomic<int64_t> left = part.tiles;
+    int written = 0;
     const auto change = [&](RenderSetup* o, int rank) {
         o->lightRounds = lights[size_t(rank)].get();
         o->rankPatience = 1;
         o->schedule.cap = 90;
-        if (rank == 0) o->isCancelled = [&] { return --left < 0; };
+        if (rank > 0) return;
+        o->isCancelled = [&] { return --left < 0; };
+        if (part.checkpoints == 0) return;
+        o->checkpoints.interval = 0;
+        o->checkpoints.write = [&, write = o->checkpoints.write](const RenderState& state) {
+            write(state);
+            if (++written == part.checkpoints) left = 0;
+        };
     };
     return RenderShared(
         ranks, change, part.before,
@@ -57,6 +66,12 @@ WorldEnd
         const Shared fewer =
             RenderPart(*scene, 3, {.how = {.sleeper = 1, .messagesBefore = before}});
         EXPECT_TRUE(SameSums(*fewer.film, *reference.film)) << before;
+    }
+    // Some of these checkpoints are written as a round ends.
+    for (int i = 2; i < 40; i += 3) {
+        const Shared begun = RenderPart(*scene, 3, {.checkpoints = i});
+        const Shared rest = RenderPart(*scene, 2, {.before = &begun});
+        EXPECT_TRUE(SameSums(*rest.film, *reference.film)) << i;
     }
     const Shared part = RenderPart(*scene, 2, {.tiles = 400});
     EXPECT_TRUE(part.result.cancelled);
