@@ -63,8 +63,7 @@ constexpr RuleEntry kRules[] = {
      .argument = "[:T]",
      .standard = "3.1",
      .stops = "when the estimated visible difference between the denoised block and the true one "
-              "is below T@, checked whenever samples have grown by a quarter, sooner near T; "
-              "the default with --denoise",
+              "is below T@; the default with --denoise",
      .compares = RuleTrend::Error,
      .takesCaution = true,
      .read = ReadDenoised},

@@ -70,7 +70,7 @@ QUANTITIES = [
     ('shortest time by --denoise, s', (*TIMES, min), 'after # to [0-9]+ s of CPU time', 'takes # to [0-9]+ s of CPU time in'),
     ('longest of the 13, s', DENOISER, 'after 1 to # s of CPU time', 'takes 1 to # s of CPU time in 13'),
     ('longest of all, s', (*TIMES, max), ', 135 to # s in seven', 'after 135 to # s in seven'),
-    ('scenes compared with pbrt-v3', RENDERER, 'with those of pbrt-v3, # scenes', 'and on # whole scenes'),
+    ('scenes compared with pbrt-v3', RENDERER, "with pbrt-v3's, # scenes", 'on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),
     ('stop of a block of staircase2, spp', README, 'The same stairs at 20, #, 2,886', 'trained without this scene, stops at # spp', '>stop: #<', 'below 1/2 at # spp'),
