@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Makes the pictures of the documents in scenes/pictures.
 
-pictures.py NAME...: caution, remedies, gallery, report, room (by day and by night), decision, observed (stops.png and
+pictures.py NAME...: strip, caution, remedies, gallery, report, room (by day and by night), decision, observed (stops.png and
 night-block.jpg, of scenes in ../shared or $LULL_SHARED). Renders stay in out/pictures; existing ones are not rendered again.
-Needs what tests/measurements/measure.py needs, Pillow (Debian: python3-pil) and, for the report, chromium. The panels of the
-add-on are taken in a Blender where it is installed:
+Needs what tests/measurements/measure.py needs, Pillow (Debian: python3-pil) and, for the report, chromium. Pictures of the
+add-on are taken in a Blender where it is installed, F12 with lull on the PATH:
 
-xvfb-run -s "-screen 0 560x820x24" blender --factory-startup --window-geometry 0 0 560 820 --python scenes/pictures.py -- panels
+xvfb-run -s "-screen 0 560x820x24" blender --factory-startup --window-geometry 0 0 560 820 --python scenes/pictures.py -- panel
+xvfb-run -s "-screen 0 960x640x24" blender --factory-startup --window-geometry 0 0 960 640 --python scenes/pictures.py -- f12
 """
 import csv
 import math
@@ -34,10 +35,10 @@ def render(name, scene, **options):
     return report, Image.open(OUT / f"{name}.png").convert("RGB")
 
 
-def sheet(rows):
-    """Returns rows of crops of one size, each given as (lines of text, image), in pixels of twice the size."""
-    rows = [[(words, image.resize((image.width * 2, image.height * 2), Image.NEAREST)) for words, image in row] for row in rows]
-    gap, line = 10, 17
+def sheet(rows, scale=2):
+    """Returns rows of crops of one size, each given as (lines of text, image), their pixels enlarged."""
+    rows = [[(words, image.resize((image.width * scale, image.height * scale), Image.NEAREST)) for words, image in row] for row in rows]
+    gap, line = 10 if scale > 1 else 6, 17
     font = ImageFont.truetype(FONTS % "", 12)
     lines, first = rows[0][0]
     text = len(lines) * line + 6
@@ -53,13 +54,24 @@ def sheet(rows):
     return picture
 
 
-def labelled_crops(name, rows):
+def labelled_crops(name, rows, scale=2):
     """Returns the sheet of renders of one block, given as (title, scene, options), with their samples and CPU seconds."""
     def labelled(place, title, scene, options):
-        report, image = render(f"{name}-{place}", f"{scene}/scene.pbrt", threads=1, **options)
+        file = "room" if scene == "room" else "scene"
+        report, image = render(f"{name}-{place}", f"{scene}/{file}.pbrt", **options)
         block, = report["blocks"]
-        return [title, f"{block['spp']:,} spp, {block['seconds']:.1f} s"], image
-    return sheet([[labelled(f"{y}{x}", *how) for x, how in enumerate(row)] for y, row in enumerate(rows)])
+        seconds = block["seconds"] + block["criterionSeconds"]
+        return [title, f"{block['spp']:,} spp, {seconds:.{1 if seconds < 9.5 else 0}f} s"], image
+    return sheet([[labelled(f"{y}{x}", *how) for x, how in enumerate(row)] for y, row in enumerate(rows)], scale)
+
+
+def strip():
+    """One block of glossy in four qualities; the reference has other samples."""
+    block = dict(resolution="400x400", crop="0,0.5,0.5,1")
+    ways = {"20 spp": dict(spp=20), "--denoise: at its stop": dict(denoise=True), "default rule: at its stop": {},
+            "reference": dict(spp=4000, seed=1)}
+    labelled_crops("strip", [[(title, "glossy", {**block, **how}) for title, how in ways.items()]], scale=1).save(
+        PICTURES / "strip.png", optimize=True)
 
 
 def caution():
@@ -74,21 +86,20 @@ def caution():
 
 def remedies():
     """Pairs of noise and remedy."""
-    dark, caustic, glossy = (dict(resolution="200x200", crop=crop, **how) for crop, how in (
-        ("0,0.5,0.5,1", dict(spp=128, sampler="sobol")), ("0.5,1,0.5,1", dict(spp=64, sampler="sobol")),
-        ("0.2,0.7,0.5,1", dict(denoise=True))))
+    caustic, dark, room = (dict(resolution=size, crop=crop) for size, crop in (
+        ("400x400", "0.55,0.8,0.62,0.87"), ("200x200", "0,0.5,0.5,1"), ("300x200", "105,205,75,175px")))
     labelled_crops("remedies", [
-        [("caustic, path", "caustic", caustic), ("dark, path", "dark", dark),
-         ("glossy, --denoise --spp 4", "glossy", dict(glossy, spp=4))],
-        [("--integrator bdpt", "caustic", dict(caustic, integrator="bdpt")), ("--denoise", "dark", dict(resolution="200x200", crop="0,0.5,0.5,1", denoise=True)),
-         ("--denoise", "glossy", glossy)]]).save(PICTURES / "remedies.jpg", quality=92)
+        [("path", "caustic", dict(caustic, spp=128)), ("path", "dark", dict(dark, spp=128)),
+         ("--denoise --spp 4", "room", dict(room, denoise=True, spp=4))],
+        [("bdpt, --denoise", "caustic", dict(caustic, spp=128, integrator="bdpt", denoise=True)),
+         ("--denoise", "dark", dict(dark, spp=128, denoise=True)), ("--denoise: at its stop", "room", dict(room, denoise=True))]]
+    ).save(PICTURES / "remedies.jpg", quality=92)
 
 
 TITLES = {  # of the gallery, in its order
-    "direct": "direct light stops early", "textured": "texture hides noise", "gltf": "a glTF model", "many-lights": "67 lamps",
-    "cornell": "light by way of walls", "glossy": "metal that sees metal", "dark": "a dark room, a door",
-    "caustic": "light through glass"}
-GALLERY = dict(resolution="400x400", block=200, max_spp=2000)
+    "direct": "direct light", "textured": "texture hides noise", "cornell": "indirect light", "gltf": "a glTF model",
+    "glossy": "blurred reflections", "many-lights": "67 lamps", "dark": "a dark room, a door", "caustic": "light through glass"}
+GALLERY = dict(resolution="400x400", block=200, denoise=True, max_spp=600)
 # Viridis at equal steps: as the program's own map of samples.
 VIRIDIS = [(68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137), (53, 183, 121),
            (110, 206, 88), (181, 222, 43), (253, 231, 37)]
@@ -114,7 +125,7 @@ def samples_map(blocks, scale, side, every, font):
 
 
 def gallery():
-    """All scenes by the default rule, in pairs of image and map, with a line of words above each."""
+    """All scenes, denoised, in pairs of image and map, with a line of words above each."""
     renders = {n: render(n, next((SCENES / n).glob("scene.[pg]*")), **GALLERY) for n in TITLES}
     bold, plain, small = (ImageFont.truetype(FONTS % style, size) for style, size in (("-Bold", 15), ("", 13), ("", 12)))
     columns, gap, text, side = 2, 14, 46, 240
@@ -125,11 +136,13 @@ def gallery():
     for place, (name, (report, image)) in enumerate(renders.items()):
         x = gap + place % columns * (pair + gap)
         y = gap + place // columns * (side + text + gap)
-        mean, cap = report["totals"]["samples"] / (image.width * image.height), GALLERY["max_spp"]
+        totals = report["totals"]
+        open_blocks = totals["blocks"] - totals["cleanBlocks"]
         draw.text((x, y + 4), name, fill=INK, font=bold)
         draw.text((x, y + 24), TITLES[name], fill=FAINT, font=plain)
-        draw.text((x + pair, y + 4), f"{100 * (1 - mean / cap):.0f} % saved", fill=INK, font=bold, anchor="ra")
-        draw.text((x + pair, y + 24), f"{mean:.0f} of {cap} spp", fill=FAINT, font=plain, anchor="ra")
+        draw.text((x + pair, y + 4), f"{totals['threadSeconds']:.0f} s of CPU time", fill=INK, font=bold, anchor="ra")
+        draw.text((x + pair, y + 24), f"{open_blocks} of {totals['blocks']} not clean at {GALLERY['max_spp']} spp" if open_blocks
+                  else "all blocks clean", fill=FAINT, font=plain, anchor="ra")
         picture.paste(image.resize((side, side), Image.LANCZOS), (x, y + text))
         picture.paste(samples_map(report["blocks"], side / image.width, side, every, small), (x + side + 4, y + text))
     picture.save(PICTURES / "gallery.png", optimize=True)
@@ -154,8 +167,9 @@ def room():
 # The stop is by a model trained without staircase2, the threshold the mean of the observers. In stopping/data:
 #   lull train *.h5 --human human.csv --leave-out p3d_staircase2-view0_part6 --threads 1 -o out.h5
 #   lull evaluate staircase2-view0.h5 --human human.csv --stop learned:out.h5 --blocks stops.csv
-STAIRS = {20: "", 2380: "stop", 2886: "human threshold", 10000: "reference"}
+STAIRS = {20: "20 spp", 2380: "default rule: 2,380 spp", 2886: "observers: 2,886 spp", 10000: "reference"}
 WALL = {300: "the stop", 2333: "the human threshold"}
+GAIN = 8  # of differences
 
 
 def brightened(image):
@@ -165,18 +179,33 @@ def brightened(image):
     return Image.fromarray(np.round(255 * srgb).astype(np.uint8))
 
 
+def difference(image, reference):
+    """Returns the difference of two pictures, several times as large, around grey."""
+    a, b = (np.asarray(picture, np.float64) for picture in (image, reference))
+    return Image.fromarray(np.clip(128 + GAIN * (a - b), 0, 255).astype(np.uint8))
+
+
+def stairs_sheet(images, denoised):
+    """Returns crops, given by their sample counts, and one denoised at its stop, as (spp, image); below, their differences from
+    the last."""
+    shown = [(STAIRS[spp], image) for spp, image in images.items()]
+    *shown, (_, reference) = [shown[0], (f"--denoise: {denoised[0]:,} spp", denoised[1]), *shown[1:]]
+    return sheet([[([title], image) for title, image in shown],
+                  [([f"difference, {GAIN} times"], difference(image, reference)) for _, image in shown]])
+
+
 def observed():
-    """A quarter of block 5 of staircase2, and 150x110 pixels of block 15 of pavilion by night, as it is and brighter."""
+    """A quarter of block 5 of staircase2, and 150x110 pixels of block 15 of pavilion by night, brighter."""
     def images(name, counts, scene, **options):  # as for the observers, each on from fewer samples
         return {spp: render(f"{name}-{spp}", SHARED / scene, resolution="800x800", estimator="pbrt-v3", sampler="random",
                             spp=spp, threads=1, checkpoint=OUT / f"{name}.h5", keep_checkpoint=True, resume=True,
                             **options)[1] for spp in counts}
     stairs = images("stairs", STAIRS, "staircase2/scene.pbrt", crop="0.3125,0.4375,0.275,0.4")
-    sheet([[([f"{spp:,} spp", STAIRS[spp]], image) for spp, image in stairs.items()]]).save(PICTURES / "stops.png", optimize=True)
-    wall = images("wall", WALL, "pavilion/night-view2.pbrt", substitute=True, crop="0.75,0.9375,0.75,0.8875")
-    bright = {spp: brightened(OUT / f"wall-{spp}.exr") for spp in WALL}
-    sheet([[([f"{spp:,} spp: {WALL[spp]}", how], image) for spp, image in row.items()]
-           for how, row in (("as observers saw it", wall), ("three stops brighter", bright))]
+    report, block = render("stairs-denoised", SHARED / "staircase2/scene.pbrt", resolution="800x800", crop="0.25,0.5,0.25,0.5",
+                           denoise=True)
+    stairs_sheet(stairs, (report["blocks"][0]["spp"], block.crop((50, 20, 150, 120)))).save(PICTURES / "stops.png", optimize=True)
+    images("wall", WALL, "pavilion/night-view2.pbrt", substitute=True, crop="0.75,0.9375,0.75,0.8875")
+    sheet([[([f"{spp:,} spp: {WALL[spp]}"], brightened(OUT / f"wall-{spp}.exr")) for spp in WALL]]
           ).save(PICTURES / "night-block.jpg", quality=92)
 
 
@@ -212,8 +241,8 @@ def decision():
                    f'<text x="{place(s, 0)[0]:.0f}" y="{HEIGHT - BOTTOM + 17}" text-anchor="middle">{s:,}</text>'
                    for s in range(0, LAST + 1, 1000))
     grid += "".join(f'<path d="M{LEFT} {place(0, v)[1]:.0f}H{WIDTH - RIGHT}" stroke="#ddd"/>'
-                    f'<text x="{LEFT - 6}" y="{place(0, v)[1] + 4:.0f}" text-anchor="end">{v:g}</text>'
-                    for v in (0, .25, .5, .75, 1))
+                    f'<text x="{LEFT - 6}" y="{place(0, v)[1] + 4:.0f}" text-anchor="end">{name}</text>'
+                    for v, name in ((0, "none"), (.5, "half"), (1, "all")))
     (PICTURES / "decision.svg").write_text(f"""\
 <svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}"
  font-family="sans-serif" font-size="13" fill="#444">
@@ -223,20 +252,62 @@ def decision():
 <rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>
 {grid}
 <path d="M{LEFT} {limit:.1f}H{WIDTH - RIGHT}" stroke="#777" stroke-dasharray="5 4"/>
-<text x="{LEFT + 6}" y="{limit + 16:.1f}" fill="#777">votes to stop below 1/2</text>
+<text x="{LEFT + 6}" y="{limit + 16:.1f}" fill="#777">below half: votes to stop</text>
 {mark(stop, f"stop: {stop:,}", "#246", TOP + 46)}
 {mark(human, f"observers: {human:,}", "#c33", TOP + 16)}
 <polyline points="{line}" fill="none" stroke="#246" stroke-width="2"/>
 <text x="{(WIDTH + LEFT) / 2:.0f}" y="{HEIGHT - 6}" text-anchor="middle">samples per pixel</text>
-<text transform="translate(15 {(HEIGHT - BOTTOM) / 2 + 6:.0f}) rotate(-90)" text-anchor="middle">P(observer sees noise)</text>
+<text transform="translate(15 {(HEIGHT - BOTTOM) / 2 + 6:.0f}) rotate(-90)" text-anchor="middle">observers who see noise, estimate</text>
 </svg>
 """)
 
 
-def panels():
-    """The add-on's panels, in Blender."""
+def take_steps(steps):
+    """Enables the add-on in Blender and takes steps, each when the effect of the one before has been drawn; a step that returns
+    False is repeated."""
     import bpy
-    pause = 3  # seconds for Blender to draw the effect of a step
+    pause = 3  # seconds
+
+    def take_step():
+        if steps[0]() is not False:
+            steps.pop(0)
+        return pause if steps else None
+
+    bpy.context.preferences.view.show_splash = False
+    bpy.ops.preferences.addon_enable(module="lull_engine")
+    bpy.app.timers.register(take_step, first_interval=pause)
+
+
+def f12():
+    """The result of F12 in Blender, of the glTF scene."""
+    import bpy
+    SIDE = 480  # pixels
+
+    def start():
+        bpy.data.batch_remove(bpy.data.objects)
+        np.bool = bool  # Blender 3.4's importer names it, NumPy 1.24 no more
+        bpy.ops.import_scene.gltf(filepath=str(SCENES / "gltf/scene.glb"))
+        scene = bpy.context.scene
+        scene.camera = next(o for o in scene.objects if o.type == 'CAMERA')
+        scene.render.engine, scene.render.resolution_x, scene.render.resolution_y = 'LULL', SIDE, SIDE
+        scene.lull.time = "1m"
+        bpy.context.preferences.view.render_display_type = 'SCREEN'
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+            bpy.ops.render.render('INVOKE_DEFAULT')
+
+    def is_done():
+        return not bpy.app.is_job_running('RENDER')
+
+    def take():
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+            bpy.ops.screen.screenshot(filepath=str(PICTURES / "blender-f12.png"))
+
+    take_steps([start, is_done, take, bpy.ops.wm.quit_blender])
+
+
+def panel():
+    """The add-on's panel of render properties, in Blender."""
+    import bpy
 
     def largest_area():
         return max(bpy.context.window_manager.windows[0].screen.areas, key=lambda area: area.width * area.height)
@@ -250,28 +321,18 @@ def panels():
         bpy.context.scene.render.engine = 'LULL'
         largest_area().type = 'PROPERTIES'
 
-    def choose(tab):
-        largest_area().spaces[0].context = tab
+    def choose():
+        largest_area().spaces[0].context = "RENDER"
 
-    def take(tab):
-        picture = PICTURES / f"panels-{tab.lower().replace('_', '-')}.png"
+    def take():
         with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=largest_area()):
-            bpy.ops.screen.screenshot_area(filepath=str(picture))
+            bpy.ops.screen.screenshot_area(filepath=str(PICTURES / "blender-panel.png"))
 
-    steps = [open_panels] + [lambda act=act, tab=tab: act(tab) for tab in ("RENDER", "VIEW_LAYER") for act in (choose, take)]
-    steps.append(bpy.ops.wm.quit_blender)
-
-    def take_step():
-        steps.pop(0)()
-        return pause if steps else None
-
-    bpy.context.preferences.view.show_splash = False
-    bpy.ops.preferences.addon_enable(module="lull_engine")
-    bpy.app.timers.register(take_step, first_interval=pause)
+    take_steps([open_panels, choose, take, bpy.ops.wm.quit_blender])
 
 
 if __name__ == "__main__":
-    makers = {maker.__name__: maker for maker in (caution, remedies, gallery, report, room, decision, observed, panels)}
+    makers = {maker.__name__: maker for maker in (strip, caution, remedies, gallery, report, room, decision, observed, panel, f12)}
     names = sys.argv[sys.argv.index("--") + 1 if "--" in sys.argv else 1:]
     if not names or set(names) - set(makers):
         sys.exit(__doc__)

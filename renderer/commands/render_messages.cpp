@@ -28,27 +28,30 @@ std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     return text;
 }
 
-// Returns the savings, unless there are none.
-std::string SavingsOf(const Savings& savings, int cap) {
+// Returns the savings compared with the highest sample count of a block everywhere, unless there
+// are none.
+std::string SavingsOf(const RenderResult& result) {
+    int most = 0;
+    for (const BlockResult& b : result.blocks) most = std::max(most, b.block.spp);
+    const Savings savings = ComputeSavings(result, most);
     constexpr double kLeast = 0.0005;  // is shown as 0.1 %
     if (savings.SampleShare() < kLeast) return "";
-    std::string text = fmt::format("; against {} spp everywhere {:.1f}% fewer samples", cap,
+    std::string text = fmt::format("; against {} spp everywhere {:.1f}% fewer samples", most,
                                    100 * savings.SampleShare());
     if (savings.SecondShare() >= kLeast)
         text += fmt::format(", {:.1f}% less time", 100 * savings.SecondShare());
     return text;
 }
 
-std::string SummaryOf(const RenderResult& result, int cap, RuleTrend::Kind kind) {
-    const Savings savings = ComputeSavings(result, cap);
+std::string SummaryOf(const RenderResult& result, RuleTrend::Kind kind) {
     return fmt::format("{}{}, median {} spp; {} samples in {}{}\n",
                        result.cancelled ? "interrupted: "
                        : result.timeUp  ? "the time is up: "
                                         : "",
                        EndsOf(result, kind), result.progress.medianSpp,
-                       FormatCount(double(savings.samples)),
+                       FormatCount(double(result.progress.samples)),
                        FormatDuration(result.progress.seconds),
-                       result.cancelled || result.timeUp ? "" : SavingsOf(savings, cap));
+                       result.cancelled || result.timeUp ? "" : SavingsOf(result));
 }
 
 void WarnOfRejected(int64_t rejected, const Messages& messages) {
@@ -170,8 +173,8 @@ void PrintResult(const RenderSettings& settings, const Provenance& provenance,
     if (settings.quiet) return;
     WarnOfRejected(rejected, MessagesOf(settings));
     if (settings.jsonProgress) return;
-    PrintToStderr("{}{}{}{}", SummaryOf(result, settings.schedule.cap, result.trend.kind),
-                  SharesOf(result.shares), result.timeUp ? ShortfallOf(provenance, result) : "",
+    PrintToStderr("{}{}{}{}", SummaryOf(result, result.trend.kind), SharesOf(result.shares),
+                  result.timeUp ? ShortfallOf(provenance, result) : "",
                   CappedOf(provenance, result));
 }
 

@@ -24,6 +24,10 @@ function joinSeries(series) {
   })];
 }
 
+// Returns the texts of a series' marks, above them, as [x, y, text].
+const markTexts = s => (s.texts || []).map((text, i) => [s.x[i], s.y[i], text]);
+const textRise = 11;  // px from the middle of a mark
+
 const lineRow = 15;  // px that the label of a line takes
 
 // Marks places on the x axis: [{x, label, colour}], with their labels above the plot, below each other.
@@ -61,10 +65,10 @@ function logTicks(min, max) {
 
 const charts = [];  // [chart, element], to follow the width of the page
 
-// Draws series [{label, x, y, colour?, dash, mark, line}], without a colour in that of text, into `parent`. options: title, xLabel,
-// yLabel, logY, lines, height, endsVary (curves that end at different places).
+// Draws series [{label, x, y, colour?, dash, mark, line, texts?}], without a colour in that of text, into `parent`. options: title,
+// xLabel, yLabel, logY, lines, height, endsVary (curves that end at different places), note (a sentence below the title).
 function drawChart(parent, series, options) {
-  const box = make("div", {class: "chart"}, make("h3", {}, options.title));
+  const box = make("div", {class: "chart"}, make("h3", {}, options.title), options.note ? make("p", {class: "note"}, options.note) : null);
   parent.append(box);
   // A curve that is 0 throughout is one as well.
   const isLogY = options.logY && series.some(s => (s.mark != null || s.line) && s.y.some(v => v > 0));
@@ -99,6 +103,9 @@ function drawChart(parent, series, options) {
           c.save(); c.fillStyle = c.strokeStyle = s.colour || themeColour("--ink"); c.lineWidth = 2 * devicePixelRatio;
           const path = new Path2D(xs.map((x, k) => isNumber(ys[k]) ? markPath(s.mark, u.valToPos(x, "x", true), u.valToPos(ys[k], "y", true), 3.5 * devicePixelRatio) : "").join(""));
           s.mark < 4 ? c.fill(path) : c.stroke(path);
+          c.font = `600 ${12 * devicePixelRatio}px sans-serif`;
+          c.textAlign = "center";
+          for (const [x, y, text] of markTexts(s)) c.fillText(text, u.valToPos(x, "x", true), u.valToPos(y, "y", true) - textRise * devicePixelRatio);
           c.restore();
           return false; }}
       }))],
@@ -171,6 +178,7 @@ function chartSvg(plot, series, options) {
     const y = legendTop + row * (i + 0.5);
     if (s.line !== false) svg.append(make("path", {d: points.map((p, k) => (k ? "L" : "M") + p.join(" ")).join(""), ...line}), make("path", {d: `M${left} ${y}h24`, ...line}));
     if (s.mark != null) svg.append(...points.map(p => svgMark(s.mark, ...p, colour)), svgMark(s.mark, left + 12, y, colour));
+    for (const [x, v, label] of markTexts(s)) text(placeX(x), placeY(v) - textRise, label, "middle", colour, {"font-weight": 600});
     text(left + 32, y + 4, s.label, "start", ink);
   });
   (options.lines || []).filter(l => isNumber(l.x)).forEach((l, i, all) => {

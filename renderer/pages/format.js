@@ -21,6 +21,16 @@ function showSeconds(v) {
                       : Math.floor(minutes / 60) + ":" + two(minutes % 60) + ":" + two(v % 60) + "\u00a0h";
 }
 
+// Returns a stopping rule in words: given as its name, after ":" its argument, after ", " its caution.
+function ruleLabel(text) {
+  const [, name, argument, rest] = /^([^:,]*):?(.*?)((?:, caution .*)?)$/s.exec(text || "");
+  const label = {
+    learned: argument ? `model ${argument}` : "default rule", entropy: `visible noise below ${argument} L*`,
+    lnoise: `masked noise below ${argument} L*`, denoised: `visible difference of the denoised image below ${argument}`,
+    fixed: `${argument} samples per pixel`, thresholds: `sample counts of ${argument}`}[name];
+  return (label || (argument ? `${name}, ${argument}` : name)) + rest;
+}
+
 const byId = id => document.getElementById(id);
 
 // Makes an element; attributes that are functions listen to events.

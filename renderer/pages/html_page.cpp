@@ -157,7 +157,7 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
     Json page = ReportJson(provenance, result, film.RejectedCount(), warnings, denoised);
     const std::string samples = PictureUri(PagePicture(film));
     Json image = {{"name", "image"},
-                  {"label", (denoised ? "denoised (" : "image (") + provenance.criterion + ")"},
+                  {"label", denoised ? "denoised image" : "image"},
                   {"rule", provenance.criterion},
                   {"src", denoised ? PictureUri(denoised->image) : samples},
                   {"blocks", Json::array()}};
@@ -182,10 +182,9 @@ std::string MakeRenderPage(const Provenance& provenance, const RenderResult& res
     if (denoised) {
         page["images"].push_back(
             {{"name", "samples"}, {"label", "mean of the samples"}, {"src", samples}});
-        page["images"].push_back(
-            {{"name", "error"},
-             {"label", "error that is left (yellow: 2 in lightness, of 0 to 100)"},
-             {"src", ErrorUri(*denoised)}});
+        page["images"].push_back({{"name", "error"},
+                                  {"label", "estimated error (yellow: 2 L*)"},
+                                  {"src", ErrorUri(*denoised)}});
     }
     return FillPage("page.html", {{"data", JsonForScript(page)},
                                   {"report.js", std::string(EmbeddedFile("render.js"))}});

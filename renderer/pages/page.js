@@ -50,7 +50,31 @@ function startPage(kind, sentence, facts, parts) {
 
 // The figures and curves of a block, and the tables.
 
-const blockEnds = {clean: "clean: stopped by the rule", cap: "at the cap, still noisy", interrupted: "interrupted", time: "out of time"};
+const blockEnds = {clean: "clean", cap: "at the cap, still noisy", interrupted: "interrupted", time: "out of time"};
+
+// What the value of a rule is: the title of its chart and the label of its axis.
+const ruleValues = {learned: ["Probability that an observer sees noise", "probability"], entropy: ["Visible noise, L*", "noise, L*"],
+  lnoise: ["Masked noise, L*", "noise, L*"], denoised: ["Visible difference of the denoised block, estimate", "difference"]};
+
+// Says what the last checks of a block decided. Rules that vote count the checks in a row below the threshold.
+function sayDecision(decisions) {
+  const votes = decisions.votes.at(-1), below = `below ${show(decisions.threshold, 3)}`;
+  if (decisions.value.at(-1) >= decisions.threshold) return `At the last check not ${below}.`;
+  return votes > 1 ? `${votes} checks in a row ${below}.` : `At the last check ${below}.`;
+}
+
+function drawDecisions(parent, block, rule, lines) {
+  const d = block.decisions, name = rule.split(/[:,]/)[0], isLearned = name === "learned";
+  const [title, yLabel] = ruleValues[name] || [`Value of the stopping rule: ${ruleLabel(rule)}`, "value"];
+  const votes = Math.max(d.votes.at(-1), d.value.at(-1) < d.threshold ? 1 : 0), last = a => votes ? a.slice(-votes) : [];
+  drawChart(parent, [
+    {label: isLearned ? "probability" : "value", x: d.spp, y: d.value, colour: palette[0], mark: 0},
+    {label: "threshold", x: d.spp, y: d.spp.map(() => d.threshold), dash: [2, 4]},
+    ...(votes ? [{label: "votes to stop", x: last(d.spp), y: last(d.value), colour: palette[1], mark: 3, line: false,
+      texts: last(d.spp).map((_, i) => String(i + 1))}] : [])
+  ], {title, note: sayDecision(d) + (block.end === "clean" ? " The block is clean." : ""),
+      xLabel: "samples per pixel", yLabel, logY: !isLearned, yRange: isLearned ? [0, 1] : null, lines});
+}
 
 function showBlock(data, i) {
   const block = data.blocks[i];
@@ -68,24 +92,18 @@ function showBlock(data, i) {
   if (isNumber(block.maskedNoise)) rows.push(["masked noise, L*", block.maskedNoise.toFixed(2)]);
   const error = block.visibleDifference;
   if (error) rows.push(["visible difference, denoised", `${error.estimate.toFixed(1)}, upper bound ${error.upper.toFixed(1)}`]);
-  if (error && error.worstPixels) rows.push(["worst pixels, not in it", `${showCount(error.worstPixels)}, by up to ${error.worst.toFixed(0)} in L*`]);
+  if (error && error.worstPixels) rows.push(["excluded pixels", `${showCount(error.worstPixels)}, error up to ${error.worst.toFixed(0)} L*`]);
   if (block.end === "cap" && isNumber(block.neededSpp)) rows.push(["estimated stop", `${showCount(block.neededSpp)} spp`]);
   if (isNumber(block.neededSeconds)) rows.push(["missing CPU time (estimate)", `~${showSeconds(block.neededSeconds)}`]);
   byId("block-facts").replaceChildren(makeTable("", images.length > 1 ? ["", ...images.map(m => m.name)] : null, rows));
 
   const lines = data.images.filter(m => m.blocks && m.blocks[i] && m.name !== data.reference && isNumber(m.blocks[i].spp))
-    .map((m, k) => ({x: m.blocks[i].spp, label: m.name, colour: palette[k === 0 ? 1 : 2]}));
+    .map((m, k) => ({x: m.blocks[i].spp, label: m.name === "image" ? `${blockEnds[block.end].split(",")[0]}: ${showCount(m.blocks[i].spp)} spp` : m.name,
+      colour: palette[k === 0 ? 1 : 2]}));
   const parent = byId("block-charts");
   parent.replaceChildren();
   const rule = (data.provenance || {}).criterion || "";
-  if (block.decisions && !/^(fixed|thresholds)/.test(rule)) {  // those only count
-    const d = block.decisions, learned = /^learned/.test(rule);
-    drawChart(parent, [
-      {label: learned ? "P(noisy)" : "value", x: d.spp, y: d.value, colour: palette[0], mark: 0},
-      {label: "threshold", x: d.spp, y: d.spp.map(() => d.threshold), dash: [2, 4]}
-    ], {title: learned ? "Probability that an observer sees noise" : `Value of the stopping rule (${rule})`,
-        xLabel: "samples per pixel", yLabel: learned ? "probability" : "value", logY: !learned, yRange: learned ? [0, 1] : null, lines});
-  }
+  if (block.decisions && !/^(fixed|thresholds)/.test(rule)) drawDecisions(parent, block, rule, lines);  // those only count
   if (block.curves && block.curves.spp.length) {
     const c = block.curves;
     drawChart(parent, [{label: "noise", x: c.spp, y: c.noise, colour: palette[1], mark: 1}],
@@ -109,17 +127,21 @@ function showBlocksTable(data) {
     if (page.blockColumns) page.blockColumns(image, head, cells);
   }
   if (page.lastColumns) page.lastColumns(head, cells);
-  if (data.blocks[0].end) { head.push("end"); cells.push(i => blockEnds[data.blocks[i].end].split(/[:,]/)[0]); }
+  if (data.blocks[0].end) { head.push("end"); cells.push(i => blockEnds[data.blocks[i].end].split(",")[0]); }
   const table = makeTable("", head, data.blocks.map((b, i) => [String(i), ...cells.map(c => c(i))]));
   [...table.tBodies[0].rows].forEach((row, i) => row.addEventListener("click", () => chooseBlock(i)));
   byId("blocks-table").append(withCsv(table, "blocks"));
 }
 
+// Returns a key of the provenance in words.
+const provenanceLabel = key => ({criterion: "stopping rule", cap: "cap, spp", pass: "pass, spp", blockSize: "block size, pixels",
+  judgedGrades: "graded by, stops", clock: "time limit"}[key] || key.replace(/[A-Z]/g, c => " " + c.toLowerCase()));
+
 function showProvenance(data) {
   byId("notes").append(...(data.notes || []).map(n => make("li", {}, n)),
     ...Object.entries(data.warnings || {}).map(([kind, count]) => make("li", {}, `Warning, ${count} times: ${kind}`)));
   const rows = Object.entries(data.provenance || {}).filter(([, v]) => v !== "").map(([k, v]) =>
-    [k, v && typeof v === "object" ? Object.entries(v).map(([a, b]) => Array.isArray(v) ? b : `${a} ${b}`).join(", ") : String(v)]);
+    [provenanceLabel(k), k === "criterion" ? [].concat(v).map(ruleLabel).join(", ") : v && typeof v === "object" ? Object.entries(v).map(([a, b]) => Array.isArray(v) ? b : `${a} ${b}`).join(", ") : String(v)]);
   if (rows.length) byId("provenance-table").replaceChildren(makeTable("", null, rows).querySelector("tbody"));
   byId("provenance").hidden = !rows.length && !byId("notes").children.length;
 }

@@ -174,6 +174,7 @@ function startViewer(data) {
     ...data.images.filter(i => i.blocks && i.blocks.some(b => isNumber(b.spp))).map(i => ["spp:" + i.name, page.sppName(i)]),
     ...(page.overlays || []).map(o => [o.name, o.label])];
   if (page.overlay) view.overlay = page.overlay;
+  if (data.width <= stages[0].scroller.clientWidth) view.zoom = 1;  // as observers judged; scaled up, a clean block shows grain
   if (page.isDivided && layers.length > 1) {
     view.mode = "divide";
     view.b = data.images.filter(i => i.src).length - 1;
@@ -193,7 +194,7 @@ function startViewer(data) {
     modes.length > 1 ? makeChoice("Show", modes, view.mode, setMode) : "", make("button", {id: "turn", type: "button", hidden: ""}, "Switch"),
     makeChoice("Image", pictures, view.a, v => { view.a = +v; update(); }), second,
     data.blocks.length ? over : "",
-    makeChoice("Zoom", [[0, "fit"], [0.5, "50 %"], [1, "100 %"], [2, "200 %"], [4, "400 %"], [8, "800 %"]], 0, v => { view.zoom = +v; update(); }));
+    makeChoice("Zoom", [[0, "fit"], [0.5, "50 %"], [1, "100 %"], [2, "200 %"], [4, "400 %"], [8, "800 %"]], view.zoom, v => { view.zoom = +v; update(); }));
   showSecond();
   addEventListener("resize", update);
   update();

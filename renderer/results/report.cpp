@@ -64,10 +64,10 @@ Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_
             {"medianSpp", result.progress.medianSpp},
             {"seconds", result.progress.seconds},
             {"samples", savings.samples},
-            {"samplesAtCap", savings.samplesAtCap},
+            {"samplesAtCap", savings.samplesAtCount},
             {"samplesSaved", savings.SampleShare()},
             {"threadSeconds", savings.seconds},
-            {"threadSecondsAtCap", savings.secondsAtCap},
+            {"threadSecondsAtCap", savings.secondsAtCount},
             {"secondsSaved", savings.SecondShare()},
             {"criterionSeconds", savings.criterionSeconds},
             {"rejectedSamples", rejected},
@@ -76,14 +76,14 @@ Json TotalsJson(const Provenance& provenance, const RenderResult& result, int64_
 
 }  // namespace
 
-Savings ComputeSavings(const RenderResult& result, int cap) {
+Savings ComputeSavings(const RenderResult& result, int spp) {
     Savings savings;
     savings.samples = result.progress.samples;
     for (const BlockResult& b : result.blocks) {
-        savings.samplesAtCap += b.block.pixels.Area() * cap;
+        savings.samplesAtCount += b.block.pixels.Area() * spp;
         savings.criterionSeconds += b.criterionSeconds;
         savings.seconds += b.seconds + b.criterionSeconds;
-        if (b.block.spp > 0) savings.secondsAtCap += b.seconds / b.block.spp * cap;
+        if (b.block.spp > 0) savings.secondsAtCount += b.seconds / b.block.spp * spp;
     }
     return savings;
 }

@@ -12,22 +12,22 @@
 
 namespace lull {
 
-// Compares the cost of a render with the cost of every block at the cap.
+// Compares the cost of a render with the cost of every block at one sample count, such as the cap.
 struct Savings {
-    int64_t samples = 0, samplesAtCap = 0;
+    int64_t samples = 0, samplesAtCount = 0;
     double seconds = 0;           // of processors, the criteria's included
     double criterionSeconds = 0;  // of processors, spent on the criteria
-    double secondsAtCap = 0;      // estimated from each block's seconds per sample
+    double secondsAtCount = 0;    // estimated from each block's seconds per sample
 
     // Return the share that was saved, in [0, 1] (seconds: can be negative).
-    double SampleShare() const { return Share(double(samples), double(samplesAtCap)); }
-    double SecondShare() const { return Share(seconds, secondsAtCap); }
+    double SampleShare() const { return Share(double(samples), double(samplesAtCount)); }
+    double SecondShare() const { return Share(seconds, secondsAtCount); }
 
   private:
-    static double Share(double taken, double atCap) { return atCap > 0 ? 1 - taken / atCap : 0; }
+    static double Share(double taken, double whole) { return whole > 0 ? 1 - taken / whole : 0; }
 };
 
-Savings ComputeSavings(const RenderResult&, int cap);
+Savings ComputeSavings(const RenderResult&, int spp);
 
 // Writes the stops of the blocks of a render: files next to its image.
 

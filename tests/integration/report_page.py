@@ -48,6 +48,11 @@ def choose(browser, label, value):
         s.value = '{value}'; s.dispatchEvent(new Event('change')); }})()""")
 
 
+def check_fit(browser, name):
+    choose(browser, "Zoom", "0")
+    check_widths(browser, name)
+
+
 def check_dark(browser):
     colour = "getComputedStyle(document.body).backgroundColor"
     check(browser.evaluate(colour) == "rgb(255, 255, 255)", "the page is light")
@@ -80,13 +85,49 @@ def check_sentences(browser):
             ({"cleanBlocks": 0, "blocksAtCap": 2}, [80, 80], "lnoise:1",
              "Rendered in 5\u00a0s: 0 of 2 blocks are clean; 2 at the cap of 80 samples per pixel, still noisy."),
             ({"cleanBlocks": 1, "blocksAtCap": 0, "timeUp": True}, [20, 40], "lnoise:1",
-             "Rendered in 5\u00a0s: 1 of 2 blocks is clean; 1 not finished in time."),
+             "Rendered in 5\u00a0s: 1 of 2 blocks is clean; 1 out of time."),
             ({"cleanBlocks": 0, "blocksAtCap": 2}, [80, 80], "fixed:80",
              "Rendered in 5\u00a0s: 80 samples per pixel, without a stopping rule.")):
         data = {"cap": 80, "provenance": {"criterion": rule}, "images": [{"blocks": [{"spp": s} for s in spp]}],
                 "totals": {"blocks": 2, "seconds": 5, "interrupted": False, **totals}}
         said = browser.evaluate(f"sayRender({json.dumps(data)})")
         check(said == sentence, "a first sentence: " + said)
+
+
+def check_decisions(browser):
+    """The votes that stopped a block are marked, numbered, and said."""
+    browser.evaluate("chooseBlock(data.blocks.findIndex(b => b.end === 'clean'))")
+    chart = "document.querySelector('#block-charts .chart')"
+    said = browser.evaluate(chart + ".querySelector('.note').textContent")
+    check(said == "3 checks in a row below 1. The block is clean.", "decisions: " + said)
+    check(browser.evaluate(chart + ".textContent.includes('votes to stop')"), "decisions: votes have a legend")
+    browser.evaluate(f"window.saved = []; saveText = (...file) => saved.push(file); {chart}.querySelector('.save').click()")
+    texts = [text.text for text in xml.etree.ElementTree.fromstring(browser.evaluate("saved[0][2]")).iter() if text.attrib.get("font-weight") == "600"]
+    check(texts[1:] == ["1", "2", "3"], f"decisions: votes are numbered: {texts}")
+    for threshold, value, votes, sentence in ((1, [0.5, 1.5], [1, 0], "At the last check not below 1."),
+                                              (3.1, [4, 3], [0, 0], "At the last check below 3.1.")):
+        said = browser.evaluate("sayDecision(%s)" % json.dumps({"threshold": threshold, "value": value, "votes": votes}))
+        check(said == sentence, "decisions: " + said)
+
+
+def check_labels(browser):
+    """Keys of the data are in words."""
+    for rule, label in (("learned", "default rule"), ("learned:paper, caution 2", "model paper, caution 2"), ("dammertz:0.02", "dammertz, 0.02"),
+                        ("denoised:3.1", "visible difference of the denoised image below 3.1"), ("thresholds:a, b.csv:c", "sample counts of a, b.csv:c")):
+        said = browser.evaluate(f"ruleLabel({json.dumps(rule)})")
+        check(said == label, f"labels: {rule} is {said}")
+    page = browser.evaluate("document.body.innerText")
+    for word in ("lnoise:1", "maxDepth", "criterion"):
+        check(word not in page, f"labels: no {word}")
+    check("stopping rule: masked noise below 1 L*" in page, "labels: the rule in the subtitle")
+
+
+def check_savings(browser):
+    """Savings compare with the highest sample count of a block of the image, not with the cap."""
+    data = {"cap": 10000, "blocks": [{"width": 2, "height": 1}, {"width": 4, "height": 1}],
+            "images": [{"blocks": [{"spp": 50, "seconds": 1}, {"spp": 100, "seconds": 3}]}]}
+    saved = browser.evaluate(f"savingsOf({json.dumps(data)})")
+    check((saved["most"], round(6 * saved["samples"], 9), round(5 * saved["seconds"], 9)) == (100, 1, 1), f"savings: {saved}")
 
 
 def check_two(browser):
@@ -125,7 +166,7 @@ def check_eyes(browser):
     choose(browser, "Show", "eyes")
     for eye in ("left", "right"):
         browser.wait_for(f"{caption} === '{eye} eye'")
-    check_widths(browser, "a pair")
+    check_fit(browser, "a pair")
 
 
 def test(browser, lull):
@@ -145,15 +186,20 @@ def test(browser, lull):
         check_blocks(browser, "render", 3)
         check(browser.evaluate("document.title").startswith(folder.name), "render: its title is the scene")
         check(browser.evaluate("byId('sentence').textContent").startswith("Rendered in"), "render: a sentence says what")
+        check(browser.evaluate("[document.querySelector('.canvas').clientWidth, document.querySelector('[aria-label=Zoom]').value]") == [120, "1"],
+              "render: it opens at 100 %")
         check(browser.evaluate("[...document.querySelectorAll('#block-charts .u-value')].every(v => /\\d/.test(v.textContent))"),
               "render: legends have numbers before anybody points at them")
         texts = "document.querySelectorAll('.stage:not([hidden]) svg text').length"
         check(browser.evaluate(texts) == 0, "render: nothing is over the image at first")
         choose(browser, "Overlay", "spp:image")
         check(browser.evaluate(texts) == 6, "render: the samples can be")
+        check_decisions(browser)
+        check_labels(browser)
+        check_savings(browser)
         check_saved(browser, "render", 3, 1)
         check_dark(browser)
-        check_widths(browser, "render")
+        check_fit(browser, "render")
         check_sentences(browser)
         browser.open(folder / "pair.html")
         check_eyes(browser)
@@ -169,4 +215,4 @@ def test(browser, lull):
         check(browser.evaluate(DRAWN % "#error-charts") == 2, "compare: two charts of error are drawn")
         choose(browser, "Error", "flip")
         check(browser.evaluate(DRAWN % "#error-charts") == 2, "compare: and again for another error")
-        check_widths(browser, "compare")
+        check_fit(browser, "compare")

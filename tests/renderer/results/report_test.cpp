@@ -36,9 +36,9 @@ RenderResult TwoBlocks() {
 TEST(ComputeSavings, ComparesWithEveryBlockAtTheCap) {
     const Savings savings = ComputeSavings(TwoBlocks(), 100);
     EXPECT_EQ(savings.samples, 12000);
-    EXPECT_EQ(savings.samplesAtCap, 20000);
+    EXPECT_EQ(savings.samplesAtCount, 20000);
     EXPECT_DOUBLE_EQ(savings.SampleShare(), 0.4);
-    EXPECT_DOUBLE_EQ(savings.secondsAtCap, 2 * 5 + 20);  // the slow block's samples cost more
+    EXPECT_DOUBLE_EQ(savings.secondsAtCount, 2 * 5 + 20);  // the slow block's samples cost more
     EXPECT_DOUBLE_EQ(savings.seconds, 23);
     EXPECT_DOUBLE_EQ(savings.criterionSeconds, 1);
     EXPECT_DOUBLE_EQ(savings.SecondShare(), 1 - 23. / 30);
