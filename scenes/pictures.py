@@ -99,7 +99,7 @@ def remedies():
 TITLES = {  # of the gallery, in its order
     "direct": "direct light", "textured": "texture hides noise", "cornell": "indirect light", "gltf": "a glTF model",
     "glossy": "blurred reflections", "many-lights": "67 lamps", "dark": "a dark room, a door", "caustic": "light through glass"}
-GALLERY = dict(resolution="400x400", block=200, denoise=True, max_spp=600)
+GALLERY = dict(resolution="400x400", block=200, denoise=True, max_spp=300)
 # Viridis at equal steps: as the program's own map of samples.
 VIRIDIS = [(68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137), (53, 183, 121),
            (110, 206, 88), (181, 222, 43), (253, 231, 37)]
