@@ -68,10 +68,10 @@ def labelled_crops(name, rows, scale=2):
 def strip():
     """One block of glossy in four qualities; the reference has other samples."""
     block = dict(resolution="400x400", crop="0,0.5,0.5,1")
-    ways = {"20 spp": dict(spp=20), "--denoise: at its stop": dict(denoise=True), "default rule: at its stop": {},
-            "reference": dict(spp=4000, seed=1)}
+    ways = {"--spp 20": dict(spp=20), "--denoise: at its stop": dict(denoise=True), "default rule: at its stop": {},
+            "reference": dict(spp=2000, seed=1)}
     labelled_crops("strip", [[(title, "glossy", {**block, **how}) for title, how in ways.items()]], scale=1).save(
-        PICTURES / "strip.png", optimize=True)
+        PICTURES / "strip.jpg", quality=93, subsampling=0)
 
 
 def caution():
