@@ -99,7 +99,7 @@ def remedies():
 TITLES = {  # of the gallery, in its order
     "direct": "direct light", "textured": "texture hides noise", "cornell": "indirect light", "gltf": "a glTF model",
     "glossy": "blurred reflections", "many-lights": "67 lamps", "dark": "a dark room, a door", "caustic": "light through glass"}
-GALLERY = dict(resolution="400x400", block=200, denoise=True, max_spp=300)
+GALLERY = dict(resolution="240x240", block=120, denoise=True, max_spp=300)
 # Viridis at equal steps: as the program's own map of samples.
 VIRIDIS = [(68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137), (53, 183, 121),
            (110, 206, 88), (181, 222, 43), (253, 231, 37)]
@@ -143,7 +143,7 @@ def gallery():
         draw.text((x + pair, y + 4), f"{totals['threadSeconds']:.0f} s of CPU time", fill=INK, font=bold, anchor="ra")
         draw.text((x + pair, y + 24), f"{open_blocks} of {totals['blocks']} not clean at {GALLERY['max_spp']} spp" if open_blocks
                   else "all blocks clean", fill=FAINT, font=plain, anchor="ra")
-        picture.paste(image.resize((side, side), Image.LANCZOS), (x, y + text))
+        picture.paste(image, (x, y + text))
         picture.paste(samples_map(report["blocks"], side / image.width, side, every, small), (x + side + 4, y + text))
     picture.save(PICTURES / "gallery.png", optimize=True)
 
