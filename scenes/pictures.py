@@ -281,7 +281,7 @@ def take_steps(steps):
 def f12():
     """The result of F12 in Blender, of the glTF scene."""
     import bpy
-    SIDE = 480  # pixels
+    side, folder = 480, tempfile.mkdtemp()
 
     def start():
         bpy.data.batch_remove(bpy.data.objects)
@@ -289,7 +289,7 @@ def f12():
         bpy.ops.import_scene.gltf(filepath=str(SCENES / "gltf/scene.glb"))
         scene = bpy.context.scene
         scene.camera = next(o for o in scene.objects if o.type == 'CAMERA')
-        scene.render.engine, scene.render.resolution_x, scene.render.resolution_y = 'LULL', SIDE, SIDE
+        scene.render.engine, scene.render.resolution_x, scene.render.resolution_y = 'LULL', side, side
         scene.lull.time = "1m"
         bpy.context.preferences.view.render_display_type = 'SCREEN'
         with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
@@ -300,7 +300,8 @@ def f12():
 
     def take():
         with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
-            bpy.ops.screen.screenshot(filepath=str(PICTURES / "blender-f12.png"))
+            bpy.ops.screen.screenshot(filepath=f"{folder}/f12.png")
+        Image.open(f"{folder}/f12.png").convert("RGB").save(PICTURES / "blender-f12.jpg", quality=88)
 
     take_steps([start, is_done, take, bpy.ops.wm.quit_blender])
 
