@@ -125,7 +125,8 @@ class _Body:
                 mesh.color_attributes.render_color_index = [c.name for c in mesh.color_attributes].index(what["colour"] or name)
             elif name not in mesh.attributes:
                 type_, field = _KINDS[values.shape[1] if values.ndim > 1 else 1]
-                mesh.attributes.new(name, type_, kind).data.foreach_set(field, values.astype(np.float32).ravel())
+                if made := mesh.attributes.new(name, type_, kind):  # of Blender's own it makes none of another type
+                    made.data.foreach_set(field, values.astype(np.float32).ravel())
         if self.has_generated:
             mesh.attributes.new(GENERATED, 'FLOAT_VECTOR', 'POINT').data.foreach_set("vector", arrays["generated"].ravel())
         mesh.use_auto_texspace = False

@@ -47,6 +47,11 @@ def baked(baker, bodies, each):
     return baker.over_mesh(each["nodes"], bodies[str(each["body"])], each["size"], each["slots"], each["kind"])
 
 
+def _told(name, error):
+    traceback.print_exc()
+    return name, f"{type(error).__name__}: {error}"
+
+
 def main():
     request = sys.argv[-1]
     with open(request, encoding="utf-8") as f:
@@ -56,24 +61,27 @@ def main():
     for name, file in what["images"].items():
         change(name, np.load(os.path.join(folder, file)))
     baker = bake.Baker(what["frame"], what["subframe"])
-    bodies = {}
+    bodies, failed = {}, []
     for number, body in what["bodies"].items():
         arrays = dict(np.load(os.path.join(folder, body["arrays"])))
-        made = bodies[number] = baker.body(arrays, body)
-        np.save(os.path.join(folder, f"uv{number}.npy"), made.uvs())
-        if body["moves"]:
-            vectors = {slot: made.displace(baker, described, body["size"], [slot]) for slot, described in body["moves"]}
-            points = displacement.moved(*(arrays[n] for n in ("points", "corners", "starts", "slots")), np.array(body["matrix"]), vectors)
-            np.save(os.path.join(folder, f"normals{number}.npy"), made.move(points))
-            np.save(os.path.join(folder, f"points{number}.npy"), points.astype(np.float32))
-    failed = []
+        said = {"uv": np.zeros((len(arrays["corners"]), 2), np.float32), "points": arrays["points"], "normals": arrays["normals"]}
+        try:
+            made = bodies[number] = baker.body(arrays, body)
+            said["uv"] = made.uvs()
+            if body["moves"]:
+                vectors = {slot: made.displace(baker, described, body["size"], [slot]) for slot, described in body["moves"]}
+                points = displacement.moved(*(arrays[n] for n in ("points", "corners", "starts", "slots")), np.array(body["matrix"]), vectors)
+                said["normals"], said["points"] = made.move(points), points.astype(np.float32)
+        except Exception as e:  # whatever it is, the other meshes have their values
+            failed.append(_told(body["name"], e))
+        for name, values in said.items():
+            np.save(os.path.join(folder, f"{name}{number}.npy"), values)
     for i, each in enumerate(what["bakes"]):
         print(f"lull: image {i + 1} of {len(what['bakes'])}", flush=True)
         try:
             found = baked(baker, bodies, each)
         except Exception as e:  # whatever it is, the other materials have their values
-            traceback.print_exc()
-            failed.append((next((n["copy"][1] for n in each["nodes"]["nodes"] if "copy" in n), ""), f"{type(e).__name__}: {e}"))
+            failed.append(_told(next((n["copy"][1] for n in each["nodes"]["nodes"] if "copy" in n), ""), e))
             found = np.zeros(3) if each["over"] == 'all' else np.zeros((4, 4, 3))
         np.save(os.path.join(folder, f"bake{each['number']}.npy"), found)
     suns = world.write(what["world"], what["frame"], what["subframe"]) if what["world"] else []
