@@ -67,6 +67,9 @@ class Lights:
             light.own = {"radius": light.shadow_soft_size}
         if light.type == 'SUN' and light.angle > 0:
             light.own = {"angle": light.angle}
+            if HAS_DIM_LAMPS:
+                cosine = math.cos(light.angle / 2)
+                light.energy *= 2 * cosine / (1 + cosine)
         if light.type == 'SPOT':
             if HAS_DIM_LAMPS and 1 / math.cos(min(light.spot_size / 2, 1.5)) > 1.1:  # Cycles dims by the cosine of the angle from the axis
                 notes.add("brighter towards the edge of its cone", light.name, "lights")

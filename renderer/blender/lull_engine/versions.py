@@ -19,7 +19,7 @@ _PRINCIPLED = {
 HAS_ADDED_INTERFACE = bpy.app.version < (4, 0)
 
 HAS_COLOURED_LAMPS = bpy.app.version < (3, 5)  # lamps whose output has a colour instead of a shader are as bright as others
-HAS_DIM_LAMPS = bpy.app.version < (4, 0)  # area lights by pi / 4, spot lights off their axis
+HAS_DIM_LAMPS = bpy.app.version < (4, 0)  # area lights by pi / 4, spot lights off their axis, suns by their angle
 IS_PROFILE_OPEN = bpy.app.version >= (4, 0)  # the interpolation of IES profiles takes 0 behind the last angles, also around
 IS_RECT_FLAT = bpy.app.version >= (4, 0)  # the pixels of a pass
 
