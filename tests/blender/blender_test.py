@@ -31,7 +31,7 @@ sun_nodes lamps_seen spot portal world_image world_backdrop water emission alpha
 coated two_sided nothing group by_object coarse_image mappings muted uvs_lacking alpha_unused colours_for_renders colours
 channels_as_colours generated_of_modifiers faces text_uvs layers pose motion_of_copies unseen_copies hair_info displacement
 passes glossy_seen_flat nearly_black mix_by_texture multiple_scattering shader_into_colour colour_into_surface no_light
-scaled_to_nothing window_in unsaved_images python_drivers rigid_body""".split()
+scaled_to_nothing numbered_copies wide_sun window_in unsaved_images python_drivers rigid_body""".split()
 
 # Exported by lull alone, for the warnings.
 WARNED = """in_part unknown masked_glass coat_tinted leaning terminator lamps_scaled limits oren_nayar subsurface tint velvet

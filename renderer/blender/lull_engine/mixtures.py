@@ -44,8 +44,8 @@ def added(surface, node):
     if halves is None:
         return None
     a, b = halves
-    shines = a['Base Color'] == (0, 0, 0) and a['Radiance'] != (0, 0, 0)
-    first, other = (b, a) if shines else (a, b)
+    is_base_black = a['Base Color'] == (0, 0, 0) and (a['Radiance'] != (0, 0, 0) or a['Through'] != (0, 0, 0))
+    first, other = (b, a) if is_base_black else (a, b)
     if _is_metal(first) and not _reflects(other):
         first, other = other, first
     radiance = values.plus(first['Radiance'], other['Radiance'])
@@ -55,7 +55,7 @@ def added(surface, node):
                               **{mark: True for mark in ('Even', 'Multi') if mark in other}})
     if other['Base Color'] != (0, 0, 0):
         surface.note("without the second of added surfaces")
-    return dict(first, Radiance=radiance)
+    return dict(first, Radiance=radiance, Through=values.plus(first['Through'], other['Through']))
 
 
 def _halves(surface, sockets):

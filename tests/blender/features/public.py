@@ -96,6 +96,26 @@ def stripes(scene):
         wall(made, 0.7).location.x = x
 
 
+@case("a mesh with numbers of copies, baked; Diffuse and Translucent added")
+def numbered_copies(scene):
+    made, bsdf, tree = principled()
+    link(tree, (node(tree, 'ShaderNodeTexNoise', Scale=2).outputs[1], bsdf.inputs['Base Color']))
+    dressed(made)
+    the("ball").data.attributes.new("id", 'INT', 'POINT')
+    made, diffuse, tree = surface('BsdfDiffuse', Color=(0.4, 0.1, 0.1, 1))
+    added = tree.nodes.new('ShaderNodeAddShader')
+    through = node(tree, 'ShaderNodeBsdfTranslucent', Color=(0.1, 0.5, 0.1, 1))
+    link(tree, (through.outputs[0], added.inputs[0]), (diffuse.outputs[0], added.inputs[1]))
+    cover(added, tree)
+    ball(made, 1.5)
+
+
+@case("a sun 90 degrees across")
+def wide_sun(scene):
+    without("key")
+    lamp('SUN', 2, (0, 0, 5), (0.4, 0, 0.5), angle=1.5708 if bpy.app.version < (4, 0) else 0.1)
+
+
 @case("no light: a lamp whose energy is keyed to nothing")
 def no_light(scene):
     without("key")
