@@ -86,6 +86,9 @@ class _Writing:
         through, specular = self._pixels('Transmission'), self._pixels('Specular')
         self.varies = any(p.ndim == 3 and np.ptp(p[:, :, 0]) > _UNEVEN for p in (through, specular))
         even = {name: self._even(name) for name in EVEN}
+        if not 1 <= even['IOR'] <= 100:  # which glTF has not
+            self.note("with an index of refraction from 1 to 100")
+            even['IOR'] = min(max(even['IOR'], 1), 100)
         self._write_normal()
         self._write_radiance()
         self._write_metal()
