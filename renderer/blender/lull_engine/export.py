@@ -88,8 +88,9 @@ def export(graph, set_frame, folder, scratch, name, suffix, is_render, stopped, 
     if world.light and scene.world and scene.world.lightgroup in layer.lightgroups:
         groups[scene.world.lightgroup] = "environment"
     materials = {m.original for s in found.shown for m in s.mesh.materials if m}
+    chosen, usual = limits(scene.original, scene.lull.max_depth)
     return Exported(path, world.light, world.backdrop, groups, shutter, view.stereo, _indices(s.original for s in found.shown),
-                    _indices(materials), nodes.names(), notes.lines(), limits(scene.original, scene.lull.max_depth))
+                    _indices(materials), nodes.names(), notes.lines() + chosen, usual)
 
 
 def _move_flat(shown, parts, notes):

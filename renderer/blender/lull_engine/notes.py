@@ -4,6 +4,8 @@ import traceback
 
 from .process import Failure
 
+_WITHOUT_EFFECT = "settings of Cycles without effect: "
+
 
 class Notes:
     """Lists names by consequences, and sentences."""
@@ -70,24 +72,34 @@ def note_film(scene, layer, notes):
 
 
 def limits(scene, depth):
-    """Returns sentences about features of Cycles that lull lacks, one of them about all settings that change the picture."""
-    c, r, found = scene.cycles, scene.render, []
+    """Returns sentences about settings of Cycles that lull lacks and that change the picture: of those that somebody chose, and of
+    those that Blender has from the start."""
+    c, r, chosen, usual = scene.cycles, scene.render, [], []
+
+    def note(text, is_usual=False):
+        (usual if is_usual else chosen).append(text)
+
     if c.max_bounces < depth:
-        found.append(f"{c.max_bounces} bounces")
-    for name in "diffuse", "glossy", "transmission":
-        if getattr(c, name + "_bounces") < min(depth, c.max_bounces):
-            found.append(f"{getattr(c, name + '_bounces')} {name} bounces")
+        note(f"{c.max_bounces} bounces")
+    for name, bounces in ("diffuse", 4), ("glossy", 4), ("transmission", 12):
+        found = getattr(c, name + "_bounces")
+        if found < min(depth, c.max_bounces):
+            note(f"{found} {name} bounces", found == bounces)
     if c.sample_clamp_indirect > 0 or c.sample_clamp_direct > 0:
-        found.append("clamping")
+        note("clamping", c.sample_clamp_direct == 0 and c.sample_clamp_indirect >= 10)
     if not (c.caustics_reflective and c.caustics_refractive):
-        found.append("no caustics")
-    for name, is_set in (("Fast GI Approximation", c.use_fast_gi), ("Filter Glossy", c.blur_glossy > 0),
-                         (f"{c.transparent_max_bounces} transparent bounces", c.transparent_max_bounces < 8),
-                         ("the limit of textures", r.use_simplify and c.texture_limit_render != 'OFF'),
-                         ("the pixel filter", c.pixel_filter_type != 'BOX' or c.filter_width != 1)):
-        if is_set:
-            found.append(name)
-    return ["settings of Cycles without effect: " + ", ".join(found)] * bool(found) + _unjudged(scene)
+        note("no caustics")
+    if c.use_fast_gi:
+        note("Fast GI Approximation")
+    if c.blur_glossy > 0:
+        note("Filter Glossy", c.blur_glossy <= 1)
+    if c.transparent_max_bounces < 8:
+        note(f"{c.transparent_max_bounces} transparent bounces")
+    if r.use_simplify and c.texture_limit_render != 'OFF':
+        note("the limit of textures")
+    if c.pixel_filter_type != 'BOX' or c.filter_width != 1:
+        note("the pixel filter", True)
+    return [_WITHOUT_EFFECT + ", ".join(chosen)] * bool(chosen), [_WITHOUT_EFFECT + ", ".join(usual)] * bool(usual) + _unjudged(scene)
 
 
 def _unjudged(scene):
