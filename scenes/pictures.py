@@ -152,8 +152,8 @@ def report():
     """A screenshot of the report of cornell."""
     with tempfile.TemporaryDirectory() as folder:
         page, picture = pathlib.Path(folder) / "r.html", pathlib.Path(folder) / "page.png"
-        lull.render(SCENES / "cornell/scene.pbrt", resolution="400x400", output=page.with_suffix(".exr"), report=page)
-        run("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1400,1620",
+        lull.render(SCENES / "cornell/scene.pbrt", resolution="200x200", block=100, output=page.with_suffix(".exr"), report=page)
+        run("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1400,1070",
             f"--screenshot={picture}", page.as_uri())
         Image.open(picture).convert("RGB").save(PICTURES / "report.jpg", quality=80)
 
