@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bit>
+
 #include "renderer/base/math.h"
 #include "renderer/base/variant.h"
 #include "renderer/input/spectrum.h"
@@ -29,7 +32,9 @@ struct Mix {
     std::string Problem(const MaterialReader& in) const;
 
     MaterialTraits Traits(const MaterialReader& in) const;
-    // pbrt-v3 shades a mix in the frame of the first material, so its tilt counts.
+    // pbrt-v3 shades a mix in the frame of the first material, so its tilt counts. pbrt-v4 shades
+    // one of both by chance; here that is done only where their frames may differ.
+    bool IsChosen(const MaterialReader& in) const;
     SurfaceTilt Tilt(const MaterialReader& in) const;
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
@@ -46,6 +51,7 @@ struct Material {
     SurfaceTilt tilt;
     bool isTilted = false;               // by a map
     bool turnsNormal = false;            // of the Bsdf
+    bool isChosen = false;               // a mix of which each hit shows one material
     SurfaceNeeds needs = kNeedsNothing;  // of the lobes and of bump maps
 
     // The lobes where they are constant, so that a hit costs no more than their copy.
@@ -149,6 +155,10 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
     // Interpolated normals of pbrt-v3's materials are as they are there.
     m.turnsNormal = m.isTilted || std::holds_alternative<MetallicRoughness>(kind);
     m.needs = m.traits.needs | NeedsOf(m.tilt, in.textures);
+    if (const Mix* mix = std::get_if<Mix>(&kind); mix && mix->IsChosen(in)) {
+        m.isChosen = true;
+        for (const int operand : mix->operands) m.needs = m.needs | in.made[operand].needs;
+    }
     FoldConstants(in, &m);
     return m;
 }
@@ -182,6 +192,18 @@ Frame TangentFrame(const SurfaceInteraction& hit) {
     else
         CoordinateSystem(hit.ns, &frame.s, &frame.t);
     return frame;
+}
+
+// Returns a number of [0, 1) that a place determines. Mixes by Stafford 2011, variant 13.
+float NumberAt(const Vec3f& p) {
+    uint64_t state = 0;
+    for (const float x : p) {
+        state = (state ^ std::bit_cast<uint32_t>(x)) + 0x9e3779b97f4a7c15ull;
+        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ull;
+        state = (state ^ (state >> 27)) * 0x94d049bb133111ebull;
+        state ^= state >> 31;
+    }
+    return float(state >> 40) * 0x1p-24f;
 }
 
 void WarnUnlessShare(const MaterialReader& in, const std::string& name, float least, float most) {
@@ -243,7 +265,14 @@ MaterialTable& MaterialTable::operator=(MaterialTable&&) noexcept = default;
 SurfaceNeeds MaterialTable::Needs(int material) const { return materials[material].needs; }
 
 Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const {
-    const Material& material = materials[hit->material];
+    const TextureContext context{hit->p, hit->uv, hit->dpdx, hit->dpdy, &hit->n};
+    const Material* shown = &materials[hit->material];
+    while (shown->isChosen) {
+        const Mix& mix = std::get<Mix>(shown->kind);
+        const bool isFirst = NumberAt(hit->p) < textures.Evaluate(*mix.share, context);
+        shown = &materials[mix.operands[isFirst ? 0 : 1]];
+    }
+    const Material& material = *shown;
     if (material.isTilted) {
         if (material.tilt.bump) ApplyBumpMap(*material.tilt.bump, textures, hit);
         if (material.tilt.normalMap) ApplyNormalMap(*material.tilt.normalMap, textures, hit);
@@ -256,10 +285,7 @@ Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* h
         CoordinateSystem(frame.n, &frame.s, &frame.t);
     }
     Bsdf bsdf(frame, hit->n, 1, material.turnsNormal);
-    AddLobes(
-        material,
-        MaterialInputs{textures, {hit->p, hit->uv, hit->dpdx, hit->dpdy, &hit->n}, materials, hit},
-        &bsdf);
+    AddLobes(material, MaterialInputs{textures, context, materials, hit}, &bsdf);
     return bsdf;
 }
 
@@ -300,6 +326,12 @@ MaterialTraits Mix::Traits(const MaterialReader& in) const {
         traits.isConstant &= other.isConstant;
     }
     return traits;
+}
+
+bool Mix::IsChosen(const MaterialReader& in) const {
+    return share && std::ranges::any_of(operands, [&](int operand) {
+               return in.made[operand].isTilted || in.made[operand].isChosen;
+           });
 }
 
 SurfaceTilt Mix::Tilt(const MaterialReader& in) const { return in.made[operands[0]].tilt; }

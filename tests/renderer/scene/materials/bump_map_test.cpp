@@ -62,5 +62,27 @@ TEST(BumpMap, WithoutTangentsChangesNothing) {
     EXPECT_TRUE(hit.ns == Vec3f::UnitZ());
 }
 
+// As in pbrt-v4, where the amount is a number, "share".
+TEST(BumpMap, OfAMixIsThatOfTheMaterialShown) {
+    MaterialScene b;
+    b.AddMaterial("matte");
+    b.AddMaterial("mirror", {Float("bumpmap", 0.5f)});
+    MaterialEntity& mix = b.AddMaterial("mix", {Float("share", 0.75f)});
+    mix.operands = {0, 1};
+    const MaterialTable table = b.Make();
+    EXPECT_EQ(table.Needs(2), table.Needs(1));
+    int tilted = 0;
+    for (int i = 0; i < 1000; ++i) {
+        SurfaceInteraction hit = MaterialScene::Hit(2, Vec3f(0.5f, 0.001f * float(i), 0.5f));
+        hit.dndu = Vec3f(0, 0, 2);
+        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+        ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+        const bool isMatte = std::holds_alternative<LambertianReflection>(bsdf.At(0));
+        EXPECT_EQ(hit.ns.isApprox(Vec3f::UnitZ()), isMatte);
+        tilted += !isMatte;
+    }
+    EXPECT_NEAR(tilted, 250, 50);
+}
+
 }  // namespace
 }  // namespace lull::test
