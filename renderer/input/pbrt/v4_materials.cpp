@@ -254,6 +254,7 @@ void CopyInfinite(V4Reader* in) {
         in->Copy(ParameterType::Float, {"illuminance"});
     }
     in->write.Spectrum("L", L);
+    if (!in->given.Find(ParameterType::Point3, "portal")) return;
     in->Copy(ParameterType::Point3, {"portal"});
     in->write.Bool("cutsout", true);
 }

@@ -52,6 +52,16 @@ TEST(Pbrt4Features, HaveTheirValues) {
     }
 }
 
+TEST(Pbrt4, SkyWithFogWarnsOfNothing) {
+    Warnings warnings;
+    SceneOf(
+        "Film \"rgb\"\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\n"
+        "LightSource \"infinite\"\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\n"
+        "Shape \"sphere\"",
+        {}, &warnings);
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
 // Directional albedos of pbrt-v4's random walk, which these functions were derived from.
 TEST(Coat, AlbedoIsThatOfTheWalk) {
     struct Case {
