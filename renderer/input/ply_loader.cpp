@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -29,17 +30,29 @@ enum Slot { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
 // Maps each slot to the property that fills it, -1 for none.
 using SlotMap = std::array<int, kSlots>;
 
-// Names of texture coordinates of vertices; pbrt-v3 reads the first four pairs.
+// Names of texture coordinates of vertices, in lower case without underscores; pbrt-v3 reads u and
+// v, s and t, texture_u and texture_v, texture_s and texture_t.
 constexpr std::pair<const char*, const char*> kUvs[] = {{"u", "v"},
                                                         {"s", "t"},
-                                                        {"texture_u", "texture_v"},
-                                                        {"texture_s", "texture_t"},
-                                                        {"texcoord_u", "texcoord_v"},
-                                                        {"texcoord_x", "texcoord_y"},
-                                                        {"tex_u", "tex_v"},
+                                                        {"textureu", "texturev"},
+                                                        {"textures", "texturet"},
+                                                        {"texcoordu", "texcoordv"},
+                                                        {"texcoords", "texcoordt"},
+                                                        {"texcoordx", "texcoordy"},
+                                                        {"texu", "texv"},
+                                                        {"texs", "text"},
+                                                        {"tu", "tv"},
+                                                        {"uvu", "uvv"},
                                                         {"u0", "v0"},
                                                         {"s0", "t0"},
-                                                        {"U", "V"}};
+                                                        {"u1", "v1"},
+                                                        {"s1", "t1"}};
+
+std::string WithoutCase(std::string name) {
+    std::erase(name, '_');
+    for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return name;
+}
 
 SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
     SlotMap slots;
@@ -49,7 +62,9 @@ SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
         for (const char* name : names) {
             const auto it =
                 std::ranges::find_if(vertex.properties, [&](const PlyProperty& property) {
-                    return property.name == name && !property.isList;
+                    const bool isSame = property.name == name ||
+                                        (first == kU && WithoutCase(property.name) == name);
+                    return isSame && !property.isList;
                 });
             if (it == vertex.properties.end()) return false;
             found.push_back(int(it - vertex.properties.begin()));
@@ -162,7 +177,6 @@ bool IsFaceIndex(const PlyProperty& property) {
 
 void ReadIndices(const PlyProperty& list, PlyCursor& cursor, Face* face) {
     face->corners = cursor.ReadListCount(list);
-    if (face->corners == 0) throw Error(cursor.loc, "a face has no vertices");
     const bool isModelled = face->corners <= kMostPolygonCorners;
     for (size_t i = 0; i < face->corners; ++i)
         if (isModelled)
@@ -221,14 +235,16 @@ void AddFace(const Face& face, const FileLoc& loc, MeshData* mesh, WedgeUvs* uvs
     }
 }
 
-// Adds the triangles of strips, every other one of which is turned. -1 begins another strip, and
-// triangles without area join some.
+// Adds the triangles of strips, every other one of which is turned. -1, in unsigned lists the
+// largest number, begins another strip, and triangles without area join some.
 void ReadStrips(const PlyElement& element, PlyCursor& cursor, MeshData* mesh) {
     const auto readStrip = [&](const PlyProperty& list) {
         std::vector<uint32_t> strip;
         for (size_t left = cursor.ReadListCount(list); left > 0; --left) {
             const double written = cursor.Read(list.type);
-            if (written == -1 || written == double(std::numeric_limits<uint32_t>::max())) {
+            const bool isLargest = written == std::exp2(8 * PlyTypeSize(list.type)) - 1 &&
+                                   !(written < double(mesh->positions.size()));
+            if (written == -1 || isLargest) {
                 strip.clear();
                 continue;
             }
@@ -321,9 +337,14 @@ void WarnOfOmissions(const PlyElement& element, const FileLoc& loc, Warnings& wa
         if (isOfMesh && !names.insert(property.name).second)
             warnings.Add(loc, "PLY property given twice, of which one counts",
                          Printable(property.name));
-    const bool hasUvs = std::ranges::any_of(kUvs, [&](const auto& uv) { return has(uv.first); });
+    const auto isUv = [](const PlyProperty& property) {
+        return std::ranges::count(kUvs, WithoutCase(property.name),
+                                  &std::pair<const char*, const char*>::first) > 0;
+    };
+    const bool hasUvs = std::ranges::any_of(element.properties, isUv);
     for (const PlyProperty& property : element.properties)
-        if (isVertex && !hasUvs && (IsWedgeUvs(property) || property.name.starts_with("tex")))
+        if (isVertex && !hasUvs &&
+            (IsWedgeUvs(property) || WithoutCase(property.name).starts_with("tex")))
             warnings.Add(loc,
                          "texture coordinates of a PLY file are left out; call them u and v, one "
                          "property each",
@@ -341,8 +362,6 @@ void ReplaceNonFinite(std::vector<T>* values, const char* kind, const FileLoc& l
 }
 
 void CheckMesh(MeshData* mesh, const FileLoc& loc, Warnings& warnings) {
-    if (mesh->positions.empty() || mesh->triangles.empty())
-        throw Error(loc, "the PLY file has no vertices or no triangles");
     for (size_t i = 0; i < mesh->triangles.size(); ++i)
         for (const uint32_t index : mesh->triangles[i]) {
             if (index >= mesh->positions.size())
@@ -400,6 +419,14 @@ MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc
         else
             SkipElement(element, cursor);
         WarnOfOmissions(element, place, warnings);
+    }
+    if (mesh.triangles.empty()) {
+        const bool isMesh = std::ranges::any_of(header.elements, [](const PlyElement& element) {
+            return element.name == "face" || element.name == "tristrips";
+        });
+        if (!isMesh) throw Error(place, "the PLY file has no faces");
+        warnings.Add(place, "a PLY file without triangles is left out");
+        return {};
     }
     CheckMesh(&mesh, place, warnings);
     // Strips may follow the faces, and have no such values.

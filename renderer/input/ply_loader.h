@@ -17,7 +17,7 @@ namespace lull {
 // skipped and normals or uvs that are not finite become 0, each with a counted warning. `loc` is
 // named for a file that cannot be read; all other errors name the PLY file. Throws Error for
 // malformed or truncated files, used vertices that are not finite, indices out of range, and files
-// without vertices or faces.
+// that declare no faces; a mesh without triangles comes with a warning.
 MeshData LoadPly(const std::string& path, Warnings& warnings, const FileLoc& loc = {});
 
 }  // namespace lull

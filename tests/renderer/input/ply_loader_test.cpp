@@ -184,6 +184,36 @@ TEST_F(Ply, TriangleStrips) {
               "a.ply:11: a face has the vertex index -2.000000");
 }
 
+// Unsigned numbers have no -1.
+TEST_F(Ply, TheLargestNumberBeginsAStripInUnsignedLists) {
+    PlyWriter ply("binary_little_endian");
+    ply.Header("element vertex 3\n" + std::string(kPositions) +
+               "element tristrips 1\nproperty list uchar ushort vertex_indices\n");
+    for (int i = 0; i < 3; ++i) ply.Put<float>({double(i), 0, 0});
+    ply.Put<uint8_t>({7}).Put<uint16_t>({0, 1, 2, 65535, 2, 1, 0});
+    EXPECT_EQ(Load(ply.text).triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 0}}));
+}
+
+TEST_F(Ply, AnEmptyMeshIsLeftOut) {
+    EXPECT_TRUE(Load("ply\nformat ascii 1.0\n" + Header("1", "1") + "end_header\n0 0 0\n0\n")
+                    .triangles.empty());
+    EXPECT_EQ(warnings.Counts().at("a PLY file without triangles is left out"), 1);
+}
+
+TEST_F(Ply, NamesOfTextureCoordinatesNeedNoCase) {
+    for (const auto& [u, v] : {std::pair{"TEXTURE_U", "TEXTURE_V"},
+                               {"TexCoordU", "TexCoordV"},
+                               {"tex_s", "tex_t"},
+                               {"S", "T"},
+                               {"u1", "v1"}}) {
+        const std::string uvs = fmt::format("property float {}\nproperty float {}\n", v, u);
+        const MeshData mesh = Load("ply\nformat ascii 1.0\n" + Header("3", "1", uvs) +
+                                   "end_header\n0 0 0 2 1\n1 0 0 2 1\n0 1 0 2 1\n3 0 1 2\n");
+        EXPECT_EQ(mesh.uvs, std::vector<Vec2f>(3, Vec2f(1, 2))) << u;
+    }
+    EXPECT_EQ(warnings.Total(), 0);
+}
+
 TEST_F(Ply, UnusedVerticesNeedNotBeFinite) {
     const MeshData mesh = Load("ply\nformat ascii 1.0\n" + Header("4", "1") +
                                "end_header\n1 2 3\nnan 0 inf\n1 0 0\n0 1 0\n3 0 2 3\n");
@@ -353,10 +383,8 @@ TEST_F(Ply, BadHeaders) {
 
 TEST_F(Ply, MissingParts) {
     const std::string ascii = "ply\nformat ascii 1.0\n";
-    EXPECT_EQ(ErrorOf(ascii + "end_header\n"),
-              "a.ply: the PLY file has no vertices or no triangles");
-    EXPECT_EQ(ErrorOf(ascii + Header("0", "0") + "end_header\n"),
-              "a.ply: the PLY file has no vertices or no triangles");
+    EXPECT_EQ(ErrorOf(ascii + "end_header\n"), "a.ply: the PLY file has no faces");
+    EXPECT_EQ(ErrorOf(ascii + Header("0", "0") + "end_header\n"), "");
     EXPECT_EQ(ErrorOf(ascii + "element vertex 1\nproperty float x\nend_header\n0"),
               "a.ply: the vertices of the PLY file have no x, y and z");
     EXPECT_EQ(ErrorOf(ascii + "element face 1\nproperty float x\nend_header\n0"),
@@ -408,11 +436,11 @@ TEST_F(Ply, BadValues) {
     EXPECT_EQ(errorOf("0 1 0", "3 0 1 -1"), "a.ply:13: a face has the vertex index -1.000000");
     EXPECT_EQ(errorOf("0 1 0", "3 0 1 .5"), "a.ply:13: a face has the vertex index 0.500000");
     EXPECT_EQ(errorOf("0 1 0", "3 0 .9999999 -1e-9"), "");
-    EXPECT_EQ(errorOf("0 1 0", "0"), "a.ply:13: a face has no vertices");
+    EXPECT_EQ(errorOf("0 1 0", "0"), "");
     EXPECT_EQ(errorOf("0 1 0", "-3 0 1 2"),
               "a.ply:13: a list of property 'vertex_indices' has a "
               "count that is negative or no integer");
-    EXPECT_EQ(errorOf("0 1 0", "2 0 1"), "a.ply: the PLY file has no vertices or no triangles");
+    EXPECT_EQ(errorOf("0 1 0", "2 0 1"), "");
     // The bulk path of binary files finds them as well.
     PlyWriter ply("binary_little_endian");
     ply.Header(Header("1", "1")).Put<float>({0, 0, 0}).Put<uint8_t>({3}).Put<int>({0, 0, -1});

@@ -261,6 +261,7 @@ Shape MakePlyMesh(const ShapeReader& in) {
         in.warnings.Substitute(error, "the mesh is left out");
         return {};
     }
+    if (mesh.triangles.empty()) return {};
     return MakeCutOutMesh(in, std::move(mesh));
 }
 Shape MakeTriangleMesh(const ShapeReader& in) {
