@@ -1,4 +1,6 @@
 // Files that break the specification where it does no harm.
+#include <fmt/format.h>
+
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull {
@@ -59,15 +61,53 @@ TEST(GltfRepair, LeavesOutWhatIsEmpty) {
     EXPECT_EQ(WarningsOf(file, 1).count("mesh without primitives is left out"), 1u);
 }
 
-// An animation of no keys is none that could be left out without a change.
-TEST(GltfRepair, RefusesWhatIsReadAndEmpty) {
-    GltfFile file = TwoTriangles();
-    const int empty = file.Accessor(0, 5126, 1, "SCALAR");
-    file.root["accessors"][size_t(empty)]["count"] = 0;
-    file.root["animations"] = {
-        {{"samplers", {{{"input", empty}, {"output", 0}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
-    EXPECT_NE(GltfFolder().ErrorOf(file), "");
+json Changed(const json& root, const json& change) {
+    json patch = {{"op", "add"}, {"path", change[0]}, {"value", change[1]}};
+    return root.patch(json::array({patch}));
+}
+
+// Also where other parts of the file use it: what is left is what nobody wrote.
+TEST(GltfRepair, TakesNothingsForAbsent) {
+    GltfFile base = TwoTriangles();
+    const int empty = base.Accessor(0, 5126, 3, "VEC3");
+    base.root["accessors"][size_t(empty)]["count"] = 0;
+    const auto expect = [&](const std::string& patch, const std::string& warning,
+                            size_t shapes = 2) {
+        GltfFile file = base;
+        const json change = json::parse(fmt::format(fmt::runtime(patch), fmt::arg("empty", empty)));
+        file.root = Changed(file.root, change);
+        EXPECT_EQ(WarningsOf(file, shapes).count(warning), 1u) << patch;
+    };
+    expect(R"(["/nodes/0/translation", [null, 1, 0]])", "null among numbers counts as absent");
+    expect(R"(["/nodes/0/skin", -1])", "-1 counts as absent");
+    expect(R"(["/nodes/0/extensions", []])", "[] counts as absent");
+    expect(R"(["/materials", [{{"alphaMode": ""}}]])", "\"\" counts as absent");
+    expect(R"(["/materials", [{{"normalTexture": {{}}}}]])",
+           "texture without an index is left out");
+    expect(R"(["/meshes/0/primitives/0/attributes/NORMAL", {empty}])",
+           "attribute without elements is left out");
+    expect(R"(["/meshes/0/primitives/0/targets", [{{"POSITION": {empty}}}]])",
+           "attribute without elements is left out");
+    expect(R"(["/skins", [{{"joints": []}}]])", "skin without joints is left out");
+    expect(R"(["/animations", [{{"samplers": [{{"input": {empty}, "output": {empty}}}], "channels":
+             [{{"sampler": 0, "target": {{"node": 0, "path": "scale"}}}}]}}]])",
+           "animation without keys is left out");
+    expect(R"(["/nodes/0/extensions", {{"EXT_mesh_gpu_instancing": {{"attributes":
+             {{"TRANSLATION": {empty}}}}}}}])",
+           "a mesh of no copies is left out", 1);
+    expect(R"(["/extensions", {{"KHR_lights_punctual": {{"lights": [{{"intensity": 1}}]}}}}])",
+           "light without a type is left out");
+    expect(R"(["/extensions", {{"KHR_lights_punctual": {{"lights": [{{"type": "spot"}}]}}}}])",
+           "spot light without angles has the usual ones");
+    for (const char* silent :
+         {R"(["/cameras", [{{"type": "orthographic", "orthographic": {{"xmag": 1, "ymag": 1}}}}]])",
+          R"(["/images", [{{}}]])", R"(["/samplers", [{{"wrapS": 0}}]])",
+          R"(["/nodes/0/children", [null]])", R"(["/accessors/0/sparse", {{"count": 0}}])"}) {
+        GltfFile file = base;
+        const json change = json::parse(fmt::format(fmt::runtime(silent)));
+        file.root = Changed(file.root, change);
+        EXPECT_TRUE(WarningsOf(file, 2).empty()) << silent;
+    }
 }
 
 TEST(GltfRepair, ReadsNoBufferThatNothingNeeds) {
