@@ -41,6 +41,13 @@ class Error : public std::runtime_error {
     explicit Error(const std::string& message) : std::runtime_error(message) {}
     Error(const FileLoc& loc, const std::string& message)
         : std::runtime_error(loc.Prefix() + message), loc(loc) {}
+    // Formats the message.
+    template <typename First, typename... Others>
+    Error(fmt::format_string<First, Others...> format, First&& first, Others&&... others)
+        : Error(fmt::format(format, std::forward<First>(first), std::forward<Others>(others)...)) {}
+    template <typename... Args>
+    Error(const FileLoc& loc, fmt::format_string<Args...> format, Args&&... args)
+        : Error(loc, fmt::format(format, std::forward<Args>(args)...)) {}
 
     const FileLoc& Loc() const { return loc; }
     // Returns the message without its place.

@@ -98,8 +98,8 @@ void CheckMemory(int64_t bytes, const std::string& what, const std::string& reme
     if (bytes < kSmall) return;
     const int64_t available = AvailableMemory();
     if (bytes > available)
-        throw Error(loc, fmt::format("{} needs {:.1f} GB of memory, {:.1f} GB are available; {}",
-                                     what, double(bytes) / 1e9, double(available) / 1e9, remedy));
+        throw Error(loc, "{} needs {:.1f} GB of memory, {:.1f} GB are available; {}", what,
+                    double(bytes) / 1e9, double(available) / 1e9, remedy);
 }
 
 void MoveIntoLargePages() {

@@ -71,15 +71,14 @@ void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture
     if (!options.half.empty()) {
         const std::string dependence = DependenceOf(picture.colour);
         if (!dependence.empty())
-            throw Error(
-                fmt::format("{} and {}: {} (--seed)", options.input, options.half, dependence));
+            throw Error("{} and {}: {} (--seed)", options.input, options.half, dependence);
     }
     const ExrChannel* spp = options.half.empty() ? exr.Find("spp") : nullptr;
     if (spp && std::ranges::min(spp->values) < float(kLeastDenoisedSpp))
         throw Error(
-            fmt::format("{}: some pixels have fewer than {} samples, too few to "
-                        "estimate the noise; render more",
-                        options.input, kLeastDenoisedSpp));
+            "{}: some pixels have fewer than {} samples, too few to estimate the noise; render "
+            "more",
+            options.input, kLeastDenoisedSpp);
 }
 
 // Moves images of other programs to the display window if their data windows differ: some write

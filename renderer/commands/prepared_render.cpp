@@ -88,8 +88,8 @@ void PrepareRule(PreparedRender* p) {
     }
     p->rule = p->ReadRule("--stop", rule);
     if (p->request.gradedBy != 0 && p->rule.stopAt && !p->request.denoise)
-        throw UsageError(fmt::format(
-            "--graded-by: {} does not judge the image; choose a rule that does", p->rule.text));
+        throw UsageError("--graded-by: {} does not judge the image; choose a rule that does",
+                         p->rule.text);
     schedule.smallestSide = p->rule.smallestSide;
     p->blocks = MakeBlocks(p->region, schedule);
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
@@ -290,10 +290,10 @@ bool IsFinished(const PreparedRender& p) {
     const std::string wanted = SettingsOf(p);
     if (found == wanted) return true;
     throw Error(
-        fmt::format("{}: was rendered with other settings ({} there, {} here); remove the "
-                    "frames to render them again, or name others by -o",
-                    files.exr, Printable(FirstDifference(found, wanted)),
-                    Printable(FirstDifference(wanted, found))));
+        "{}: was rendered with other settings ({} there, {} here); remove the frames to render "
+        "them again, or name others by -o",
+        files.exr, Printable(FirstDifference(found, wanted)),
+        Printable(FirstDifference(wanted, found)));
 }
 
 }  // namespace lull::render

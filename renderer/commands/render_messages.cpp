@@ -254,12 +254,11 @@ void PrintPath(const Vec2i& pixel, int index, const RenderSettings& settings,
                const Description& description, const Scene& scene) {
     const Vec2i& size = scene.film.resolution;
     if (pixel.x() >= size.x() || pixel.y() >= size.y())
-        throw UsageError(fmt::format("--pixel {},{}: the image is {}x{}", pixel.x(), pixel.y(),
-                                     size.x(), size.y()));
+        throw UsageError("--pixel {},{}: the image is {}x{}", pixel.x(), pixel.y(), size.x(),
+                         size.y());
     if (!std::holds_alternative<PathIntegrator>(scene.integrator))
-        throw UsageError(
-            fmt::format("--pixel: a sample of \"{}\" is more than one path; add --integrator path",
-                        NameOf(scene.integrator, scene.isVolumetric)));
+        throw UsageError("--pixel: a sample of \"{}\" is more than one path; add --integrator path",
+                         NameOf(scene.integrator, scene.isVolumetric));
     const SamplerKind kind = settings.sampler.value();
     Sampler sampler(kind, settings.seed);
     const PathLog log = LogSample(scene, settings.estimator, sampler, pixel, uint32_t(index));

@@ -245,9 +245,9 @@ void CheckRequest(const RenderRequest& request) {
     const bool isFixed = fixed > 0 && fixed <= cap;
     if (const int spp = isFixed ? fixed : cap;
         request.denoiseLayers && spp < int(kLeastDenoisedSpp))
-        throw UsageError(fmt::format(
-            "--{}{}: --denoise-layers needs at least {}, to estimate the noise",
-            isFixed ? (request.spp ? "spp " : "stop fixed:") : "max-spp ", spp, kLeastDenoisedSpp));
+        throw UsageError("--{}{}: --denoise-layers needs at least {}, to estimate the noise",
+                         isFixed ? (request.spp ? "spp " : "stop fixed:") : "max-spp ", spp,
+                         kLeastDenoisedSpp);
 }
 
 std::function<double()> StartClock(const RenderRequest& request) {

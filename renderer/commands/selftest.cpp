@@ -103,9 +103,9 @@ ExitCode RunSelftest() {
     const auto failed = std::ranges::count(passed, false);
     if (failed > 0)
         throw Error(
-            fmt::format("{} of {} checks failed: this build renders wrong images; build it "
-                        "again, with another compiler or LULL_ARCH=",
-                        failed, std::size(passed)));
+            "{} of {} checks failed: this build renders wrong images; build it again, with another "
+            "compiler or LULL_ARCH=",
+            failed, std::size(passed));
     return kDone;
 }
 

@@ -60,7 +60,7 @@ namespace {
 using file_io::OutputFile, file_io::Target;
 
 [[noreturn]] void Fail(const std::string& path, const std::string& reason) {
-    throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
+    throw Error("cannot write \"{}\": {}", path, reason);
 }
 
 [[noreturn]] void FailWithErrno(const std::string& path, int error = errno) {

@@ -57,8 +57,8 @@ void CheckOutputs(std::span<const NamedFile> outputs, std::span<const NamedFile>
     for (const NamedFile& output : outputs) {
         if (output.path.empty()) continue;
         if (const NamedFile* other = found.FindOrAdd(output))
-            throw Error(fmt::format("{} \"{}\" would replace {} \"{}\"; give it another name",
-                                    output.role, output.path, other->role, other->path));
+            throw Error("{} \"{}\" would replace {} \"{}\"; give it another name", output.role,
+                        output.path, other->role, other->path);
         CheckWritable(output.path);
     }
 }
@@ -78,7 +78,7 @@ std::string BeginningOfNames(const std::string& output, const std::string& name)
     if (!output.ends_with('/')) return output.empty() ? name : output;
     std::error_code error;
     fs::create_directories(output, error);
-    if (error) throw Error(fmt::format("-o {}: {}", output, error.message()));
+    if (error) throw Error("-o {}: {}", output, error.message());
     return output + name;
 }
 
@@ -173,7 +173,7 @@ std::string NameOfLock(const std::string& path) {
 }
 
 [[noreturn]] void Fail(const std::string& name) {
-    throw Error(fmt::format("cannot lock \"{}\": {}", name, std::strerror(errno)));
+    throw Error("cannot lock \"{}\": {}", name, std::strerror(errno));
 }
 
 // Returns the locked file; -1 where another process has it and `mode` is not to wait.

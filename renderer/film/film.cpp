@@ -218,8 +218,8 @@ AovSet ParseAovs(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         const auto layer = std::ranges::find(kLayers, name, &NamedLayer::name);
         if (layer == std::end(kLayers))
-            throw Error(fmt::format("there is no layer \"{}\", but {}, with commas between them",
-                                    name, AllAovs(", ")));
+            throw Error("there is no layer \"{}\", but {}, with commas between them", name,
+                        AllAovs(", "));
         set.*layer->wanted = true;
     }
     return set;

@@ -263,8 +263,8 @@ std::optional<PbrtVersion> FindSign(const std::filesystem::path& directory, Pbrt
 void RefuseKindOfV3(std::string_view directive, std::string_view kind, const FileLoc& loc) {
     for (const KindOf& known : kKinds)
         if (known.instead && known.directive == directive && known.kind == kind)
-            throw Error(loc, fmt::format("{} \"{}\" is pbrt-v3's, in a scene for pbrt-v4; write {}",
-                                         directive, kind, known.instead));
+            throw Error(loc, "{} \"{}\" is pbrt-v3's, in a scene for pbrt-v4; write {}", directive,
+                        kind, known.instead);
 }
 
 PbrtVersion DetectPbrtVersion(const std::string& directory, PbrtLexer* lexer, Warnings& warnings) {

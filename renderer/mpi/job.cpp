@@ -136,9 +136,8 @@ MpiJob::MpiJob() {
     if (launched == 1) return;
     if (!hasMpi)
         throw Error(
-            fmt::format("this is one of {} processes, which would all do the same: lull "
-                        "was built without MPI",
-                        launched));
+            "this is one of {} processes, which would all do the same: lull was built without MPI",
+            launched);
     const MpiWorld world = StartMpi();
     rank = world.rank;
     count = world.count;
@@ -170,7 +169,7 @@ void MpiJob::Begin(const std::string& what) {
     if (count == 1) return;
     if (givenUp >= 0) {
         phase = Phase::Working;
-        throw Error(fmt::format("rank {} gives no sign of life; start again without it", givenUp));
+        throw Error("rank {} gives no sign of life; start again without it", givenUp);
     }
     const Agreement all = AgreeWithOthers(false, HashOf(what));
     if (all.failed >= 0) throw OtherRankFailed();
@@ -181,9 +180,9 @@ void MpiJob::Begin(const std::string& what) {
         if (rank > 0) throw OtherRankFailed();
     }
     throw Error(
-        fmt::format("rank {} is about to render something else: the version of lull, the "
-                    "scene and its files have to be the same everywhere",
-                    all.different));
+        "rank {} is about to render something else: the version of lull, the scene and its files "
+        "have to be the same everywhere",
+        all.different);
 }
 
 void MpiJob::End() {

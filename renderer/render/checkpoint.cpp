@@ -155,10 +155,10 @@ void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, Ma
         if (what == MayDiffer::Stops && std::ranges::find(kStops, key) != kStops.end())
             continue;
         else if (found.contains(key) != wanted.contains(key) || ValueIn(found, key) != value)
-            throw Error(fmt::format(
+            throw Error(
                 "it belongs to a render with another {} ({} there, {} here); go on with the same, "
                 "or remove the file to start again",
-                key, ValueIn(found, key), ValueIn(wanted, key)));
+                key, ValueIn(found, key), ValueIn(wanted, key));
 }
 
 // Throws Error naming the first plane of the film that is not there, or is of something else.
@@ -166,14 +166,14 @@ void CheckPlanes(const RenderIdentity& found, const Film& film) {
     for (const auto& [name, identity] : PlanesOf(film)) {
         const auto at = found.find(name);
         if (at == found.end())
-            throw Error(fmt::format(
+            throw Error(
                 "it was written without the {}, needed here; go on with the AOVs, light groups and "
                 "denoiser that it was begun with, or remove the file to start again",
-                name));
+                name);
         if (at->second != identity)
-            throw Error(fmt::format(
+            throw Error(
                 "its {} is {}, and here {}; go on with the same, or remove the file to start again",
-                name, at->second, identity));
+                name, at->second, identity);
     }
 }
 
@@ -186,10 +186,9 @@ void GoOnTo(const RenderIdentity& wanted, const RenderIdentity& found, RenderSta
         Block& block = result.block;
         if (block.spp > cap)
             throw Error(
-                fmt::format("it has blocks of {} spp, more than the cap of {}; give a larger "
-                            "--max-spp, or remove "
-                            "the file to start again",
-                            block.spp, cap));
+                "it has blocks of {} spp, more than the cap of {}; give a larger --max-spp, or "
+                "remove the file to start again",
+                block.spp, cap);
         if (isNewRule) {
             result.decisions.clear();
             block.stopped = block.stoppedByVote = false;

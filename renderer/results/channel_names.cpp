@@ -62,13 +62,13 @@ void UseColours(const std::string& file, ExrImage* image) {
     if (layers.size() == 1) return Rename(layers[0], "", "RGBA", image);
     if (layers.size() > 1)
         throw Error(
-            fmt::format("{}: colours are in several layers; keep one of them, or call its "
-                        "channels R, G and B. Its channels are {}",
-                        file, ListOfChannels(*image)));
+            "{}: colours are in several layers; keep one of them, or call its channels R, G and B. "
+            "Its channels are {}",
+            file, ListOfChannels(*image));
     ExrChannel* grey = Find(image, "Y");
     if (!grey)
-        throw Error(fmt::format("{}: it has no channels R, G and B, nor Y; its channels are {}",
-                                file, ListOfChannels(*image)));
+        throw Error("{}: it has no channels R, G and B, nor Y; its channels are {}", file,
+                    ListOfChannels(*image));
     const std::vector<float> values = grey->values;
     grey->name = "R";
     image->channels.push_back({"G", values});
@@ -89,16 +89,16 @@ void UsePass(std::initializer_list<const char*> passes, const std::string& to,
 void CheckColours(const std::string& file, const ExrImage& image) {
     if (image.attributes.contains("chromaticities"))
         throw Error(
-            fmt::format("{}: its colours have other primaries than those of Rec. 709; "
-                        "convert it to linear Rec. 709. Its channels are {}",
-                        file, ListOfChannels(image)));
+            "{}: its colours have other primaries than those of Rec. 709; convert it to linear "
+            "Rec. 709. Its channels are {}",
+            file, ListOfChannels(image));
     if (HasAll(image, "", "RGB") || !image.Find("Y")) return;
     for (const char* channel : kBesideY)
         if (image.Find(channel))
             throw Error(
-                fmt::format("{}: Y and {} are colours of another space; convert it to R, G "
-                            "and B. Its channels are {}",
-                            file, channel, ListOfChannels(image)));
+                "{}: Y and {} are colours of another space; convert it to R, G and B. Its channels "
+                "are {}",
+                file, channel, ListOfChannels(image));
 }
 
 void UseOwnNames(const std::string& file, ExrImage* image) {

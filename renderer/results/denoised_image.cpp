@@ -175,10 +175,10 @@ FoundChannels<N> Channels(const ExrImage& image, const std::string& file, const 
         const ExrChannel* found = image.Find(layer + names[c]);
         if (!found)
             throw Error(
-                fmt::format("{}: it has no channel '{}'; `lull render --denoise-layers` writes "
-                            "all that is needed to denoise a picture later, and images of other "
-                            "programs need a second render (--half). Its channels are {}",
-                            file, layer + names[c], ListOfChannels(image)));
+                "{}: it has no channel '{}'; `lull render --denoise-layers` writes all that is "
+                "needed to denoise a picture later, and images of other programs need a second "
+                "render (--half). Its channels are {}",
+                file, layer + names[c], ListOfChannels(image));
         channels[c] = found->values.data();
     }
     return channels;
@@ -248,12 +248,10 @@ NoisyPicture ReadPicture(const ExrImage& image, const std::string& name) {
 NoisyPicture ReadPicture(const ExrImage& a, const std::string& nameOfA, const ExrImage& b,
                          const std::string& nameOfB) {
     if (a.width != b.width || a.height != b.height)
-        throw Error(
-            fmt::format("{} has {}x{} pixels and {} has {}x{}: they are to be of the same "
-                        "picture",
-                        nameOfA, a.width, a.height, nameOfB, b.width, b.height));
+        throw Error("{} has {}x{} pixels and {} has {}x{}: they are to be of the same picture",
+                    nameOfA, a.width, a.height, nameOfB, b.width, b.height);
     if (a.origin != b.origin)
-        throw Error(fmt::format("{} and {} show different parts of the picture", nameOfA, nameOfB));
+        throw Error("{} and {} show different parts of the picture", nameOfA, nameOfB);
     NoisyPicture picture{MakeHalves(a.width, a.height, kColours), {}, {}, {}};
     Copy(Channels(a, nameOfA, "", kColourNames), &picture.colour.a);
     Copy(Channels(b, nameOfB, "", kColourNames), &picture.colour.b);

@@ -313,7 +313,7 @@ PixelRect ShownWindow(const ExrImage& image, const std::string& file) {
     const PixelRect window{{0, 0}, image.displaySize};
     const std::string size = fmt::format("{}x{}", window.Width(), window.Height());
     if (image.displaySize.maxCoeff() > kMostSide)
-        throw Error(fmt::format("{}: its display window of {} pixels is absurd", file, size));
+        throw Error("{}: its display window of {} pixels is absurd", file, size);
     CheckMemory(window.Area() * int64_t(image.channels.size() * sizeof(float)),
                 fmt::format("{}, whose display window has {} pixels,", file, size),
                 "use a smaller version of it");

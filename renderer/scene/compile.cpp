@@ -148,9 +148,10 @@ void CheckCamera(const Scene& scene, const FileLoc& loc) {
     const double farthest = std::max(Farthest(scene.camera, scene.film),
                                      scene.rightEye ? Farthest(*scene.rightEye, scene.film) : 0.);
     if (!(farthest <= double(scene.shapes.reach)))
-        throw Error(loc, fmt::format("rays of the camera begin, or are aimed, farther than {:.3g} "
-                                     "from the origin, where none is traced; scale the scene down",
-                                     scene.shapes.reach));
+        throw Error(loc,
+                    "rays of the camera begin, or are aimed, farther than {:.3g} from the origin, "
+                    "where none is traced; scale the scene down",
+                    scene.shapes.reach);
 }
 
 std::unique_ptr<const Scene> MakeScene(const Description& description,

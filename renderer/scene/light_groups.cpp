@@ -80,24 +80,21 @@ void CheckNames(const Names& wanted, const std::vector<NamedLights>& lights) {
     for (const std::string& name : wanted) {
         if (name == kRest)
             throw Error(
-                fmt::format("light group \"{}\": the layer of all other lights has this "
-                            "name; leave it out",
-                            kRest));
+                "light group \"{}\": the layer of all other lights has this name; leave it out",
+                kRest);
         if (Has(known, name)) continue;
         if (known.empty())
-            throw Error(
-                fmt::format("light group \"{}\": the scene has no lights; leave the groups "
-                            "out",
-                            Printable(name)));
+            throw Error("light group \"{}\": the scene has no lights; leave the groups out",
+                        Printable(name));
         Names listed;
         for (size_t i = 0; i < std::min(known.size(), kMostListed); ++i)
             listed.push_back(Printable(known[i]));
-        throw Error(fmt::format(
-            "light group \"{}\": no light, object or material of a light has this name; there "
-            "are: {}{}",
+        throw Error(
+            "light group \"{}\": no light, object or material of a light has this name; there are: "
+            "{}{}",
             Printable(name), fmt::join(listed, ", "),
             known.size() > kMostListed ? fmt::format(", and {} more", known.size() - kMostListed)
-                                       : ""));
+                                       : "");
     }
 }
 
@@ -133,9 +130,9 @@ LightGroups MakeLightGroups(const std::vector<std::string>& wanted, const Descri
     }
     if (groups.Count() > kMostLightGroups)
         throw Error(
-            fmt::format("{} light groups are more than the {} that an image can have; name "
-                        "fewer, or a kind: environment, area, delta",
-                        groups.Count(), kMostLightGroups));
+            "{} light groups are more than the {} that an image can have; name fewer, or a kind: "
+            "environment, area, delta",
+            groups.Count(), kMostLightGroups);
     const int rest = groups.Count();
     for (const NamedLights& light : lights) {
         int group = rest;

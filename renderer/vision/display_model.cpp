@@ -26,9 +26,9 @@ constexpr Unit kUnits[] = {{"cd", &DisplayModel::peak, 1, 10000},
 
 [[noreturn]] void Fail(std::string_view text) {
     throw Error(
-        fmt::format("display '{}': a peak luminance from 1 to 10000 cd/m2, 5 to 500 pixels "
-                    "per degree and 0 to 100000 lux are needed, as in 100cd,40ppd,250lux",
-                    text));
+        "display '{}': a peak luminance from 1 to 10000 cd/m2, 5 to 500 pixels per degree and 0 to "
+        "100000 lux are needed, as in 100cd,40ppd,250lux",
+        text);
 }
 
 }  // namespace

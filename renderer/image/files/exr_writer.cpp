@@ -29,7 +29,7 @@ namespace lull {
 namespace {
 
 [[noreturn]] void FailToWriteExr(const std::string& path, const std::string& reason) {
-    throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
+    throw Error("cannot write \"{}\": {}", path, reason);
 }
 
 // Output stream of OpenEXR. The last bytes come when its file is destroyed, where exceptions are

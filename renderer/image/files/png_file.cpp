@@ -119,7 +119,7 @@ std::unique_ptr<ImageFile> OpenPng(std::span<const std::byte> bytes) {
 namespace {
 
 [[noreturn]] void FailToWritePng(const std::string& path, const std::string& reason) {
-    throw Error(fmt::format("cannot write \"{}\": {}", path, reason));
+    throw Error("cannot write \"{}\": {}", path, reason);
 }
 
 // Takes the bytes of a PNG, in order.
@@ -197,7 +197,7 @@ class PngWriter {
         } catch (const Error& e) {
             failure = e;
         } catch (const std::exception& e) {
-            failure = Error(fmt::format("cannot write \"{}\": {}", path, e.what()));
+            failure = Error("cannot write \"{}\": {}", path, e.what());
         }
         return false;
     }

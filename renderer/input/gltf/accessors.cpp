@@ -28,17 +28,16 @@ Elements Find(const GltfDocument& document, const FileLoc& loc, int view, size_t
     const std::vector<unsigned char>& data = document.model.buffers[size_t(v.buffer)].data;
     const size_t stride = mayBeStrided && v.byteStride > 0 ? v.byteStride : size;
     if (stride < size)
-        throw Error(loc, fmt::format("its elements of {} bytes overlap: the byteStride of "
-                                     "/bufferViews/{} is {}",
-                                     size, view, stride));
+        throw Error(loc,
+                    "its elements of {} bytes overlap: the byteStride of /bufferViews/{} is {}",
+                    size, view, stride);
     // All of these have been bounded far below overflow, but for the count.
     const size_t room = v.byteLength >= offset + size ? v.byteLength - offset - size : 0;
     if (v.byteLength < offset + size || (count - 1) > room / stride)
-        throw Error(loc, fmt::format("its {} elements go beyond the {} bytes of /bufferViews/{}",
-                                     count, v.byteLength, view));
+        throw Error(loc, "its {} elements go beyond the {} bytes of /bufferViews/{}", count,
+                    v.byteLength, view);
     if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset)
-        throw Error(loc, fmt::format("/bufferViews/{} goes beyond its buffer of {} bytes", view,
-                                     data.size()));
+        throw Error(loc, "/bufferViews/{} goes beyond its buffer of {} bytes", view, data.size());
     return {data.data() + v.byteOffset + offset, stride};
 }
 
@@ -87,8 +86,7 @@ void ForEachSparse(const GltfDocument& document, const FileLoc& loc,
     const auto& sparse = accessor.sparse;
     const auto count = size_t(sparse.count);
     if (count > accessor.count)
-        throw Error(loc,
-                    fmt::format("has {} sparse values for {} elements", count, accessor.count));
+        throw Error(loc, "has {} sparse values for {} elements", count, accessor.count);
     const Elements indices =
         Find(document, loc, sparse.indices.bufferView, size_t(sparse.indices.byteOffset),
              SizeOf(sparse.indices.componentType), count, false);
@@ -97,8 +95,8 @@ void ForEachSparse(const GltfDocument& document, const FileLoc& loc,
     for (size_t i = 0; i < count; ++i) {
         const size_t at = Index(indices.bytes + i * indices.stride, sparse.indices.componentType);
         if (at >= accessor.count)
-            throw Error(loc, fmt::format("sparse index {} is out of range: there are {} elements",
-                                         at, accessor.count));
+            throw Error(loc, "sparse index {} is out of range: there are {} elements", at,
+                        accessor.count);
         put(at, values.bytes + i * values.stride);
     }
 }
@@ -149,7 +147,7 @@ GltfArray ReadFloats(const GltfDocument& document, int index, int least, int mos
     for (size_t i = 0; i < array.values.size(); ++i)
         if (!std::isfinite(array.values[i]))
             throw Error(document.At(fmt::format("/accessors/{}", index)),
-                        fmt::format("element {} is not finite", i / size_t(array.components)));
+                        "element {} is not finite", i / size_t(array.components));
     return array;
 }
 
@@ -172,8 +170,7 @@ std::vector<uint32_t> ReadIndices(const GltfDocument& document, int index, size_
     ForEachSparse(document, loc, accessor, SizeOf(type), put);
     for (const uint32_t i : indices)
         if (i >= bound)
-            throw Error(loc,
-                        fmt::format("index {} is out of range: there are {} vertices", i, bound));
+            throw Error(loc, "index {} is out of range: there are {} vertices", i, bound);
     return indices;
 }
 

@@ -38,7 +38,7 @@ Keys ReadKeys(const GltfDocument& document, const tinygltf::AnimationSampler& sa
     for (size_t i = 1; i < keys.times.size(); ++i) {
         if (IsAbove(double(keys.times[i - 1]), double(keys.times[i])))
             throw Error(document.At(fmt::format("/accessors/{}", sampler.input)),
-                        fmt::format("key {} is earlier than the one before", i));
+                        "key {} is earlier than the one before", i);
         keys.times[i] = std::max(keys.times[i], keys.times[i - 1]);
     }
     const int least = std::max(components, 1);
@@ -48,8 +48,7 @@ Keys ReadKeys(const GltfDocument& document, const tinygltf::AnimationSampler& sa
     if (keys.width == 0 || keys.values.size() % parts != 0 ||
         (components > 0 && keys.width != size_t(components)))
         throw Error(document.At(fmt::format("/accessors/{}", sampler.output)),
-                    fmt::format("its {} numbers do not fit {} keys", keys.values.size(),
-                                keys.times.size()));
+                    "its {} numbers do not fit {} keys", keys.values.size(), keys.times.size());
     return keys;
 }
 
@@ -196,11 +195,10 @@ std::vector<Influences> ReadInfluences(const GltfDocument& document, const FileL
     const auto read = [&](int accessor) {
         GltfArray array = ReadNumbers(document, accessor, 4, 4);
         if (array.Count() != t.VertexCount())
-            throw Error(loc, fmt::format("its joints or weights are not {}, as its vertices are",
-                                         t.VertexCount()));
+            throw Error(loc, "its joints or weights are not {}, as its vertices are",
+                        t.VertexCount());
         ClearNonFinite(t.indices, &array, [&](uint32_t vertex) {
-            throw Error(loc,
-                        fmt::format("vertex {} has joints or weights that are not finite", vertex));
+            throw Error(loc, "vertex {} has joints or weights that are not finite", vertex);
         });
         return array;
     };
@@ -241,14 +239,14 @@ std::vector<Mat4d> JointMatrices(const GltfDocument& document, const std::vector
     if (skin.inverseBindMatrices >= 0)
         inverseBind = ReadFloats(document, skin.inverseBindMatrices, 16, 16).values;
     if (skin.inverseBindMatrices >= 0 && inverseBind.size() < 16 * skin.joints.size())
-        throw Error(loc, fmt::format("has {} inverse bind matrices for {} joints",
-                                     inverseBind.size() / 16, skin.joints.size()));
+        throw Error(loc, "has {} inverse bind matrices for {} joints", inverseBind.size() / 16,
+                    skin.joints.size());
     std::vector<const GltfNode*> listed(document.model.nodes.size());
     for (const GltfNode& node : nodes) listed[size_t(node.index)] = &node;
     std::vector<Mat4d> joints;
     for (size_t i = 0; i < skin.joints.size(); ++i) {
         const GltfNode* node = listed[size_t(skin.joints[i])];
-        if (!node) throw Error(loc, fmt::format("its joint {} is not in the scene", i));
+        if (!node) throw Error(loc, "its joint {} is not in the scene", i);
         joints.push_back(node->worldFromNode);
         if (!inverseBind.empty())
             joints.back() *= Eigen::Map<const Eigen::Matrix4f>(&inverseBind[16 * i]).cast<double>();
@@ -270,8 +268,8 @@ void Skin(const GltfDocument& document, int mesh, int index, const std::vector<M
                 if (set.weights.values[k] == 0) continue;
                 const float joint = set.joints.values[k];
                 if (!(joint >= 0 && size_t(joint) < joints.size()))
-                    throw Error(loc, fmt::format("vertex {} has joint {}, but its skin has {}", v,
-                                                 joint, joints.size()));
+                    throw Error(loc, "vertex {} has joint {}, but its skin has {}", v, joint,
+                                joints.size());
                 blended += double(set.weights.values[k]) * joints[size_t(joint)];
                 sum += double(set.weights.values[k]);
             }
@@ -279,7 +277,7 @@ void Skin(const GltfDocument& document, int mesh, int index, const std::vector<M
         const Eigen::Matrix3d linear = blended.topLeftCorner<3, 3>();
         Eigen::Map<Vec3f> p(&t->positions[3 * v]);
         p = (linear * p.cast<double>() + blended.topRightCorner<3, 1>()).cast<float>();
-        if (!p.allFinite()) throw Error(loc, fmt::format("its skin takes vertex {} too far", v));
+        if (!p.allFinite()) throw Error(loc, "its skin takes vertex {} too far", v);
         if (!t->normals.empty()) Turn(ForNormals(linear), &t->normals[3 * v]);
         if (!t->tangents.empty()) Turn(linear, &t->tangents[4 * v]);
     }

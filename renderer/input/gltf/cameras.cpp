@@ -110,7 +110,7 @@ void LookThrough(const GltfDocument& document, const View& view, Description* de
         const auto& p = view.camera->perspective;
         constexpr double kWidest = std::numbers::pi - 1e-3;
         if (!(p.yfov > 0) || IsAbove(p.yfov, std::numbers::pi))
-            throw Error(loc, fmt::format("yfov is {}; it has to lie between 0 and pi", p.yfov));
+            throw Error(loc, "yfov is {}; it has to lie between 0 and pi", p.yfov);
         if (!(p.aspectRatio >= 0)) throw Error(loc, "aspectRatio has to be positive");
         SetPerspective(std::min(p.yfov, kWidest), p.aspectRatio, loc, description);
         SetLens(view.camera->extras, loc, description);

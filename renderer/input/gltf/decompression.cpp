@@ -87,7 +87,7 @@ void DecodePrimitive(const FileLoc& loc, const tinygltf::Value& extension,
     const tinygltf::BufferView& view = model->bufferViews[index];
     const std::vector<unsigned char>& data = model->buffers[size_t(view.buffer)].data;
     if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-        throw Error(loc, fmt::format("/bufferViews/{} goes beyond its buffer", index));
+        throw Error(loc, "/bufferViews/{} goes beyond its buffer", index);
     const std::unique_ptr<draco::Mesh> mesh =
         DecodeMesh(loc, data.data() + view.byteOffset, view.byteLength);
     if (mesh->num_points() == 0 || mesh->num_faces() == 0)
@@ -153,10 +153,8 @@ void CheckLayout(const FileLoc& loc, const std::string& mode, const std::string&
                             (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL";
     if (!fits || !filterFits || (mode == "TRIANGLES" && count % 3 != 0) ||
         (!isAttributes && filter != "NONE"))
-        throw Error(loc,
-                    fmt::format("mode {2} with filter {3} does not support {0} elements of {1} "
-                                "bytes",
-                                count, stride, mode, filter));
+        throw Error(loc, "mode {2} with filter {3} does not support {0} elements of {1} bytes",
+                    count, stride, mode, filter);
 }
 
 // Decodes a view of `byteLength` bytes. Returns the stride of its attributes, 0 for indices.
@@ -174,11 +172,10 @@ size_t DecodeView(const tinygltf::Model& model, const tinygltf::Value& e, const 
     CheckLayout(loc, mode, filter, count, stride);
     const std::vector<unsigned char>& data = model.buffers[whole("buffer")].data;
     if (offset > data.size() || size > data.size() - offset)
-        throw Error(loc, fmt::format("goes beyond its buffer of {} bytes", data.size()));
+        throw Error(loc, "goes beyond its buffer of {} bytes", data.size());
     if (count * stride != byteLength || byteLength / kMaxCompression > size)
-        throw Error(loc, fmt::format("{} bytes cannot hold {} elements of {} bytes in a view of "
-                                     "{} bytes",
-                                     size, count, stride, byteLength));
+        throw Error(loc, "{} bytes cannot hold {} elements of {} bytes in a view of {} bytes", size,
+                    count, stride, byteLength);
     CheckMemory(int64_t(byteLength), loc.Prefix() + "the mesh", "use a smaller mesh");
 
     decoded->resize(byteLength);

@@ -58,21 +58,19 @@ bool IsBinary(std::string_view bytes) { return bytes.starts_with("glTF"); }
 std::string_view JsonOf(const std::string& file, std::string_view bytes) {
     if (!IsBinary(bytes)) return bytes;
     if (bytes.size() < kGlbHeader + kChunkHeader)
-        throw Error(fmt::format("{}: is truncated: it has {} bytes", file, bytes.size()));
+        throw Error("{}: is truncated: it has {} bytes", file, bytes.size());
     const uint32_t version = LittleEndian(bytes.data() + 4), size = LittleEndian(bytes.data() + 8);
-    if (version != 2)
-        throw Error(fmt::format("{}: is of GLB version {}; 2 is modelled", file, version));
+    if (version != 2) throw Error("{}: is of GLB version {}; 2 is modelled", file, version);
     if (size > bytes.size())
-        throw Error(
-            fmt::format("{}: is truncated: it has {} of its {} bytes", file, bytes.size(), size));
+        throw Error("{}: is truncated: it has {} of its {} bytes", file, bytes.size(), size);
     const size_t length = LittleEndian(bytes.data() + 12);
     if (std::memcmp(bytes.data() + 16, "JSON", 4) != 0)
         throw Error(file + ": its first chunk is not JSON");
     if (length > bytes.size() - kGlbHeader - kChunkHeader)
-        throw Error(fmt::format("{}: its JSON of {} bytes goes beyond its end", file, length));
+        throw Error("{}: its JSON of {} bytes goes beyond its end", file, length);
     if (size < kGlbHeader + kChunkHeader + length)
-        throw Error(fmt::format("{}: its length of {} bytes is less than that of its JSON, {}",
-                                file, size, length));
+        throw Error("{}: its length of {} bytes is less than that of its JSON, {}", file, size,
+                    length);
     return bytes.substr(kGlbHeader + kChunkHeader, length);
 }
 
@@ -83,7 +81,7 @@ std::string_view DataOf(const std::string& file, std::string_view bytes, size_t 
     if (rest.size() < kChunkHeader || rest.substr(4, 4) != std::string_view("BIN\0", 4)) return {};
     const size_t length = LittleEndian(rest.data());
     if (length > rest.size() - kChunkHeader)
-        throw Error(fmt::format("{}: its data of {} bytes go beyond its end", file, length));
+        throw Error("{}: its data of {} bytes go beyond its end", file, length);
     return rest.substr(kChunkHeader, length);
 }
 
@@ -151,8 +149,7 @@ std::vector<Bytes> TakeBuffers(const std::filesystem::path& folder, std::string_
             bytes.assign(contents.View().begin(), contents.View().end());
         }
         const auto length = buffer.at("byteLength").get<size_t>();
-        if (bytes.size() < length)
-            throw Error(loc, fmt::format("has {} of its {} bytes", bytes.size(), length));
+        if (bytes.size() < length) throw Error(loc, "has {} of its {} bytes", bytes.size(), length);
         buffer["uri"] = std::to_string(buffers.size() - 1);
         buffer["byteLength"] = bytes.size();
     }
@@ -268,8 +265,8 @@ size_t ChooseByName(const GltfDocument& document, const std::string& what,
     const char* end = wanted.data() + wanted.size();
     const auto [at, error] = std::from_chars(wanted.data(), end, number);
     if (error == std::errc() && at == end && number < names.size()) return number;
-    throw Error(fmt::format("{}: has no {} \"{}\"; it has {}", document.file, what, wanted,
-                            NumberedNames(names)));
+    throw Error("{}: has no {} \"{}\"; it has {}", document.file, what, wanted,
+                NumberedNames(names));
 }
 
 GltfDocument ReadGltf(const std::string& file, Warnings& warnings) {

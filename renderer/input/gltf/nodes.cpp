@@ -191,9 +191,10 @@ void WriteCone(const tinygltf::SpotLight& spot, const FileLoc& loc, const Parame
     const auto outerAngle = InRange(spot.outerConeAngle, 0, kWidest);
     const auto innerAngle = InRange(spot.innerConeAngle, 0, kWidest);
     if (!outerAngle || !innerAngle || !(*outerAngle > 0) || IsAbove(*innerAngle, *outerAngle))
-        throw Error(loc, fmt::format("the cone's angles are {} and {}; they have to be 0 <= inner "
-                                     "<= outer <= pi/2, and outer above 0",
-                                     spot.innerConeAngle, spot.outerConeAngle));
+        throw Error(loc,
+                    "the cone's angles are {} and {}; they have to be 0 <= inner <= outer <= pi/2, "
+                    "and outer above 0",
+                    spot.innerConeAngle, spot.outerConeAngle);
     const double outer = *outerAngle, inner = std::min(*innerAngle, outer);
     write.Point("from", Vec3f::Zero());
     write.Point("to", Vec3f(0, 0, -1));
@@ -271,8 +272,7 @@ void AddProfile(const std::string& profile, LightEntity* light) {
 double AngleOf(const tinygltf::Light& light, const FileLoc& loc) {
     const double angle = OwnNumber(light, "angle");
     const auto across = InRange(angle, 0, std::numbers::pi);
-    if (!across)
-        throw Error(loc, fmt::format("its angle is {:g}; it has to be from 0 to pi", angle));
+    if (!across) throw Error(loc, "its angle is {:g}; it has to be from 0 to pi", angle);
     return *across * 180 / std::numbers::pi;
 }
 

@@ -20,8 +20,8 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
                 const tinygltf::Primitive& primitive, const std::string& name,
                 const std::vector<double>& weights, GltfArray* array) {
     if (!weights.empty() && weights.size() != primitive.targets.size())
-        throw Error(loc, fmt::format("has {} morph targets for {} weights",
-                                     primitive.targets.size(), weights.size()));
+        throw Error(loc, "has {} morph targets for {} weights", primitive.targets.size(),
+                    weights.size());
     for (size_t i = 0; i < weights.size(); ++i) {
         const auto found = primitive.targets[i].find(name);
         if (weights[i] == 0 || found == primitive.targets[i].end()) continue;
@@ -29,8 +29,8 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
             ReadNumbers(document, found->second, std::min(array->components, 3), array->components,
                         Normalizes(document.model, name));
         if (target.Count() != array->Count())
-            throw Error(loc, fmt::format("has {} {} in morph target {} for {} vertices",
-                                         target.Count(), name, i, array->Count()));
+            throw Error(loc, "has {} {} in morph target {} for {} vertices", target.Count(), name,
+                        i, array->Count());
         for (size_t k = 0; k < target.values.size(); ++k) {
             const auto components = size_t(target.components);
             float& value =
@@ -56,8 +56,7 @@ GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
         warnings.Add(loc, "integers count as normalized, though their accessor does not say so",
                      name);
     if (array.Count() != vertexCount)
-        throw Error(loc,
-                    fmt::format("has {} {} for {} vertices", array.Count(), name, vertexCount));
+        throw Error(loc, "has {} {} for {} vertices", array.Count(), name, vertexCount);
     AddTargets(document, loc, primitive, name, weights, &array);
     return array;
 }
@@ -158,8 +157,7 @@ GltfTriangles ReadPrimitive(const GltfDocument& document, int mesh, int index,
         GltfArray array =
             ReadAttribute(document, loc, primitive, name, least, most, weights, count, warnings);
         ClearNonFinite(t.indices, &array, [&](uint32_t vertex) {
-            if (name == "POSITION")
-                throw Error(loc, fmt::format("vertex {} is not finite", vertex));
+            if (name == "POSITION") throw Error(loc, "vertex {} is not finite", vertex);
             warnings.Add(loc, "value of a vertex that is not finite counts as 0", name);
         });
         return array;

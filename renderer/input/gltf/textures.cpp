@@ -90,7 +90,7 @@ int GltfTextures::Embed(int index, const FileLoc& loc) {
     const auto [found, isNew] = embedded.try_emplace(index, int(description->images.size()));
     if (!isNew) return found->second;
     const tinygltf::Image& image = document.model.images[size_t(index)];
-    if (image.image.empty()) throw Error(loc, fmt::format("/images/{} is empty", index));
+    if (image.image.empty()) throw Error(loc, "/images/{} is empty", index);
     const auto* bytes = reinterpret_cast<const std::byte*>(image.image.data());
     description->images.push_back({fmt::format("{}: /images/{}", document.file, index),
                                    TypeOf(image),
@@ -137,8 +137,7 @@ std::optional<TextureRef> GltfTextures::Add(const GltfTextureUse& use, GltfTexel
                                             Warnings& warnings) {
     if (use.index < 0) return {};
     const FileLoc loc = document.At(use.path);
-    if (use.uvSet > 1)
-        throw Error(loc, fmt::format("uses TEXCOORD_{}; only 0 and 1 are modelled", use.uvSet));
+    if (use.uvSet > 1) throw Error(loc, "uses TEXCOORD_{}; only 0 and 1 are modelled", use.uvSet);
     const tinygltf::Texture& texture = document.model.textures[size_t(use.index)];
     if (ImageOf(texture) < 0) {
         warnings.Add(loc, "texture without an image that is modelled is left out");

@@ -389,8 +389,7 @@ void CheckVariants(const JsonAt& root) {
 
 json ParseGltfJson(const std::string& file, std::string_view text) {
     const auto checkDepth = [&](int depth, json::parse_event_t, json&) {
-        if (depth > kDeepest)
-            throw Error(fmt::format("{}: is nested more than {} levels deep", file, kDeepest));
+        if (depth > kDeepest) throw Error("{}: is nested more than {} levels deep", file, kDeepest);
         return true;
     };
     try {
@@ -398,7 +397,7 @@ json ParseGltfJson(const std::string& file, std::string_view text) {
         if (!root.is_object()) throw Error(file + ": is not a JSON object");
         return root;
     } catch (const json::exception& e) {
-        throw Error(fmt::format("{}: is not valid JSON: {}", file, Printable(e.what(), 200)));
+        throw Error("{}: is not valid JSON: {}", file, Printable(e.what(), 200));
     }
 }
 

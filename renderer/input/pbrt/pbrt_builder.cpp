@@ -85,8 +85,8 @@ void PbrtBuilder::CloseImports() {
 // Reports a name that is defined once more, which pbrt-v4 refuses.
 void PbrtBuilder::NameAgain(const char* what, const std::string& name) {
     if (IsV4())
-        throw Error(loc, fmt::format("{} \"{}\" is there already; pbrt-v4 takes each name once",
-                                     what, Printable(name)));
+        throw Error(loc, "{} \"{}\" is there already; pbrt-v4 takes each name once", what,
+                    Printable(name));
     warnings.Add(loc, fmt::format("{} redefined", what), "\"" + Printable(name) + "\"");
 }
 

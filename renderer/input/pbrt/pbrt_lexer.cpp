@@ -265,7 +265,7 @@ T PbrtLexer::ParseNumber() {
     const std::string_view word = WordAt(s.pos), rest(word.end(), s.end);
     for (const char* sign : {"#INF", "#IND", "#QNAN", "#SNAN"})
         if (word.ends_with('.') && rest.starts_with(sign))
-            throw Error(Loc(), fmt::format("'{}{}' is not a finite number", Printable(word), sign));
+            throw Error(Loc(), "'{}{}' is not a finite number", Printable(word), sign);
     // Accept a plus sign, which from_chars does not.
     const char* begin = *s.pos == '+' && s.pos + 1 < s.end && s.pos[1] != '-' ? s.pos + 1 : s.pos;
     T value = 0;

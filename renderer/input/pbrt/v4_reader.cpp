@@ -23,8 +23,7 @@ std::optional<V4Spectrum> V4Reader::Spectrum(const char* name) const {
         if (!parameter) continue;
         const FileLoc& loc = parameter->loc;
         if (const auto* names = std::get_if<std::vector<std::string>>(&parameter->values)) {
-            if (names->size() != 1)
-                throw Error(loc, fmt::format("\"{}\" has to name one spectrum", name));
+            if (names->size() != 1) throw Error(loc, "\"{}\" has to name one spectrum", name);
             if (IsNamedSpectrum((*names)[0])) return NamedSpectrum{(*names)[0]};
             const std::string path = ResolvePath(context.description, (*names)[0]);
             return SampledSpectrumOf(ReadNumberFile(path, "spectrum", loc), loc);
@@ -35,9 +34,8 @@ std::optional<V4Spectrum> V4Reader::Spectrum(const char* name) const {
             return BlackbodySpectrum{values[0]};
         if (type == ParameterType::Spectrum && values.size() == 3)
             return Rgb(values[0], values[1], values[2]);
-        throw Error(loc,
-                    fmt::format("\"{}\" has {} numbers; it needs {}", name, values.size(),
-                                type == ParameterType::Blackbody ? "one, in kelvin" : "three"));
+        throw Error(loc, "\"{}\" has {} numbers; it needs {}", name, values.size(),
+                    type == ParameterType::Blackbody ? "one, in kelvin" : "three");
     }
     return {};
 }
@@ -57,9 +55,8 @@ Rgb V4Reader::Reflectance(const char* name, const Rgb& otherwise) const {
     const bool isSrgb = context.state.rgbFromColorSpace == Mat3f::Identity();
     const Parameter* rgb = given.Find(ParameterType::Spectrum, name);
     if (isSrgb && rgb && (color > 1).any())
-        throw Error(
-            rgb->loc,
-            fmt::format("\"rgb {}\" has a part above 1; a reflectance lies between 0 and 1", name));
+        throw Error(rgb->loc, "\"rgb {}\" has a part above 1; a reflectance lies between 0 and 1",
+                    name);
     return color.max(0.f).min(1.f);
 }
 
@@ -125,10 +122,9 @@ TextureRef V4Reader::AddImage(const std::string& file, bool isData) const {
 Entity V4Reader::Finish(const std::string& name, const std::string& owner) {
     for (const Parameter& parameter : given.All())
         if (!parameter.lookedUp)
-            throw Error(parameter.loc,
-                        fmt::format("{} has no parameter \"{} {}\" in pbrt-v4{}", owner,
-                                    NameOf(parameter.type), Printable(parameter.name),
-                                    given.Mistyped(parameter.name)));
+            throw Error(parameter.loc, "{} has no parameter \"{} {}\" in pbrt-v4{}", owner,
+                        NameOf(parameter.type), Printable(parameter.name),
+                        given.Mistyped(parameter.name));
     return {name, std::move(written), from.loc};
 }
 
@@ -337,9 +333,8 @@ void SetExposureOfV4(Description* d) {
     if (seconds == 1) return;
     const float scale = d->film.parameters.GetFloat("scale", 1) * seconds;
     if (!(scale > 0))
-        throw Error(d->camera.loc, fmt::format("the shutter is open for {:g} s, so that the image "
-                                               "is black",
-                                               seconds));
+        throw Error(d->camera.loc, "the shutter is open for {:g} s, so that the image is black",
+                    seconds);
     ParameterWriter(&d->film.parameters, d->film.loc).Float("scale", scale);
 }
 

@@ -103,7 +103,7 @@ std::optional<Rgb> FindMetal(std::string_view name) {
 }
 
 [[noreturn]] void FailNamed(const std::string& name, const char* wanted, const FileLoc& loc) {
-    throw Error(loc, fmt::format("the spectrum \"{}\" is none of {}", Printable(name), wanted));
+    throw Error(loc, "the spectrum \"{}\" is none of {}", Printable(name), wanted);
 }
 
 // Returns XYZ of a spectrum under `light`, Y of a constant 1 being 1.

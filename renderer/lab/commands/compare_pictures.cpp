@@ -27,7 +27,7 @@ std::vector<PictureRule> RulesOf(const CompareOptions& options, const PictureFol
         try {
             return ParseRule(text, context);
         } catch (const std::logic_error& error) {
-            throw UsageError(fmt::format("{}: {}", option, error.what()));
+            throw UsageError("{}: {}", option, error.what());
         }
     };
     std::vector<PictureRule> rules;

@@ -181,7 +181,7 @@ ExitCode RunEntropy(const Options& options) {
             picture =
                 MeasureEntropies(image, options.blockSize, options.subBlocks, options.attributes);
         } catch (const Error& error) {
-            throw Error(fmt::format("{}: {}", source.file, error.what()));
+            throw Error("{}: {}", source.file, error.what());
         }
         if (sources.size() > 1)
             PrintPicture(source, picture, width);

@@ -193,7 +193,7 @@ std::vector<LabelledBlock> BlocksToJudge(const std::vector<ViewpointRecording>& 
     try {
         blocks = TestBlocks(blocks, rows);
     } catch (const std::invalid_argument& error) {
-        throw Error(fmt::format("{}: {}", options.split, error.what()));
+        throw Error("{}: {}", options.split, error.what());
     }
     PrintMessage(fmt::format("{} blocks that {} does not list", blocks.size(), options.split));
     return blocks;
@@ -215,15 +215,14 @@ ViewpointRecording ReadViewpoint(const Options& options) {
     std::vector<ViewpointRecording> viewpoints = ReadViewpoints(options);
     for (const std::string& name : options.without)
         if (std::erase_if(viewpoints, [&](const auto& v) { return v.name == name; }) == 0)
-            throw Error(fmt::format("--without: there is no viewpoint '{}'", name));
+            throw Error("--without: there is no viewpoint '{}'", name);
     if (viewpoints.size() == 1) return std::move(viewpoints[0]);
     std::string names;
     for (const ViewpointRecording& v : viewpoints)
         names += (names.empty() ? "'" : ", '") + v.name + "'";
     throw Error(
-        fmt::format("--answers are to one viewpoint, but the data sets have {}; leave "
-                    "out others by --without",
-                    viewpoints.empty() ? "none" : names));
+        "--answers are to one viewpoint, but the data sets have {}; leave out others by --without",
+        viewpoints.empty() ? "none" : names);
 }
 
 std::vector<NamedFile> InputsOf(const Options& options) {

@@ -173,8 +173,8 @@ std::vector<int> LevelsOf(const Options& options, const ScheduleOptions& schedul
         options.levels > 0 ? LadderByCount(schedule.passLength, schedule.cap, options.levels)
                            : LadderByRatio(schedule.passLength, schedule.cap, kLadderRatio);
     if (levels.size() < 2)
-        throw Error(fmt::format("--max-spp {}: a ladder needs more than one pass of {} spp",
-                                schedule.cap, schedule.passLength));
+        throw Error("--max-spp {}: a ladder needs more than one pass of {} spp", schedule.cap,
+                    schedule.passLength);
     // As pixels, and as the text of the page, of which a part is there twice.
     CheckMemory(region.Area() * int64_t(levels.size()) * 12,
                 fmt::format("a study of {}x{} pixels at {} levels", region.Width(), region.Height(),
@@ -286,8 +286,7 @@ void CollectAnswers(const Options& settings) {
     const Collected collected = CollectFiles(settings.collect, options);
     Tell(collected);
     if (collected.viewpoints.empty())
-        throw Error(fmt::format("--collect: none of {} files has answers that count",
-                                settings.collect.size()));
+        throw Error("--collect: none of {} files has answers that count", settings.collect.size());
 
     // Written in this order, and printed.
     std::vector<std::pair<std::string, std::string>> files = {

@@ -79,9 +79,8 @@ void JoinViews(const std::string& path, ExrImage* exr) {
     if (std::set(exr->views.begin(), exr->views.end()) != std::set<std::string>{"left", "right"} ||
         !std::ranges::all_of(std::array{"R", "G", "B"}, has))
         throw Error(
-            fmt::format("{}: its views are {}; those of a pair are left and right, with R, G "
-                        "and B of both",
-                        path, fmt::join(exr->views, ", ")));
+            "{}: its views are {}; those of a pair are left and right, with R, G and B of both",
+            path, fmt::join(exr->views, ", "));
     std::vector<ExrChannel> joined;
     for (const char* name : {"R", "G", "B", "spp"}) {
         if (!has(name) || !exr->Find(name)) continue;
@@ -158,13 +157,12 @@ PixelRect CommonRegion(const std::vector<ComparedFile>& files, const std::string
     const PixelRect region = first == files.end() ? files.back().region : first->region;
     for (const ComparedFile& file : files) {
         if (!HaveOneSize(file.region, region))
-            throw Error(fmt::format("{}: images of different sizes: {} has {}, {} has {}",
-                                    reference, files.front().image.name,
-                                    SizeOf(files.front().region), files.back().image.name,
-                                    SizeOf(files.back().region)));
+            throw Error("{}: images of different sizes: {} has {}, {} has {}", reference,
+                        files.front().image.name, SizeOf(files.front().region),
+                        files.back().image.name, SizeOf(files.back().region));
         if (IsPlaced(file) && !(file.region == region))
-            throw Error(fmt::format("{}: shows another part of the image than the {} one",
-                                    reference, files.front().image.name));
+            throw Error("{}: shows another part of the image than the {} one", reference,
+                        files.front().image.name);
     }
     return region;
 }
@@ -203,8 +201,7 @@ ComparedImage ReadImageBeside(const std::string& path, const std::string& name,
     const PixelRect& region = comparison.region;
     if (!(file.region == region) && file.shown == region) MoveTo(region, &file);
     if (!HaveOneSize(file.region, region))
-        throw Error(fmt::format("{}: has {}, the scene's image {}", path, SizeOf(file.region),
-                                SizeOf(region)));
+        throw Error("{}: has {}, the scene's image {}", path, SizeOf(file.region), SizeOf(region));
     if (file.image.isDisplay) file.region = region;
     if (!(file.region == region))
         throw Error(path + ": shows another part of the image than the scene would");

@@ -57,8 +57,8 @@ std::vector<float> LinearValues(std::span<const uint8_t> srgb) {
 ErrorMaps CompareImages(const RgbImage& image, const RgbImage& reference,
                         const DisplayModel& display) {
     if (image.width != reference.width || image.height != reference.height)
-        throw Error(fmt::format("an image of {}x{} pixels cannot be compared with one of {}x{}",
-                                image.width, image.height, reference.width, reference.height));
+        throw Error("an image of {}x{} pixels cannot be compared with one of {}x{}", image.width,
+                    image.height, reference.width, reference.height);
     ErrorMaps maps;
     maps.width = image.width;
     maps.height = image.height;

@@ -37,7 +37,7 @@ size_t BeginOfDigits(const std::string& text, size_t end) {
 std::map<int, std::string> FindFiles(const std::string& folder) {
     std::error_code error;
     std::filesystem::directory_iterator files(folder, error);
-    if (error) throw Error(fmt::format("--images {}: {}", folder, error.message()));
+    if (error) throw Error("--images {}: {}", folder, error.message());
     std::set<std::string> paths;  // in an order that does not depend on the file system
     for (const auto& entry : files)
         if (entry.is_regular_file() && !entry.path().filename().string().starts_with("."))
@@ -47,8 +47,7 @@ std::map<int, std::string> FindFiles(const std::string& folder) {
         const int spp = SppInName(std::filesystem::path(path).filename().string());
         if (spp == 0) throw Error(path + ": has no spp in its name, such as room-40spp.png");
         const auto [other, isNew] = found.emplace(spp, path);
-        if (!isNew)
-            throw Error(fmt::format("{} and {} are both of {} spp", other->second, path, spp));
+        if (!isNew) throw Error("{} and {} are both of {} spp", other->second, path, spp);
     }
     return found;
 }
@@ -92,8 +91,8 @@ PictureFolder FindPictures(const std::string& folder, const std::string& name) {
     PictureFolder found{.name = name.empty() ? NameOfFolder(folder) : name,
                         .files = FindFiles(folder)};
     if (const std::string problem = CheckViewpointName(found.name); !problem.empty())
-        throw Error(fmt::format("--images {}: {}", folder, problem));
-    if (found.files.empty()) throw Error(fmt::format("--images {}: has no pictures", folder));
+        throw Error("--images {}: {}", folder, problem);
+    if (found.files.empty()) throw Error("--images {}: has no pictures", folder);
     const RgbImage first = ReadShownPicture(found.files.begin()->second);
     found.width = first.width;
     found.height = first.height;
@@ -112,9 +111,8 @@ RgbImage ReadPicture(const PictureFolder& folder, int spp) {
     const std::string& file = folder.files.at(spp);
     RgbImage image = ReadShownPicture(file);
     if (image.width != folder.width || image.height != folder.height)
-        throw Error(fmt::format("{}: has {}x{} pixels, {} has {}x{}", file, image.width,
-                                image.height, folder.files.begin()->second, folder.width,
-                                folder.height));
+        throw Error("{}: has {}x{} pixels, {} has {}x{}", file, image.width, image.height,
+                    folder.files.begin()->second, folder.width, folder.height);
     return image;
 }
 
@@ -154,9 +152,9 @@ EntropiesOfPicture MeasureEntropies(const RgbImage& picture, int blockSize, int 
     for (const Block& block : blocks)
         if (std::min(block.pixels.Width(), block.pixels.Height()) < least)
             throw Error(
-                fmt::format("a block of {}x{} pixels is too small for {} sub-blocks; choose "
-                            "another --block or fewer --sub-blocks",
-                            block.pixels.Width(), block.pixels.Height(), subBlocks));
+                "a block of {}x{} pixels is too small for {} sub-blocks; choose another --block or "
+                "fewer --sub-blocks",
+                block.pixels.Width(), block.pixels.Height(), subBlocks);
     EntropiesOfPicture result{
         .whole = {}, .mean = {}, .blocks = std::vector<BlockEntropies>(blocks.size())};
     const auto whole = [](const std::vector<double>& lightness, const PixelRect& rect) {
@@ -197,9 +195,9 @@ class RuleOnPictures {
         : rule(std::move(given)) {
         if (!rule.rule.stopAt && rule.rule.need > ViewNeed::Mean)
             throw Error(
-                fmt::format("{}: the rule needs a half buffer, which pictures do not have; "
-                            "choose one that needs none, such as learned or entropy",
-                            rule.rule.text));
+                "{}: the rule needs a half buffer, which pictures do not have; choose one that "
+                "needs none, such as learned or entropy",
+                rule.rule.text);
         schedule.smallestSide = rule.rule.smallestSide;
         blocks = MakeBlocks(folder.Region(), schedule);
         stops.resize(blocks.size());

@@ -48,9 +48,9 @@ void CheckRecordable(const std::vector<Block>& blocks, const ScheduleOptions& sc
     for (const Block& block : blocks)
         if (std::min(block.pixels.Width(), block.pixels.Height()) < kSmallestVotingSide)
             throw Error(
-                fmt::format("blocks of less than {} pixels a side cannot be recorded; "
-                            "choose a --resolution that is a multiple of {}",
-                            kSmallestVotingSide, schedule.blockSize));
+                "blocks of less than {} pixels a side cannot be recorded; choose a --resolution "
+                "that is a multiple of {}",
+                kSmallestVotingSide, schedule.blockSize);
 }
 
 std::string CheckViewpointName(const std::string& name) {
@@ -97,8 +97,8 @@ std::vector<int> RecordingLimits(size_t blockCount, const std::vector<int>& chos
     std::vector<int> limits(blockCount, chosen.empty() ? cap : 0);
     for (const int block : chosen) {
         if (size_t(block) >= blockCount)
-            throw Error(fmt::format("--blocks: there is no block {}, the last of the image is {}",
-                                    block, blockCount - 1));
+            throw Error("--blocks: there is no block {}, the last of the image is {}", block,
+                        blockCount - 1);
         limits[size_t(block)] = cap;
     }
     return limits;
@@ -108,10 +108,10 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
                   std::vector<int>* limits) {
     const std::vector<ThresholdsRow> rows = ReadThresholds(human);
     const auto row = std::ranges::find(rows, viewpoint, &ThresholdsRow::name);
-    if (row == rows.end()) throw Error(fmt::format("{}: has no row '{}'", human, viewpoint));
+    if (row == rows.end()) throw Error("{}: has no row '{}'", human, viewpoint);
     if (row->spp.size() != limits->size())
-        throw Error(fmt::format("{}: '{}' has {} blocks, the image {}", human, viewpoint,
-                                row->spp.size(), limits->size()));
+        throw Error("{}: '{}' has {} blocks, the image {}", human, viewpoint, row->spp.size(),
+                    limits->size());
     for (size_t i = 0; i < limits->size(); ++i)
         (*limits)[i] = std::min((*limits)[i], int(std::ceil(past * row->spp[i])));
 }
@@ -172,8 +172,8 @@ ViewpointRecording RecordPictures(const PictureFolder& folder,
     for (size_t i = 0; i < blocks.size(); ++i)
         if (IsLargeEnough(blocks[i]) && limitOf(i) > 0) recorded.push_back(i);
     if (recorded.empty())
-        throw Error(fmt::format("{}: has no block of {} pixels a side or more to record",
-                                folder.files.begin()->second, kSmallestVotingSide));
+        throw Error("{}: has no block of {} pixels a side or more to record",
+                    folder.files.begin()->second, kSmallestVotingSide);
     std::vector<BlockRecording> recordings(blocks.size());
     int read = 0;
     for (const int spp : folder.Spp()) {

@@ -105,8 +105,7 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
     const float aspect =
         params.GetFloat("frameaspectratio", float(resolution.x()) / float(resolution.y()));
     if (!(aspect > 0 && aspect < kInfinity))
-        throw Error(entity.loc,
-                    fmt::format("\"frameaspectratio\" is {}; it has to be above 0", aspect));
+        throw Error(entity.loc, "\"frameaspectratio\" is {}; it has to be above 0", aspect);
     std::array<float, 4> screen = aspect > 1 ? std::array{-aspect, aspect, -1.f, 1.f}
                                              : std::array{-1.f, 1.f, -1 / aspect, 1 / aspect};
     if (const auto window = params.GetFloats(ParameterType::Float, "screenwindow");
@@ -133,9 +132,10 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
     }
     for (const float end : screen)
         if (!(std::abs(end) <= kFarthest))
-            throw Error(entity.loc, fmt::format("the image reaches to {:g} on the plane that the "
-                                                "camera sees it on; {:g} is the farthest",
-                                                end, kFarthest));
+            throw Error(entity.loc,
+                        "the image reaches to {:g} on the plane that the camera sees it on; {:g} "
+                        "is the farthest",
+                        end, kFarthest);
     return screen;
 }
 
@@ -144,9 +144,8 @@ float ReadFieldOfView(const Entity& entity) {
     if (const float half = entity.parameters.GetFloat("halffov", -1); half > 0) fov = 2 * half;
     const auto known = FieldOfView(double(fov));
     if (!known)
-        throw Error(entity.loc, fmt::format("the field of view is {} degrees; it has to lie "
-                                            "between 0 and 180",
-                                            fov));
+        throw Error(entity.loc, "the field of view is {} degrees; it has to lie between 0 and 180",
+                    fov);
     return float(*known);
 }
 
@@ -156,10 +155,10 @@ Projection ReadProjection(const Entity& entity) {
     if (entity.name == "environment") return Projection::Environment;
     if (entity.name == "equalarea") return Projection::EqualArea;
     if (entity.name == "realistic") return Projection::Realistic;
-    throw Error(entity.loc,
-                fmt::format("Camera \"{}\" is not supported; perspective, orthographic, "
-                            "environment and realistic are",
-                            Printable(entity.name)));
+    throw Error(
+        entity.loc,
+        "Camera \"{}\" is not supported; perspective, orthographic, environment and realistic are",
+        Printable(entity.name));
 }
 
 LensSystem ReadLenses(const Description& description, const FilmSettings& film,
@@ -294,12 +293,10 @@ Stereo ReadStereo(const Entity& entity) {
     if (eye == "left") stereo.alone = Eye::Left;
     if (eye == "right") stereo.alone = Eye::Right;
     if (!eye.empty() && stereo.alone == Eye::Middle)
-        throw Error(entity.loc,
-                    fmt::format("the view \"{}\" is unknown; left and right are", Printable(eye)));
+        throw Error(entity.loc, "the view \"{}\" is unknown; left and right are", Printable(eye));
     if (stereo.distance > 0 && entity.name != "perspective")
-        throw Error(entity.loc,
-                    fmt::format("two eyes need a perspective camera; this one is \"{}\"",
-                                Printable(entity.name)));
+        throw Error(entity.loc, "two eyes need a perspective camera; this one is \"{}\"",
+                    Printable(entity.name));
     return stereo;
 }
 

@@ -38,9 +38,8 @@ void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings*
     }
     if (film->Size().minCoeff() >= 1) return;
     const bool isFromFile = !overrides.crop && !overrides.cropInPixels;
-    throw Error(isFromFile ? entity.loc : FileLoc(),
-                fmt::format("the crop window holds no pixel of {}x{}", film->resolution.x(),
-                            film->resolution.y()));
+    throw Error(isFromFile ? entity.loc : FileLoc(), "the crop window holds no pixel of {}x{}",
+                film->resolution.x(), film->resolution.y());
 }
 
 // Evaluates the Mitchell-Netravali filter (1988) at x in [-1, 1], which is two units wide.
@@ -80,9 +79,10 @@ AxisFunction MakeAxisFunction(const Entity& entity) {
         if (!(tau > 0)) throw Error(entity.loc, "the sinc filter's \"tau\" has to be positive");
         return [=](float x, float) { return Sinc(x) * Sinc(x / tau); };
     }
-    throw Error(entity.loc, fmt::format("PixelFilter \"{}\" is not supported; box, gaussian, "
-                                        "mitchell, sinc and triangle are",
-                                        Printable(entity.name)));
+    throw Error(
+        entity.loc,
+        "PixelFilter \"{}\" is not supported; box, gaussian, mitchell, sinc and triangle are",
+        Printable(entity.name));
 }
 
 }  // namespace
@@ -91,8 +91,8 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
                               Warnings& warnings) {
     const Entity& entity = description.film;
     if (entity.name != "image")
-        throw Error(entity.loc, fmt::format("Film \"{}\" is not supported; only \"image\" is",
-                                            Printable(entity.name)));
+        throw Error(entity.loc, "Film \"{}\" is not supported; only \"image\" is",
+                    Printable(entity.name));
     const Parameters& params = entity.parameters;
     FilmSettings film;
     film.resolution = {params.GetInt("xresolution", 1280), params.GetInt("yresolution", 720)};
@@ -100,9 +100,10 @@ FilmSettings MakeFilmSettings(const Description& description, const FilmOverride
     constexpr int64_t kMaxPixels = int64_t(1) << 28;
     if (film.resolution.minCoeff() < 1 ||
         int64_t(film.resolution.x()) * film.resolution.y() > kMaxPixels)
-        throw Error(entity.loc, fmt::format("the resolution is {}x{}; each side has to be at least "
-                                            "1 and the image at most {} pixels",
-                                            film.resolution.x(), film.resolution.y(), kMaxPixels));
+        throw Error(entity.loc,
+                    "the resolution is {}x{}; each side has to be at least 1 and the image at most "
+                    "{} pixels",
+                    film.resolution.x(), film.resolution.y(), kMaxPixels);
 
     SetCrop(entity, overrides, &film);
     film.filename = params.GetString("filename", film.filename);
@@ -133,10 +134,10 @@ Filter::Filter(const Description& description, Warnings& warnings) {
     radius = {params.GetFloat("xwidth", width), params.GetFloat("ywidth", width)};
     constexpr float kWidest = 1e6f;  // rays so far beside the image are finite
     if (!(radius.minCoeff() > 0 && radius.maxCoeff() <= kWidest))
-        throw Error(entity.loc,
-                    fmt::format("the filter's \"xwidth\" and \"ywidth\" have to be positive and at "
-                                "most {:g} pixels",
-                                kWidest));
+        throw Error(
+            entity.loc,
+            "the filter's \"xwidth\" and \"ywidth\" have to be positive and at most {:g} pixels",
+            kWidest);
 
     const AxisFunction evaluate = isBox ? AxisFunction() : MakeAxisFunction(entity);
     params.ReportUnused("PixelFilter \"" + entity.name + "\"", warnings);

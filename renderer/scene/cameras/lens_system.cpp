@@ -172,18 +172,18 @@ double LensSystem::FocusedRearZ(const Settings& settings) const {
     };
     Line toFilm{{x, 0, FrontZ() + 1}, {0, 0, -1}}, toScene{{x, 0, RearZ() - 1}, {0, 0, 1}};
     if (!TraceFromScene(&toFilm) || !TraceFromFilm(&toScene))
-        throw Error(settings.loc,
-                    fmt::format("no light passes the lenses of '{}' along the axis; the aperture "
-                                "may be too small",
-                                settings.file));
+        throw Error(
+            settings.loc,
+            "no light passes the lenses of '{}' along the axis; the aperture may be too small",
+            settings.file);
     const Cardinal film = cardinal(toFilm), scene = cardinal(toScene);
     // Solve the thick lens equation for where the film has to be.
     const double f = film.focus - film.plane, z = -double(settings.focusDistance);
     const double c = (scene.plane - z - film.plane) * (scene.plane - z - 4 * f - film.plane);
     const double rearZ = RearZ() + 0.5 * (scene.plane - z + film.plane - std::sqrt(c));
     if (!(c > 0) || !(rearZ > 0) || !std::isfinite(rearZ))
-        throw Error(settings.loc, fmt::format("the lenses of '{}' cannot focus at {} m",
-                                              settings.file, settings.focusDistance));
+        throw Error(settings.loc, "the lenses of '{}' cannot focus at {} m", settings.file,
+                    settings.focusDistance);
     return rearZ;
 }
 
@@ -293,7 +293,7 @@ void LensBundle::TraceFromFilm(std::span<const LensInterface> interfaces) {
 std::vector<LensInterface> LoadLens(const std::string& path, const FileLoc& loc) {
     const std::vector<float> numbers = ReadNumberFile(path, "lens", loc);
     const auto fail = [&](const std::string& what) {
-        throw Error(loc, fmt::format("the lens file '{}' {}", Printable(path, 4096), what));
+        throw Error(loc, "the lens file '{}' {}", Printable(path, 4096), what);
     };
     constexpr size_t kMost = 1000;
     if (numbers.empty() || numbers.size() % 4 != 0 || numbers.size() > 4 * kMost)

@@ -48,8 +48,8 @@ namespace {
 
 // Receives every error of Embree, so that its calls need not be checked one by one.
 void ReportEmbreeError(void*, RTCError, const char* message) {
-    throw Error(fmt::format("the acceleration structure could not be built: {}",
-                            message ? message : "unknown error"));
+    throw Error("the acceleration structure could not be built: {}",
+                message ? message : "unknown error");
 }
 
 // Returns whether a ray meets the side of a mesh that its vertices' order turns away.

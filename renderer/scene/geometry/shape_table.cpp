@@ -11,9 +11,9 @@ namespace {
 void CheckReach(const Bounds3f& bounds, const FileLoc& loc, const std::string& what) {
     if (!(Farthest(bounds) <= double(kFarthest)))
         throw Error(loc,
-                    fmt::format("{} reaches farther than {:g} from the origin, where no ray is "
-                                "traced; scale the scene down",
-                                what, kFarthest));
+                    "{} reaches farther than {:g} from the origin, where no ray is traced; scale "
+                    "the scene down",
+                    what, kFarthest);
 }
 
 // Carries an interaction from the space of an object into the world.

@@ -109,9 +109,9 @@ MapProjection ProjectionOf(const LightReader& in, const Image& image, const std:
     if (image.width == image.height) return MapProjection::EqualArea;
     if (image.width != 2 * image.height)
         throw Error(in.entity.loc,
-                    fmt::format("the sky \"{}\" has {}x{} pixels; it has to be square, of equal "
-                                "areas, or twice as wide as high, of latitude and longitude",
-                                file, image.width, image.height));
+                    "the sky \"{}\" has {}x{} pixels; it has to be square, of equal areas, or "
+                    "twice as wide as high, of latitude and longitude",
+                    file, image.width, image.height);
     in.warnings.Add(
         in.entity.loc,
         "a sky that is twice as wide as high is taken for one of latitude and longitude", file);

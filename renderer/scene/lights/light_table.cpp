@@ -36,9 +36,8 @@ Light MakeDistant(const LightReader& in) {
     const auto across = InRange(double(angle), 0, 180);
     if (!across)
         throw Error(in.entity.loc,
-                    fmt::format("the distant light's \"angle\" is {:g}; it has to be "
-                                "from 0 to 180 degrees",
-                                angle));
+                    "the distant light's \"angle\" is {:g}; it has to be from 0 to 180 degrees",
+                    angle);
     // Below, directions of float are all the same.
     if (*across < 1e-3) return parallel;
     return SunLight(parallel, *across * std::numbers::pi / 180);
@@ -81,10 +80,10 @@ void CheckReach(const Light& light, const LightEntity& entity, float reach) {
         [&]<typename L>(const L& l) {
             if constexpr (L::kType == LightType::DeltaPosition)
                 if (!(l.p.template cast<double>().norm() <= double(reach)))
-                    throw Error(entity.loc, fmt::format("LightSource \"{}\" lies farther than "
-                                                        "{:.3g} from the origin, where no ray is "
-                                                        "traced; scale the scene down",
-                                                        entity.name, reach));
+                    throw Error(entity.loc,
+                                "LightSource \"{}\" lies farther than {:.3g} from the origin, "
+                                "where no ray is traced; scale the scene down",
+                                entity.name, reach);
         },
         light);
 }
@@ -113,9 +112,10 @@ std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
     const float given = entity.parameters.GetFloat("spread", 180);
     const auto degrees = InRange(double(given), 0, 180);
     if (!degrees || !(*degrees > 0))
-        throw Error(entity.loc, fmt::format("the area light's \"spread\" is {:g}; it has to be "
-                                            "above 0 and at most 180 degrees",
-                                            given));
+        throw Error(
+            entity.loc,
+            "the area light's \"spread\" is {:g}; it has to be above 0 and at most 180 degrees",
+            given);
     if (const float coat = entity.parameters.GetFloat("clearcoat", 0); coat > 0 && *degrees == 180)
         return std::make_unique<const EmissionProfile>(BelowCoat{std::min(coat, 1.f)});
     if (*degrees == 180) return {};

@@ -177,9 +177,8 @@ ProjectionLight ProjectionLight::Make(const LightReader& in) {
     const auto known = FieldOfView(double(fov));
     if (!known)
         throw Error(in.entity.loc,
-                    fmt::format("the projection light's \"fov\" is {} degrees; it has "
-                                "to lie between 0 and 180",
-                                fov));
+                    "the projection light's \"fov\" is {} degrees; it has to lie between 0 and 180",
+                    fov);
     light.perTangent = 1 / std::tan(float(*known) * kPi / 360);
     light.image = ReadLightImage(in, false);
     const float aspect =

@@ -30,9 +30,7 @@ class Cursor {
         if (!rest.starts_with(magic)) Fail("is not a .bsdf file of version 1");
         rest.remove_prefix(magic.size());
     }
-    [[noreturn]] void Fail(const std::string& what) const {
-        throw Error(fmt::format("'{}' {}", path, what));
-    }
+    [[noreturn]] void Fail(const std::string& what) const { throw Error("'{}' {}", path, what); }
 
   private:
     std::string_view rest;

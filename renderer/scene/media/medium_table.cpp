@@ -25,9 +25,8 @@ Rgb ReadCoefficient(const MediumEntity& entity, const char* name, const Rgb& oth
     const Rgb value =
         (entity.parameters.GetSpectrum(name, otherwise) * scale).unaryExpr(&RaisedToZero);
     if (!(value >= 0).all() || !IsFinite(value))
-        throw Error(entity.loc, fmt::format("\"{}\" of medium \"{}\" has to be finite and at least "
-                                            "0",
-                                            name, Printable(entity.mediumName)));
+        throw Error(entity.loc, "\"{}\" of medium \"{}\" has to be finite and at least 0", name,
+                    Printable(entity.mediumName));
     return value;
 }
 
@@ -39,13 +38,13 @@ void CheckDepth(const MediumEntity& entity, const GridMedium& grid, const Mat4d&
     const double deepest = double(grid.sigmaT * grid.maxDensity) * longest;
     if (!(deepest <= kDeepest))
         throw Error(entity.loc,
-                    fmt::format("medium \"{}\" is too dense to be traced: its greatest extinction "
-                                "times its length is {:.3g}, which has to be {:g} at most",
-                                Printable(entity.mediumName), deepest, kDeepest));
+                    "medium \"{}\" is too dense to be traced: its greatest extinction times its "
+                    "length is {:.3g}, which has to be {:g} at most",
+                    Printable(entity.mediumName), deepest, kDeepest);
 }
 
 [[noreturn]] void Fail(const MediumEntity& entity, const std::string& why) {
-    throw Error(entity.loc, fmt::format("medium \"{}\"{}", Printable(entity.mediumName), why));
+    throw Error(entity.loc, "medium \"{}\"{}", Printable(entity.mediumName), why);
 }
 
 float Greatest(float v) { return v; }
@@ -260,8 +259,8 @@ Medium MakeMedium(const Description& description, const MediumEntity& entity, Wa
     const Rgb sigmaS = ReadCoefficient(entity, "sigma_s", preset.sigmaS, scale);
     constexpr float kMostForward = 0.99999f;  // with 1, light would go straight on
     if (!InRange(double(g), -1, 1))
-        throw Error(entity.loc, fmt::format("\"g\" of medium \"{}\" has to lie between -1 and 1",
-                                            Printable(entity.mediumName)));
+        throw Error(entity.loc, "\"g\" of medium \"{}\" has to lie between -1 and 1",
+                    Printable(entity.mediumName));
     if (std::abs(g) > kMostForward) g = std::copysign(kMostForward, g);
     std::optional<Medium> made;
     if (entity.name == "homogeneous")
@@ -276,9 +275,10 @@ Medium MakeMedium(const Description& description, const MediumEntity& entity, Wa
     else if (entity.name == "nanovdb")
         made = ReadVdb(description, entity, MakeGrid(sigmaA, sigmaS, g));
     else
-        throw Error(entity.loc, fmt::format("medium \"{}\": kind \"{}\" is not supported; "
-                                            "homogeneous and heterogeneous are",
-                                            Printable(entity.mediumName), Printable(entity.name)));
+        throw Error(
+            entity.loc,
+            "medium \"{}\": kind \"{}\" is not supported; homogeneous and heterogeneous are",
+            Printable(entity.mediumName), Printable(entity.name));
     params.ReportUnused("medium \"" + Printable(entity.mediumName) + "\"", warnings);
     return *made;
 }

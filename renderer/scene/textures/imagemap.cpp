@@ -58,9 +58,8 @@ float GetGamma(const TextureInput& input, const std::string& filename) {
     if (encoding.starts_with("gamma ")) gamma = std::strtof(encoding.c_str() + 6, nullptr);
     if (!(gamma > 0) || !std::isfinite(gamma))
         throw Error(input.entity.loc,
-                    fmt::format("the encoding \"{}\" is unknown; sRGB, linear and gamma with a "
-                                "number are",
-                                Printable(encoding)));
+                    "the encoding \"{}\" is unknown; sRGB, linear and gamma with a number are",
+                    Printable(encoding));
     return gamma;
 }
 

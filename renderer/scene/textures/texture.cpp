@@ -103,11 +103,9 @@ TextureHandle<T> Resolve(const std::vector<TextureHandle<T>>& made, const Parame
     if (index >= 0 && size_t(index) < made.size()) return made[size_t(index)];
     const bool isOther = (wantsFloat ? ref.spectrumIndex : ref.floatIndex) >= 0;
     throw Error(
-        parameter.loc,
-        fmt::format("parameter \"{}\": there is no {} texture \"{}\"{}", Printable(parameter.name),
-                    wantsFloat ? "float" : "spectrum", Printable(ref.name),
-                    isOther ? ", only one of the other type"
-                            : "; with --substitute the parameter is left out"));
+        parameter.loc, "parameter \"{}\": there is no {} texture \"{}\"{}",
+        Printable(parameter.name), wantsFloat ? "float" : "spectrum", Printable(ref.name),
+        isOther ? ", only one of the other type" : "; with --substitute the parameter is left out");
 }
 
 template <typename T>

@@ -14,9 +14,9 @@ CurveKind ReadKind(const Entity& entity) {
     if (kind == "flat") return CurveKind::Flat;
     if (kind == "cylinder") return CurveKind::Cylinder;
     if (kind == "ribbon") return CurveKind::Ribbon;
-    throw Error(entity.loc, fmt::format("curves of type \"{}\" are not supported; flat, cylinder "
-                                        "and ribbon are",
-                                        Printable(kind)));
+    throw Error(entity.loc,
+                "curves of type \"{}\" are not supported; flat, cylinder and ribbon are",
+                Printable(kind));
 }
 
 int ReadSplitDepth(const Entity& entity) {
@@ -24,8 +24,8 @@ int ReadSplitDepth(const Entity& entity) {
     const int depth = entity.parameters.GetInt(
         "splitdepth", int(std::clamp(entity.parameters.GetFloat("splitdepth", 3), -1.f, 99.f)));
     if (depth < 0 || depth > kMaxSplitDepth)
-        throw Error(entity.loc, fmt::format("\"splitdepth\" is {}; it has to be between 0 and {}",
-                                            depth, kMaxSplitDepth));
+        throw Error(entity.loc, "\"splitdepth\" is {}; it has to be between 0 and {}", depth,
+                    kMaxSplitDepth);
     return depth;
 }
 
@@ -60,13 +60,11 @@ struct Basis {
 Basis ReadBasis(const Entity& entity) {
     const int degree = entity.parameters.GetInt("degree", 3);
     if (degree != 2 && degree != 3)
-        throw Error(entity.loc,
-                    fmt::format("curves of degree {} are not supported; 2 and 3 are", degree));
+        throw Error(entity.loc, "curves of degree {} are not supported; 2 and 3 are", degree);
     const std::string basis = entity.parameters.GetString("basis", "bezier");
     if (basis != "bezier" && basis != "bspline")
-        throw Error(entity.loc, fmt::format("curves of basis \"{}\" are not supported; bezier and "
-                                            "bspline are",
-                                            Printable(basis)));
+        throw Error(entity.loc, "curves of basis \"{}\" are not supported; bezier and bspline are",
+                    Printable(basis));
     return {basis == "bspline", degree};
 }
 
@@ -76,7 +74,7 @@ std::vector<Vec3f> ReadVectors(const Entity& entity, ParameterType type, const c
     for (size_t i = 0; i < vectors.size(); ++i) {
         vectors[i] = Eigen::Map<const Vec3f>(values.data() + 3 * i);
         if (!vectors[i].allFinite())
-            throw Error(entity.loc, fmt::format("\"{}\" of the curve is not finite", name));
+            throw Error(entity.loc, "\"{}\" of the curve is not finite", name);
     }
     return vectors;
 }
@@ -91,9 +89,8 @@ std::vector<Vec3f> ReadNormals(const Entity& entity, CurveKind kind, size_t piec
         return {};
     }
     if (normals.size() != pieces + 1)
-        throw Error(entity.loc, fmt::format("a ribbon of {} pieces needs {} normals \"N\"; it has "
-                                            "{}",
-                                            pieces, pieces + 1, normals.size()));
+        throw Error(entity.loc, "a ribbon of {} pieces needs {} normals \"N\"; it has {}", pieces,
+                    pieces + 1, normals.size());
     for (Vec3f& n : normals) {
         if (!(n.stableNorm() > 0)) throw Error(entity.loc, "a normal of the ribbon is zero");
         n.stableNormalize();
@@ -113,11 +110,9 @@ void AddStrand(const Entity& entity, Curves* curves, Warnings& warnings) {
     const std::vector<Vec3f> points = ReadVectors(entity, ParameterType::Point3, "P");
     const auto count = basis.PieceCount(points.size());
     if (!count)
-        throw Error(entity.loc,
-                    fmt::format("the curve has {} points \"P\"; {} are needed", points.size(),
-                                basis.isSpline
-                                    ? fmt::format("{} or more", basis.degree + 1)
-                                    : fmt::format("{} + n * {}", basis.degree + 1, basis.degree)));
+        throw Error(entity.loc, "the curve has {} points \"P\"; {} are needed", points.size(),
+                    basis.isSpline ? fmt::format("{} or more", basis.degree + 1)
+                                   : fmt::format("{} + n * {}", basis.degree + 1, basis.degree));
     const std::vector<Vec3f> normals = ReadNormals(entity, curves->kind, *count, warnings);
     const auto [width0, width1] = ReadWidths(entity);
     for (size_t i = 0; i < *count; ++i) {

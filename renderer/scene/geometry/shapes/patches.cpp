@@ -25,8 +25,8 @@ void JoinGrid(int nu, int nv, MeshData* data) {
 int ReadCount(const ShapeEntity& entity, const char* name, int least) {
     const int n = entity.parameters.GetInt(name, -1);
     if (n < least || n > kMaxSide)
-        throw Error(entity.loc, fmt::format("\"{}\" of a {} has to be between {} and {}; it is {}",
-                                            name, entity.name, least, kMaxSide, n));
+        throw Error(entity.loc, "\"{}\" of a {} has to be between {} and {}; it is {}", name,
+                    entity.name, least, kMaxSide, n);
     return n;
 }
 
@@ -114,9 +114,9 @@ std::vector<Vector4d> ReadNet(const ShapeEntity& entity, size_t count) {
         for (size_t i = 0; i + 3 < weighted.size(); i += 4)
             net.emplace_back(weighted[i], weighted[i + 1], weighted[i + 2], weighted[i + 3]);
     if (net.size() != count)
-        throw Error(entity.loc, fmt::format("the nurbs has {} control points in \"P\" or \"Pw\"; "
-                                            "\"nu\" times \"nv\" is {}",
-                                            net.size(), count));
+        throw Error(entity.loc,
+                    "the nurbs has {} control points in \"P\" or \"Pw\"; \"nu\" times \"nv\" is {}",
+                    net.size(), count);
     return net;
 }
 
@@ -126,8 +126,8 @@ MeshData HeightfieldMesh(const ShapeEntity& entity) {
     const int nu = ReadCount(entity, "nu", 2), nv = ReadCount(entity, "nv", 2);
     const auto heights = entity.parameters.GetFloats(ParameterType::Float, "Pz");
     if (heights.size() != size_t(nu) * nv)
-        throw Error(entity.loc, fmt::format("\"Pz\" has {} heights; \"nu\" times \"nv\" is {}",
-                                            heights.size(), size_t(nu) * nv));
+        throw Error(entity.loc, "\"Pz\" has {} heights; \"nu\" times \"nv\" is {}", heights.size(),
+                    size_t(nu) * nv);
     MeshData data;
     for (int v = 0; v < nv; ++v)
         for (int u = 0; u < nu; ++u) {

@@ -25,15 +25,13 @@ std::vector<Vector> VectorsOf(std::span<const float> values) {
 std::vector<std::array<uint32_t, 3>> TrianglesOf(const ShapeEntity& entity, size_t vertexCount) {
     const auto indices = entity.parameters.GetInts("indices");
     if (indices.empty() || indices.size() % 3 != 0)
-        throw Error(entity.loc, fmt::format("\"indices\" has {} values; a mesh needs three for "
-                                            "each triangle{}",
-                                            indices.size(), entity.parameters.Mistyped("indices")));
+        throw Error(entity.loc, "\"indices\" has {} values; a mesh needs three for each triangle{}",
+                    indices.size(), entity.parameters.Mistyped("indices"));
     std::vector<std::array<uint32_t, 3>> triangles(indices.size() / 3);
     for (size_t i = 0; i < indices.size(); ++i) {
         if (indices[i] < 0 || size_t(indices[i]) >= vertexCount)
-            throw Error(entity.loc,
-                        fmt::format("index {} is out of range: the mesh has {} vertices",
-                                    indices[i], vertexCount));
+            throw Error(entity.loc, "index {} is out of range: the mesh has {} vertices",
+                        indices[i], vertexCount);
         triangles[i / 3][i % 3] = uint32_t(indices[i]);
     }
     return triangles;
@@ -118,7 +116,7 @@ Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     for (const auto& triangle : data.triangles)  // other vertices may be anywhere
         for (const uint32_t v : triangle)
             if (!data.positions[v].allFinite())
-                throw Error(entity.loc, fmt::format("vertex {} is not finite once transformed", v));
+                throw Error(entity.loc, "vertex {} is not finite once transformed", v);
     for (Vec3f& n : data.normals) n = TransformNormal(inverse, n);
     ReadExtraAttributes(entity, data.positions.size(), &mesh);
     mesh.p = std::move(data.positions);
@@ -146,7 +144,7 @@ Sphere MakeSphere(const ShapeEntity& entity) {
     sphere.place = PlacementOf(entity, &scale);
     const float r = params.GetFloat("radius", 1);
     if (!(r > 0) || !std::isfinite(r))
-        throw Error(entity.loc, fmt::format("a sphere's radius has to be positive; it is {}", r));
+        throw Error(entity.loc, "a sphere's radius has to be positive; it is {}", r);
     const float z0 = params.GetFloat("zmin", -r), z1 = params.GetFloat("zmax", r);
     sphere.radius = scale * r;
     sphere.zMin = scale * std::clamp(std::min(z0, z1), -r, r);
@@ -174,10 +172,10 @@ Disk MakeDisk(const ShapeEntity& entity) {
 Revolved MakeRevolved(const ShapeEntity& entity) {
     const Parameters& params = entity.parameters;
     if (entity.areaLight && entity.name != "cylinder")
-        throw Error(entity.loc,
-                    fmt::format("a light of shape \"{}\" is not supported; pbrt-v3 cannot "
-                                "sample it either, a mesh is",
-                                entity.name));
+        throw Error(
+            entity.loc,
+            "a light of shape \"{}\" is not supported; pbrt-v3 cannot sample it either, a mesh is",
+            entity.name);
     float scale;
     const QuadricPlacement place = PlacementOf(entity, &scale);
     const float phiMax = PhiMaxOf(params);
@@ -198,9 +196,10 @@ Revolved MakeRevolved(const ShapeEntity& entity) {
     }
     shape.place = place;
     if (!HasArea(shape))
-        throw Error(entity.loc, fmt::format("the {} has no area; its sizes and the range of its "
-                                            "heights have to be positive and finite",
-                                            entity.name));
+        throw Error(entity.loc,
+                    "the {} has no area; its sizes and the range of its heights have to be "
+                    "positive and finite",
+                    entity.name);
     return shape;
 }
 
@@ -381,9 +380,10 @@ QuadricPlacement PlacementOf(const ShapeEntity& entity, float* scale) {
     std::optional<float> taken = TakeScale(&m);
     if (!taken && entity.areaLight) taken = TakeNearestScale(&m);
     if (!taken && entity.areaLight)
-        throw Error(entity.loc, fmt::format("a light of shape \"{}\" under a transform that "
-                                            "stretches it is not supported; a mesh is",
-                                            entity.name));
+        throw Error(entity.loc,
+                    "a light of shape \"{}\" under a transform that stretches it is not supported; "
+                    "a mesh is",
+                    entity.name);
     *scale = taken.value_or(1);
     return {m, m.inverse(), entity.reverseOrientation, entity.reverseOrientation != Mirrors(m)};
 }
