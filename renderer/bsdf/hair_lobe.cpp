@@ -1,6 +1,6 @@
 #include "renderer/bsdf/hair_lobe.h"
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 
 namespace lull {
 namespace {

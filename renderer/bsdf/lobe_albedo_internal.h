@@ -2,7 +2,7 @@
 // See EstimatedAlbedo() and AlbedoOf().
 #pragma once
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/bsdf/layered_lobes.h"
 #include "renderer/bsdf/lobes.h"
 

@@ -16,7 +16,7 @@
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
 #include "renderer/files/outputs.h"
-#include "renderer/render/block_denoiser.h"
+#include "renderer/render/film_picture.h"
 
 namespace lull {
 

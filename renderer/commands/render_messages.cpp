@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/math.h"
 #include "renderer/render/shortfall.h"
 #include "renderer/results/report.h"
 #include "renderer/scene/light_groups.h"

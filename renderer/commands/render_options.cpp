@@ -13,7 +13,7 @@
 #include "renderer/base/error.h"
 #include "renderer/base/memory.h"
 #include "renderer/commands/command.h"
-#include "renderer/image/grade.h"
+#include "renderer/image/image_io.h"
 #include "renderer/progress/forecast.h"
 #include "renderer/render/film_picture.h"
 #include "stopping/rules/baselines.h"

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/base/memory.h"
 #include "stopping/base/parallel.h"
 

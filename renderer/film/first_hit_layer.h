@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/film/layer.h"
 
 namespace lull {

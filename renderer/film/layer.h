@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "renderer/base/color.h"
 #include "renderer/base/math.h"
 #include "renderer/base/memory.h"
 #include "renderer/base/sampler.h"

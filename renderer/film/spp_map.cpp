@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 
 namespace lull {

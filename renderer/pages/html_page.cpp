@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/film/spp_map.h"
 #include "renderer/image/image_io.h"
 

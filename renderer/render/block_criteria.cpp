@@ -1,4 +1,4 @@
-#include "renderer/render/block_criteria_internal.h"
+#include "renderer/render/executor_internal.h"
 
 #include "renderer/base/clocks.h"
 #include "renderer/render/peers.h"

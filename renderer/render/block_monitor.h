@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/image/grade.h"
+#include "renderer/image/image_io.h"
 #include "stopping/rules/rule.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "renderer/render/checkpoint.h"
+#include "renderer/render/session.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "renderer/files/file_io.h"
-#include "renderer/render/block_criteria_internal.h"
+#include "renderer/render/executor_internal.h"
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/input_file.h"
 #include "stopping/base/state.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "renderer/base/clocks.h"
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/render/light_rounds.h"
 
 namespace lull {

@@ -1,15 +1,240 @@
 // Carries out a schedule, on the threads of one process.
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
 #include <atomic>
 #include <chrono>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <map>
 #include <mutex>
 
 #include "renderer/progress/forecast.h"
-#include "renderer/render/block_criteria_internal.h"
-#include "renderer/render/task_set_internal.h"
+#include "renderer/render/render.h"
+#include "stopping/base/parallel.h"
 
 namespace lull {
+
+// A schedule that threads share, with the state of its passes: a clock that can end them, earlier
+// values of their pixels, and a viewer that shows where blocks have stopped.
+
+// Decision on a block after a pass.
+struct BlockAnswer {
+    bool stop = false;
+    double noise = kUnknownNoise;
+};
+
+// Returns the spp at which the round of light paths ends; kNoRoundEnd: there are no rounds.
+int LightRoundEnd(const RenderContext&);
+
+// Costs a lock a call, a few for each tile.
+class LiveSchedule {
+  public:
+    // Begins where blocks are, `starts`; empty: from nothing. Context and options
+    // must outlive it.
+    LiveSchedule(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
+                 RankTiles);
+
+    // Gives out a tile; nothing if none is ready, or if the time is up. There are never more tasks
+    // than tiles, but when time has been called.
+    std::optional<Tile> Next();
+    // Returns true if the tile was the last of its pass.
+    bool Finish(const Tile&);
+    // Returns how many tiles have become ready.
+    int Decide(int block, const BlockAnswer&);
+    int ReadyTiles();
+
+    // Ends passes, but for those that have to come to their end.
+    void CallTime();
+    bool HasClock() const { return hasClock; }
+    bool TimeCalled() const { return timeCalled; }
+    // Returns whether no tile will be ready any more.
+    bool IsOver();
+    // Returns whether the round is over; begins the next, with no task at work.
+    bool IsRoundOver();
+    void BeginRound(int end);
+
+    // Calls look(schedule) while nothing changes.
+    template <typename Look>
+    auto Locked(const Look& look) {
+        std::lock_guard lock(mutex);
+        return look(static_cast<const Schedule&>(schedule));
+    }
+
+    // With no task at work: restarts from the given state of blocks, so that passes under way are
+    // given out again, in which complete pixels keep their samples; and restores the samples before
+    // passes for which the time did not suffice. Undo() returns their blocks.
+    void Restart(std::span<const BlockStart> starts, RankTiles);
+    std::vector<int> Undo();
+
+    // Return the schedule without a lock: with no task at work, or for constant parts: positions of
+    // blocks and, after the last tile of a pass and before the decision, that block.
+    const Schedule& Unlocked() const { return schedule; }
+    const Block& BlockAt(int i) const { return schedule.Blocks()[size_t(i)]; }
+    const RankTiles& Share() const { return share; }
+    // Returns the tiles of a block that a rank has.
+    std::vector<PixelRect> TilesOfRank(int block, int rank) const;
+
+  private:
+    // The pixels of a block whose pass is under way. A pass is undone as a whole, so that all
+    // pixels of a block have the same samples.
+    struct Before {
+        std::vector<PixelRect> tiles;
+        std::vector<std::byte> planes;  // tile by tile, by PutPlanes()
+    };
+
+    void Keep(int block);
+    void ShowStops();
+
+    const RenderContext& context;
+    const RenderOptions& options;
+    RankTiles share;
+    const bool hasClock;
+
+    std::mutex mutex;  // guards the members below
+    Schedule schedule;
+    std::map<int, Before> undo;  // for renders that have a clock
+    bool timeCalled = false;
+    std::vector<char> shownStops;  // blocks that were said to have stopped
+};
+
+// Asks the criteria of blocks after each pass.
+
+// The decision on a block after a pass.
+struct BlockCheck {
+    BlockAnswer answer;
+    Decision decision;  // of the criterion, which may not have checked the block
+    std::optional<double> networkNoise = {};  // Criterion::NetworkNoise()
+    double seconds = 0;  // of processors, that it took, the view of the pixels included
+};
+
+// Nobody else touches a block between the end of its pass and the decision, so that blocks can be
+// checked at the same time without locks.
+class BlockCriteria {
+  public:
+    // Makes the criteria of the blocks that vote, as an interrupted render has left them. The
+    // context must outlive it.
+    BlockCriteria(const RenderContext&, const RenderOptions&, std::span<const Block> blocks);
+
+    // Returns the inputs of criterion and clock for a block.
+    ViewNeed NeedAt(int block, int spp) const;
+    // Checks a block whose pass has come to `spp`, and whose samples took `seconds` so far.
+    // `complete`, if any, fills in the pixels of the view that other ranks have rendered.
+    BlockCheck Check(int index, const Block&, int spp, double seconds,
+                     const std::function<void(int block, FilmView*)>& complete);
+    // Returns the states of the criteria, for checkpoints.
+    std::vector<std::vector<std::byte>> Save() const;
+
+  private:
+    BlockView ViewOf(int index, const Block&, ViewNeed,
+                     const std::function<void(int block, FilmView*)>& complete);
+
+    const RenderContext& context;
+    const ScheduleOptions schedule;
+    const bool hasClock;
+    std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
+    tbb::enumerable_thread_specific<FilmView> views;
+};
+
+// Returns the most samples that a pixel has.
+int MostSamples(const PixelRect&, const Film&);
+
+// Return where blocks are, those given or those that an interrupted render has left, none if there
+// is none; with a clock, also how noisy.
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderContext&,
+                                 const RenderOptions&);
+std::vector<BlockStart> StartsOf(const RenderContext&, const RenderOptions&);
+
+// Runs the tasks of a render: identical tasks for tiles, and single works such as decisions on
+// blocks.
+
+// The thread sanitizer sees the order that a mutex gives, but not the order of tasks within oneTBB:
+// hence the first thing that a task reads is a TaskOrder.
+class TaskSet {
+  public:
+    // Exceptions of tasks go to `take`, or where that is empty to Wait().
+    TaskSet(std::function<void()> doTile, std::function<void(std::exception_ptr)> take)
+        : doTile(std::move(doTile)), take(std::move(take)) {}
+
+    // Spawns tasks of tiles, from within the arena.
+    void Spawn(int count) {
+        open += count;
+        tileTask.order.Leave();
+        for (int i = 0; i < count; ++i) group.run(std::ref(tileTask));
+    }
+    // Has `work` done in the arena, from another thread.
+    void Enqueue(tbb::task_arena* arena, std::function<void()> work) {
+        {
+            std::lock_guard lock(worksMutex);
+            works.push_back(std::move(work));
+        }
+        ++open;
+        workTask.order.Leave();
+        arena->enqueue(group.defer(std::ref(workTask)));
+    }
+    // Waits until there is no task any more.
+    void Wait() {
+        group.wait();
+        tileTask.order.Enter();
+    }
+    // Returns whether there is none now.
+    bool IsIdle() const { return open == 0; }
+
+  private:
+    // The work of all tasks of tiles.
+    struct TileTask {
+        TaskSet* set;
+        TaskOrder order = {};
+        void operator()() {
+            order.Enter();
+            set->Guarded(set->doTile);
+            order.Leave();
+        }
+    };
+    // Does the oldest of `works`.
+    struct WorkTask {
+        TaskSet* set;
+        TaskOrder order = {};
+        void operator()() {
+            order.Enter();
+            set->tileTask.order.Enter();
+            std::function<void()> work;
+            {
+                std::lock_guard lock(set->worksMutex);
+                work = std::move(set->works.front());
+                set->works.pop_front();
+            }
+            set->Guarded(work);
+            set->tileTask.order.Leave();
+        }
+    };
+
+    void Guarded(const std::function<void()>& work) {
+        struct Leaving {
+            std::atomic<int>& open;
+            ~Leaving() { --open; }
+        } leaving{open};
+        try {
+            work();
+        } catch (...) {
+            if (!take) throw;
+            take(std::current_exception());
+        }
+    }
+
+    const std::function<void()> doTile;
+    const std::function<void(std::exception_ptr)> take;
+    TileTask tileTask{this};
+    WorkTask workTask{this};
+    std::atomic<int> open = 0;  // tasks that have not come to their end
+    std::mutex worksMutex;      // guards `works`
+    std::deque<std::function<void()>> works;
+    tbb::task_group group;
+};
 
 // Accounts of a render: cost and decisions of blocks, and progress.
 

@@ -1,4 +1,4 @@
-#include "renderer/render/live_schedule_internal.h"
+#include "renderer/render/executor_internal.h"
 
 #include <utility>
 

@@ -1,6 +1,6 @@
 #include "renderer/transport/bdpt.h"
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/scene/cameras/camera.h"
 #include "renderer/transport/bdpt_internal.h"
 #include "renderer/transport/integrator_internal.h"

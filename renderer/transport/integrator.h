@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "renderer/base/color.h"
 #include "renderer/base/math.h"
 #include "renderer/scene/light_groups.h"
 #include "renderer/scene/scene.h"

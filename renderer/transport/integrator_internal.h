@@ -2,7 +2,7 @@
 // Integrator in between.
 #pragma once
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/transport/integrator.h"
 
 namespace lull {

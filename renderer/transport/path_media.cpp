@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/bsdf/fresnel.h"
 
 namespace lull {

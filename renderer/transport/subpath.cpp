@@ -1,4 +1,7 @@
+#include "renderer/base/math.h"
+#include "renderer/scene/cameras/camera.h"
 #include "renderer/transport/bdpt_internal.h"
+#include "renderer/transport/integrator_internal.h"
 
 namespace lull {
 namespace {
@@ -92,6 +95,107 @@ bool SurvivesRoulette(float brightest, int bounces, float threshold, Sampler& sa
     if (sampler.Get1D() >= survival) return false;
     *beta /= survival;
     return true;
+}
+
+namespace {
+
+// Connects vertices of a light path to the camera.
+class CameraConnector {
+  public:
+    CameraConnector(const BdptContext& context, std::vector<Splat>* splats)
+        : context(context),
+          splats(splats),
+          size(context.scene.film.resolution.cast<float>()),
+          reach(context.scene.filter.Radius()) {}
+
+    // The light is number `light`.
+    void Connect(const SubpathVertex& v, const SurfaceInteraction& hit, int light) {
+        if (!v.Connects()) return;
+        const Scene& scene = context.scene;
+        CameraSample at;
+        at.time = context.time;
+        if (scene.camera.HasLens()) at.lens = context.sampler.Get2D();
+        const auto view = ViewOf(scene.camera, hit.p, at.lens, at.time);
+        if (!view || (view->film.array() < -reach.array()).any() ||
+            (view->film.array() > (size + reach).array()).any())
+            return;
+        at.film = view->film;
+        if (!(scene.materials.Needs(hit.material) & kNeedsFootprint)) return Add(v, *view, light);
+        SurfaceInteraction seen = hit;
+        ComputeFootprint(scene.camera, at, &seen);
+        Add(SubpathVertex(scene, seen, v.beta, v.arrival), *view, light);
+    }
+
+  private:
+    void Add(const SubpathVertex& v, const CameraView& view, int light) {
+        const Scene& scene = context.scene;
+        const Vec3f d = view.lens - v.hit.p;
+        const float distance2 = d.squaredNorm();
+        const Vec3f w = d / std::sqrt(distance2);
+        const BsdfValue value = v.TowardsCamera(w);
+        Rgb L = value.f * v.beta * (view.perSolidAngle / distance2);
+        if (IsBlack(L)) return;
+        const Vec3f origin = OffsetRayOrigin(v.hit.p, v.hit.pError, v.hit.n, w);
+        L *= ShareAlong(scene, {origin, view.lens - origin, 1}, context.time);
+        if (IsBlack(L)) return;
+        const double seen = double(view.perSolidAngle) * PerArea(v.hit.n, w, double(distance2));
+        const double samples = context.lightPaths;
+        L *= float(samples / (Sqr(samples) + Sqr(seen) * v.arrival.Sum(value.pdf)));
+        const float luminance = Luminance(L);
+        if (luminance > scene.film.maxSampleLuminance)
+            L *= scene.film.maxSampleLuminance / luminance;
+        L = Balanced(scene, L) * scene.film.scale;
+        const bool isValid = IsFinite(L) && luminance >= 0;
+        splats->push_back({view.film, isValid ? L : Rgb(Rgb::Zero()), light, !isValid});
+    }
+
+    const BdptContext& context;
+    std::vector<Splat>* splats;
+    const Vec2f size, reach;  // of the image and the filter, pixels
+};
+
+}  // namespace
+
+double LightPathCount(const Scene& scene, const BdptShares& shares) {
+    if (!SeesPoints(scene.camera) || scene.hidesShapes) return 0;
+    if (!scene.emission || !scene.emission->Any()) return 0;
+    const Vec2i& size = scene.film.resolution;
+    return std::ceil(double(shares.lightPaths) * double(size.x()) * double(size.y()));
+}
+
+void TraceLightPath(const Scene& scene, const BdptShares& shares, Sampler& sampler, uint32_t round,
+                    uint32_t index, std::vector<Splat>* splats) {
+    splats->clear();
+    // Numbers of no pixel: one Sobol sequence for each round.
+    sampler.StartSample(Vec2i(-1, int(round)), index);
+    const float time = scene.isMoving ? sampler.Get1D() : 0;
+    const BdptContext context = ContextOf(scene, shares, sampler, time);
+    CameraConnector connector(context, splats);
+    alignas(SubpathVertex) std::byte storage[sizeof(SubpathVertex)];
+    FollowLight(
+        context, context.integrator.maxDepth,
+        [&](const SurfaceInteraction& hit, const Rgb& beta, const Arrival& arrival)
+            -> SubpathVertex& { return *new (storage) SubpathVertex(scene, hit, beta, arrival); },
+        [&](const SubpathVertex& v, const SurfaceInteraction& hit, int light) {
+            connector.Connect(v, hit, light);
+        });
+}
+
+double DirectOverEmitted(const Scene& scene, const SubpathVertex& v, const EmittedRay& ray) {
+    const Light& light = scene.lights[ray.light];
+    const float pmf =
+        scene.lights.Choice(v.hit, v.bsdf, scene.lights.PlaceOf(v.hit.p)).Pmf(ray.light);
+    const LightType type = TypeOf(light);
+    double density = pmf;
+    if (type == LightType::Area) {
+        const Vec3f d = ray.p - v.hit.p;
+        const double distance2 = std::max(double(d.squaredNorm()), 1e-30);
+        density *= double(Pdf(light, v.hit.p, ray.p, ray.n)) *
+                   PerArea(ray.n, d / std::sqrt(float(distance2)), distance2);
+    } else if (type == LightType::Infinite) {
+        density *= double(LeAndPdf(light, v.hit.p, -ray.w).pdf);
+    }
+    return density / double(ray.density.origin);
 }
 
 }  // namespace lull

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <set>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"
 #include "tests/renderer/film/viewer_server.h"

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "renderer/image/image_io.h"
-#include "stopping/lab/recordings/dataset.h"
+#include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_lull.h"
 #include "tests/stopping/lab/observers/example_answers.h"
 

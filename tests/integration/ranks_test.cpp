@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "renderer/image/image_io.h"
-#include "stopping/lab/recordings/dataset.h"
+#include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_and_signal.h"
 
 namespace lull::ranks_test {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "renderer/image/image_io.h"
-#include "stopping/lab/recordings/dataset.h"
+#include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_lull.h"
 
 namespace lull {

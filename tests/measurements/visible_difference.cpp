@@ -15,8 +15,8 @@
 #include <span>
 #include <string>
 
-#include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/math.h"
 #include "renderer/denoise/visible_error.h"
 #include "renderer/vision/visible_difference.h"
 

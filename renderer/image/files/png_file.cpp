@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/math.h"
 #include "renderer/files/file_io.h"
 #include "renderer/image/image_io.h"
 #include "stopping/base/parallel.h"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/input/pbrt/v4.h"
 #include "renderer/input/spectrum.h"
 #include "stopping/base/input_file.h"

@@ -11,7 +11,6 @@
 #include "renderer/lab/commands/lab_options.h"
 #include "renderer/lab/commands/tables.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
-#include "stopping/lab/evaluation/rivals.h"
 #include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/rules/rule_table.h"
 

@@ -15,7 +15,7 @@
 #include "renderer/files/file_io.h"
 #include "renderer/files/outputs.h"
 #include "renderer/lab/commands/lab_options.h"
-#include "renderer/lab/pages/study_page.h"
+#include "renderer/lab/pages/comparison_page.h"
 #include "renderer/lab/viewpoints/study.h"
 #include "stopping/base/parallel.h"
 #include "stopping/lab/observers/observers.h"

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <set>
 
-#include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 #include "renderer/results/channel_names.h"
 #include "renderer/results/denoised_image.h"

@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "renderer/lab/viewpoints/picture_folder.h"
-#include "renderer/render/checkpoint.h"
-#include "stopping/lab/recordings/dataset.h"
+#include "renderer/render/session.h"
+#include "stopping/lab/recordings/recording.h"
 
 namespace lull {
 

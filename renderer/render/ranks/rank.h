@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "renderer/film/film.h"
-#include "renderer/render/executor_internal.h"
 #include "renderer/render/light_rounds.h"
+#include "renderer/render/executor_internal.h"
 #include "renderer/render/peers.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"

@@ -3,7 +3,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "renderer/base/color.h"
 #include "renderer/base/math.h"
 #include "renderer/base/memory.h"
 #include "renderer/base/sampling.h"

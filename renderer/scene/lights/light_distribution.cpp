@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/base/sampling.h"
 
 namespace lull {

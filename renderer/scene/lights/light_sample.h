@@ -5,7 +5,6 @@
 
 #include <string>
 
-#include "renderer/base/color.h"
 #include "renderer/base/math.h"
 #include "renderer/input/description.h"
 

@@ -1,7 +1,7 @@
 // Owns the lights of a scene: their emission, sampling and selection.
 #pragma once
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/bsdf/bsdf.h"
 #include "renderer/scene/lights/light.h"
 #include "renderer/scene/lights/light_distribution.h"

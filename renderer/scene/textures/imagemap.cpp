@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 
 namespace lull {

@@ -13,8 +13,8 @@
 
 #include "stopping/base/input_file.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
+#include "stopping/lab/evaluation/evaluation.h"
 #include "stopping/lab/evaluation/simulation.h"
-#include "stopping/lab/evaluation/statistics.h"
 #include "stopping/lab/recordings/extension.h"
 #include "stopping/rules/rule_table.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "stopping/lab/recordings/dataset.h"
+#include "stopping/lab/recordings/recording.h"
 #include "stopping/rules/thresholds.h"
 
 namespace lull {

@@ -15,7 +15,7 @@
 #include "stopping/base/input_file.h"
 #include "stopping/base/parallel.h"
 #include "stopping/base/state.h"
-#include "stopping/lab/evaluation/statistics.h"
+#include "stopping/lab/evaluation/evaluation.h"
 
 namespace lull {
 

@@ -5,8 +5,8 @@
 #include <new>
 #include <numeric>
 
-#include "renderer/base/color.h"
 #include "renderer/base/error.h"
+#include "renderer/base/math.h"
 #include "renderer/base/memory.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

@@ -1,11 +1,10 @@
-#include "renderer/image/grade.h"
+#include "renderer/image/image_io.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "renderer/base/color.h"
 #include "renderer/base/math.h"
 
 namespace lull {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "tests/renderer/files/test_files.h"
 
 namespace lull {

@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "renderer/render/checkpoint.h"
+#include "renderer/render/session.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/film/add_sample.h"
 #include "tests/renderer/render/synthetic_samples.h"

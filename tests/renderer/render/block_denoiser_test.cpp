@@ -1,6 +1,6 @@
 // Blocks stop by the error of the denoised picture and, where their light is told apart, of that of
 // each group.
-#include "renderer/render/block_denoiser.h"
+#include "renderer/render/film_picture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/render/checkpoint.h"
+#include "renderer/render/session.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 #include "tests/renderer/input/gltf_files.h"
 #include "tests/renderer/scene_of.h"

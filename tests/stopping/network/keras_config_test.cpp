@@ -1,4 +1,4 @@
-#include "stopping/network/keras_config.h"
+#include "stopping/network/model_file.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,6 @@
 
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/input_file.h"
-#include "stopping/network/keras_config.h"
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/network/random_network.h"
 #include "tests/stopping/scratch_file.h"

@@ -10,9 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "renderer/base/color.h"
 #include "renderer/base/error.h"
-#include "renderer/lab/metrics/flip.h"
+#include "renderer/base/math.h"
 #include "tests/renderer/lab/example_images.h"
 
 namespace lull {

@@ -1,4 +1,4 @@
-#include "renderer/lab/pages/study_page.h"
+#include "renderer/lab/pages/comparison_page.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/lights/light_scene.h"
 

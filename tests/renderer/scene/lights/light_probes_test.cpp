@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "tests/renderer/scene_of.h"
 
 namespace lull {

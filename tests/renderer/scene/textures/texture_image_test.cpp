@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "renderer/base/color.h"
+#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/textures/imagemap.h"
 #include "renderer/scene/textures/texture_image.h"

@@ -1,4 +1,4 @@
-#include "stopping/lab/evaluation/rivals.h"
+#include "stopping/lab/evaluation/evaluated_rules.h"
 
 #include <gtest/gtest.h>
 

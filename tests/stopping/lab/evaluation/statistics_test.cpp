@@ -1,4 +1,4 @@
-#include "stopping/lab/evaluation/statistics.h"
+#include "stopping/lab/evaluation/evaluation.h"
 
 #include <gtest/gtest.h>
 

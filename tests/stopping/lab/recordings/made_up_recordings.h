@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "stopping/lab/recordings/dataset.h"
 #include "stopping/lab/recordings/recording.h"
 #include "stopping/rules/thresholds.h"
 

@@ -6,9 +6,8 @@
 #include <stdexcept>
 
 #include "stopping/features/model_inputs.h"
-#include "stopping/lab/evaluation/rivals.h"
+#include "stopping/lab/evaluation/evaluated_rules.h"
 #include "stopping/lab/evaluation/simulation.h"
-#include "stopping/lab/recordings/dataset.h"
 #include "stopping/lab/recordings/extension.h"
 #include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/rules/baselines.h"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "stopping/base/parallel.h"
-#include "stopping/lab/evaluation/statistics.h"
+#include "stopping/lab/evaluation/evaluation.h"
 #include "stopping/rules/learned.h"
 #include "tests/stopping/cut_states.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
