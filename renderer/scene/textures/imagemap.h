@@ -6,7 +6,7 @@
 #include "renderer/base/math.h"
 #include "renderer/base/variant.h"
 #include "renderer/image/image.h"
-#include "renderer/scene/textures/texture.h"
+#include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/texture_image.h"
 
 namespace lull {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/base/math.h"
-#include "renderer/scene/textures/texture.h"
+#include "renderer/scene/textures/mapping.h"
 
 namespace lull {
 

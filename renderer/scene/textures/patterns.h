@@ -4,8 +4,8 @@
 #include <fmt/core.h>
 
 #include "renderer/base/variant.h"
+#include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/noise.h"
-#include "renderer/scene/textures/texture.h"
 #include "renderer/scene/textures/texture_image.h"
 #include "stopping/base/input_file.h"
 

@@ -5,6 +5,7 @@
 #include "renderer/base/variant.h"
 #include "renderer/scene/kinds.h"
 #include "renderer/scene/textures/imagemap.h"
+#include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/noise.h"
 #include "renderer/scene/textures/patterns.h"
 #include "stopping/base/input_file.h"
