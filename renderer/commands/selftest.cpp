@@ -67,8 +67,9 @@ Outcome RenderBlock(const std::string& text, const std::string& rule, bool denoi
     options.sampler = Sampler(SamplerKind::SobolHalves, 0);
     options.makeCriterion = [&](const BlockInfo& block) { return MakeCriterion(parsed, block); };
     Film film(region, {.grid = GridOf(options.schedule), .layers = {.features = denoise}});
-    const RenderResult result =
-        Render({.source = SamplesOf(*scene, Estimator::Combined), .film = &film}, options);
+    options.source = SamplesOf(*scene, Estimator::Combined);
+    options.film = &film;
+    const RenderResult result = Render(options);
     Outcome outcome{.spp = result.blocks[0].block.spp};
     std::vector<float> rgb = film.MeanImage();
     if (denoise) {

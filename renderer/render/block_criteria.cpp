@@ -28,19 +28,18 @@ double NoiseOf(const BlockView& view) {
     return SubBlockStatistics(noise, view.width, view.height, 1).maskedNoise[0];
 }
 
-std::vector<std::unique_ptr<Criterion>> MakeBlockCriteria(const RenderContext& context,
-                                                          const RenderOptions& options,
+std::vector<std::unique_ptr<Criterion>> MakeBlockCriteria(const RenderOptions& options,
                                                           std::span<const Block> blocks) {
     std::vector<std::unique_ptr<Criterion>> made(blocks.size());
     const bool follows = options.peers && options.peers->Rank() > 0;
     if (!options.makeCriterion || follows) return made;
-    const double imageArea = double(context.film->Region().Area());
+    const double imageArea = double(options.film->Region().Area());
     for (size_t i = 0; i < blocks.size(); ++i) {
         if (!blocks[i].votes) continue;
         made[i] = options.makeCriterion(
             {.index = int(i), .areaFraction = double(blocks[i].pixels.Area()) / imageArea});
-        if (context.interrupted && !context.interrupted->criteria.empty() && blocks[i].spp > 0)
-            made[i]->Restore(context.interrupted->criteria[i]);
+        if (options.interrupted && !options.interrupted->criteria.empty() && blocks[i].spp > 0)
+            made[i]->Restore(options.interrupted->criteria[i]);
     }
     return made;
 }
@@ -55,9 +54,9 @@ int MostSamples(const PixelRect& rect, const Film& film) {
     return int(most);
 }
 
-std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderContext& context,
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks,
                                  const RenderOptions& options) {
-    const Film& film = *context.film;
+    const Film& film = *options.film;
     std::vector<BlockStart> starts;
     for (const BlockResult& b : blocks) {
         const auto& [rect, spp] = std::pair(b.block.pixels, b.block.spp);
@@ -65,9 +64,9 @@ std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const Rend
             .spp = spp, .stopped = b.block.stopped, .stoppedByVote = b.block.stoppedByVote};
         start.hasVoted = std::ranges::any_of(
             b.decisions, [](const BlockDecision& d) { return d.decision.stop; });
-        if (context.secondsLeft && !b.block.stopped)
+        if (options.secondsLeft && !b.block.stopped)
             start.passEnd = EndOfPassBegun(b.block, options.schedule, film);
-        if (context.secondsLeft && IsPassEnd(spp, options.schedule) && spp > 0) {
+        if (options.secondsLeft && IsPassEnd(spp, options.schedule) && spp > 0) {
             FilmView view;
             film.Extract(rect, true, &view);
             start.noise = NoiseOf({view.width, view.height, spp, view.mean, view.halfMean});
@@ -77,20 +76,18 @@ std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const Rend
     return starts;
 }
 
-std::vector<BlockStart> StartsOf(const RenderContext& context, const RenderOptions& options) {
-    if (!context.interrupted) return {};
-    return StartsOf(context.interrupted->blocks, context, options);
+std::vector<BlockStart> StartsOf(const RenderOptions& options) {
+    if (!options.interrupted) return {};
+    return StartsOf(options.interrupted->blocks, options);
 }
 
-BlockCriteria::BlockCriteria(const RenderContext& context, const RenderOptions& options,
-                             std::span<const Block> blocks)
-    : context(context),
-      schedule(options.schedule),
-      hasClock(context.secondsLeft),
-      criteria(MakeBlockCriteria(context, options, blocks)) {}
+BlockCriteria::BlockCriteria(const RenderOptions& options, std::span<const Block> blocks)
+    : options(options),
+      hasClock(options.secondsLeft),
+      criteria(MakeBlockCriteria(options, blocks)) {}
 
 ViewNeed BlockCriteria::NeedAt(int block, int spp) const {
-    if (!IsPassEnd(spp, schedule)) return ViewNeed::Nothing;
+    if (!IsPassEnd(spp, options.schedule)) return ViewNeed::Nothing;
     const ViewNeed own = hasClock ? ViewNeed::MeanAndHalf : ViewNeed::Nothing;
     const auto& criterion = criteria[size_t(block)];
     return criterion ? std::max(own, criterion->Need(spp)) : own;
@@ -99,7 +96,7 @@ ViewNeed BlockCriteria::NeedAt(int block, int spp) const {
 BlockCheck BlockCriteria::Check(int index, const Block& block, int spp, double seconds,
                                 const std::function<void(int, FilmView*)>& complete) {
     const auto& criterion = criteria[size_t(index)];
-    if ((!criterion && !hasClock) || !IsPassEnd(spp, schedule)) return {};
+    if ((!criterion && !hasClock) || !IsPassEnd(spp, options.schedule)) return {};
     const double start = ThreadSeconds();
     BlockView view = ViewOf(index, block, NeedAt(index, spp), complete);
     view.spp = spp;
@@ -123,7 +120,7 @@ BlockView BlockCriteria::ViewOf(int index, const Block& block, ViewNeed need,
     if (need == ViewNeed::Nothing) return blockView;
     const double start = ThreadSeconds();
     FilmView& view = views.local();
-    context.film->Extract(block.pixels, need >= ViewNeed::MeanAndHalf, &view);
+    options.film->Extract(block.pixels, need >= ViewNeed::MeanAndHalf, &view);
     if (complete) complete(index, &view);
     blockView.mean = view.mean;
     blockView.halfMean = view.halfMean;

@@ -61,22 +61,21 @@ bool HasBlocksOf(const RenderState& state, const PixelRect& region,
            (state.criteria.empty() || state.criteria.size() == count);
 }
 
-Executor::Executor(const RenderContext& context, const RenderOptions& options,
-                   std::span<const BlockStart> starts, RankTiles share, RankHooks given)
-    : schedule(context, options, starts, std::move(share)),
-      ledger(context, options, schedule.Unlocked().Blocks().size()),
-      criteria(context, options, schedule.Unlocked().Blocks()),
+Executor::Executor(const RenderOptions& options, std::span<const BlockStart> starts,
+                   RankTiles share, RankHooks given)
+    : schedule(options, starts, std::move(share)),
+      ledger(options, schedule.Unlocked().Blocks().size()),
+      criteria(options, schedule.Unlocked().Blocks()),
       tasks([this] { RunTile(); }, given.onException),
-      context(context),
       options(options),
       hooks(std::move(given)) {
-    if (context.lightRounds && context.interrupted && context.interrupted->shares)
-        context.lightRounds->SetShares(*context.interrupted->shares);
+    if (options.lightRounds && options.interrupted && options.interrupted->shares)
+        options.lightRounds->SetShares(*options.interrupted->shares);
 }
 
 RenderResult Executor::Run() {
     RestartIntervals();
-    if (context.lightRounds) BeginLight();
+    if (options.lightRounds) BeginLight();
     for (;;) {
         do {
             pausing = false;
@@ -93,30 +92,30 @@ RenderResult Executor::Run() {
 }
 
 void Executor::RestartIntervals() {
-    nextCheckpoint = ledger.Seconds() + context.checkpoints.interval;
+    nextCheckpoint = ledger.Seconds() + options.checkpoints.interval;
     nextPreview = ledger.Seconds() + options.events.previewInterval;
 }
 
 bool Executor::IsPauseDue() const {
-    return (context.checkpoints.write && ledger.Seconds() >= nextCheckpoint) ||
+    return (options.checkpoints.write && ledger.Seconds() >= nextCheckpoint) ||
            (options.events.onPreview && ledger.Seconds() >= nextPreview);
 }
 
 void Executor::BeginLightRound(const std::function<void()>& writeCheckpoint) {
-    context.lightRounds->Begin(schedule.Unlocked());
-    if (context.lightRounds->IsCutShort() && !isLastRound) writeCheckpoint();
-    isLastRound = context.lightRounds->IsCutShort();
+    options.lightRounds->Begin(schedule.Unlocked());
+    if (options.lightRounds->IsCutShort() && !isLastRound) writeCheckpoint();
+    isLastRound = options.lightRounds->IsCutShort();
 }
 
 void Executor::BeginLight() {
     BeginLightRound([this] { WriteCheckpoint(); });
-    schedule.BeginRound(LightRoundEnd(context));
-    isLightTraced = context.lightRounds->Trace([this] { return IsCancelled(); });
+    schedule.BeginRound(LightRoundEnd(options));
+    isLightTraced = options.lightRounds->Trace([this] { return IsCancelled(); });
 }
 
 bool Executor::EndRound() {
-    if (!context.lightRounds || !schedule.Unlocked().NoPassUnderWay()) return false;
-    context.lightRounds->Learn(context.film);
+    if (!options.lightRounds || !schedule.Unlocked().NoPassUnderWay()) return false;
+    options.lightRounds->Learn(options.film);
     if (IsCancelled() || !schedule.IsRoundOver()) return false;
     BeginLight();
     return true;
@@ -133,7 +132,7 @@ void Executor::RunTile() {
     if (!tile) return;
     const double tileStart = ThreadSeconds(), wallStart = ledger.Seconds();
     const int64_t taken = TakeSamples(*tile);
-    if (options.display) options.display->Show(tile->pixels, *context.film);
+    if (options.display) options.display->Show(tile->pixels, *options.film);
     ledger.AddTile(tile->block, ThreadSeconds() - tileStart, {taken, ledger.Seconds() - wallStart});
     if (schedule.Finish(*tile)) {
         if (hooks.onPassEnd)
@@ -148,15 +147,15 @@ void Executor::RunTile() {
 int64_t Executor::TakeSamples(const Tile& tile) {
     Sampler sampler = options.sampler;
     PathSample sample;
-    Film* film = context.film;
+    Film* film = options.film;
     SampleSpread* spread = film->SpreadOf(tile.pixels);
     const auto render = [&](const auto& take) {
-        if (!context.lightRounds) return RenderTile(take, tile, film, spread, nullptr);
-        SplatAdder light(*context.lightRounds, film);
+        if (!options.lightRounds) return RenderTile(take, tile, film, spread, nullptr);
+        SplatAdder light(*options.lightRounds, film);
         return RenderTile(take, tile, film, spread, &light);
     };
     const auto alone = [&](const Vec2i& pixel, uint32_t index) -> const PathSample& {
-        context.source(sampler, pixel, index, &sample);
+        options.source(sampler, pixel, index, &sample);
         return sample;
     };
     if (film->layers.IsEmpty()) return render(alone);
@@ -187,18 +186,18 @@ int Executor::DecideBlock(int i) {
 
 std::vector<int> Executor::Undo() {
     std::vector<int> blocks = schedule.Undo();
-    ledger.SetSamples(context.film->SampleCount());
+    ledger.SetSamples(options.film->SampleCount());
     return blocks;
 }
 
 RenderState Executor::State() {
     RenderState state{ledger.Blocks(schedule.Unlocked()), criteria.Save(), ledger.Seconds()};
-    if (context.lightRounds) state.shares = context.lightRounds->Shares();
+    if (options.lightRounds) state.shares = options.lightRounds->Shares();
     return state;
 }
 
 void Executor::WriteCheckpoint() {
-    const Checkpointing& checkpoints = context.checkpoints;
+    const Checkpointing& checkpoints = options.checkpoints;
     if (checkpoints.write && !isLastRound && !(schedule.Unlocked().Done() && !checkpoints.atEnd))
         checkpoints.write(State());
     nextCheckpoint = ledger.Seconds() + checkpoints.interval;

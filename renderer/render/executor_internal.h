@@ -29,15 +29,13 @@ struct BlockAnswer {
 };
 
 // Returns the spp at which the round of light paths ends; kNoRoundEnd: there are no rounds.
-int LightRoundEnd(const RenderContext&);
+int LightRoundEnd(const RenderOptions&);
 
 // Costs a lock a call, a few for each tile.
 class LiveSchedule {
   public:
-    // Begins where blocks are, `starts`; empty: from nothing. Context and options
-    // must outlive it.
-    LiveSchedule(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
-                 RankTiles);
+    // Begins where blocks are, `starts`; empty: from nothing. The options must outlive it.
+    LiveSchedule(const RenderOptions&, std::span<const BlockStart> starts, RankTiles);
 
     // Gives out a tile; nothing if none is ready, or if the time is up. There are never more tasks
     // than tiles, but when time has been called.
@@ -90,7 +88,6 @@ class LiveSchedule {
     void Keep(int block);
     void ShowStops();
 
-    const RenderContext& context;
     const RenderOptions& options;
     RankTiles share;
     const bool hasClock;
@@ -117,8 +114,8 @@ struct BlockCheck {
 class BlockCriteria {
   public:
     // Makes the criteria of the blocks that vote, as an interrupted render has left them. The
-    // context must outlive it.
-    BlockCriteria(const RenderContext&, const RenderOptions&, std::span<const Block> blocks);
+    // options must outlive it.
+    BlockCriteria(const RenderOptions&, std::span<const Block> blocks);
 
     // Returns the inputs of criterion and clock for a block.
     ViewNeed NeedAt(int block, int spp) const;
@@ -133,8 +130,7 @@ class BlockCriteria {
     BlockView ViewOf(int index, const Block&, ViewNeed,
                      const std::function<void(int block, FilmView*)>& complete);
 
-    const RenderContext& context;
-    const ScheduleOptions schedule;
+    const RenderOptions& options;
     const bool hasClock;
     std::vector<std::unique_ptr<Criterion>> criteria;  // null for blocks that do not vote
     tbb::enumerable_thread_specific<FilmView> views;
@@ -145,9 +141,8 @@ int MostSamples(const PixelRect&, const Film&);
 
 // Return where blocks are, those given or those that an interrupted render has left, none if there
 // is none; with a clock, also how noisy.
-std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderContext&,
-                                 const RenderOptions&);
-std::vector<BlockStart> StartsOf(const RenderContext&, const RenderOptions&);
+std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions&);
+std::vector<BlockStart> StartsOf(const RenderOptions&);
 
 // Runs the tasks of a render: identical tasks for tiles, and single works such as decisions on
 // blocks.
@@ -247,9 +242,9 @@ struct TileEffort {
 // Costs a lock a tile.
 class ProgressLedger {
   public:
-    // Goes on with the books of an interrupted render, with the samples that the film has. Context
-    // and options must outlive it.
-    ProgressLedger(const RenderContext&, const RenderOptions&, size_t blocks);
+    // Goes on with the books of an interrupted render, with the samples that the film has. The
+    // options must outlive it.
+    ProgressLedger(const RenderOptions&, size_t blocks);
 
     // Returns the seconds since the start, of the runs before this one as well.
     double Seconds() const;
@@ -281,7 +276,6 @@ class ProgressLedger {
     RenderProgress Progress(const Schedule&);
     void Predict(const Schedule&, RenderProgress*) const;
 
-    const RenderContext& context;
     const RenderOptions& options;
     const Clock::time_point start = Clock::now();
     // Of the runs before this one: wall-clock time, CPU time of samples, and samples.
@@ -315,9 +309,9 @@ struct RankHooks {
 class Executor {
   public:
     // `starts` is where blocks are, which an interrupted render has left or another rank has said.
-    // Context and options must outlive it.
-    Executor(const RenderContext&, const RenderOptions&, std::span<const BlockStart> starts,
-             RankTiles = {}, RankHooks = {});
+    // The options must outlive it.
+    Executor(const RenderOptions&, std::span<const BlockStart> starts, RankTiles = {},
+             RankHooks = {});
 
     // Renders all, with checkpoints, for a process that is alone.
     RenderResult Run();
@@ -365,7 +359,6 @@ class Executor {
     void RunTile();
     int64_t TakeSamples(const Tile&);
 
-    const RenderContext& context;
     const RenderOptions& options;
     const RankHooks hooks;
     bool isLastRound = false;  // the cap cuts it short: the checkpoint is of before

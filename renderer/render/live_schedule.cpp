@@ -8,40 +8,39 @@ namespace lull {
 
 namespace {
 
-ScheduleOptions ScheduleFor(const RenderContext& context, const RenderOptions& options) {
+ScheduleOptions ScheduleFor(const RenderOptions& options) {
     ScheduleOptions schedule = options.schedule;
-    schedule.worstFirst = bool(context.secondsLeft);
-    schedule.roundEnd = LightRoundEnd(context);
+    schedule.worstFirst = bool(options.secondsLeft);
+    schedule.roundEnd = LightRoundEnd(options);
     return schedule;
 }
 
 }  // namespace
 
-int LightRoundEnd(const RenderContext& context) {
-    return context.lightRounds ? context.lightRounds->End() : kNoRoundEnd;
+int LightRoundEnd(const RenderOptions& options) {
+    return options.lightRounds ? options.lightRounds->End() : kNoRoundEnd;
 }
 
-LiveSchedule::LiveSchedule(const RenderContext& context, const RenderOptions& options,
-                           std::span<const BlockStart> starts, RankTiles given)
-    : context(context),
-      options(options),
+LiveSchedule::LiveSchedule(const RenderOptions& options, std::span<const BlockStart> starts,
+                           RankTiles given)
+    : options(options),
       share(std::move(given)),
-      hasClock(context.secondsLeft),
-      schedule(context.film->Region(), ScheduleFor(context, options), starts, share) {
+      hasClock(options.secondsLeft),
+      schedule(options.film->Region(), ScheduleFor(options), starts, share) {
     ShowStops();
 }
 
 void LiveSchedule::Restart(std::span<const BlockStart> starts, RankTiles given) {
     std::lock_guard lock(mutex);
     share = std::move(given);
-    schedule = Schedule(context.film->Region(), ScheduleFor(context, options), starts, share);
+    schedule = Schedule(options.film->Region(), ScheduleFor(options), starts, share);
     if (timeCalled) schedule.CallTime();
     undo.clear();
 }
 
 // Of several ranks, the first has the clock, and looks at it by itself.
 std::optional<Tile> LiveSchedule::Next() {
-    if (hasClock && !options.peers && !(context.secondsLeft() > 0)) CallTime();
+    if (hasClock && !options.peers && !(options.secondsLeft() > 0)) CallTime();
     std::lock_guard lock(mutex);
     const std::optional<Tile> tile = schedule.Next();
     if (tile && hasClock && !undo.contains(tile->block)) Keep(tile->block);
@@ -91,7 +90,7 @@ void LiveSchedule::BeginRound(int end) {
 void LiveSchedule::Keep(int block) {
     const std::vector<PixelRect> tiles = TilesOfRank(block, share.rank);
     StateWriter writer;
-    for (const PixelRect& tile : tiles) PutPlanes(*context.film, tile, &writer);
+    for (const PixelRect& tile : tiles) PutPlanes(*options.film, tile, &writer);
     undo[block] = {tiles, std::move(writer.bytes)};
 }
 
@@ -99,7 +98,7 @@ std::vector<int> LiveSchedule::Undo() {
     std::vector<int> blocks;
     for (const auto& [block, before] : undo) {
         StateReader reader(before.planes);
-        for (const PixelRect& tile : before.tiles) GetPlanes(&reader, tile, context.film);
+        for (const PixelRect& tile : before.tiles) GetPlanes(&reader, tile, options.film);
         blocks.push_back(block);
     }
     undo.clear();

@@ -30,14 +30,12 @@ constexpr int kLeastForecastSpp = 60;
 
 }  // namespace
 
-ProgressLedger::ProgressLedger(const RenderContext& context, const RenderOptions& options,
-                               size_t blocks)
-    : context(context),
-      options(options),
-      secondsBefore(context.interrupted ? context.interrupted->seconds : 0),
-      spentBefore(context.interrupted ? SecondsOfAll(context.interrupted->blocks) : 0),
-      samplesBefore(context.film->SampleCount()),
-      results(context.interrupted ? context.interrupted->blocks : std::vector<BlockResult>(blocks)),
+ProgressLedger::ProgressLedger(const RenderOptions& options, size_t blocks)
+    : options(options),
+      secondsBefore(options.interrupted ? options.interrupted->seconds : 0),
+      spentBefore(options.interrupted ? SecondsOfAll(options.interrupted->blocks) : 0),
+      samplesBefore(options.film->SampleCount()),
+      results(options.interrupted ? options.interrupted->blocks : std::vector<BlockResult>(blocks)),
       trends(MakeTrends(options, results)),
       samples(samplesBefore) {}
 
@@ -126,7 +124,7 @@ RenderProgress ProgressLedger::Progress(const Schedule& schedule) {
                             .samples = samples,
                             .samplesToCap = schedule.SamplesToCap(),
                             .seconds = Seconds()};
-    if (context.secondsLeft) progress.secondsLeft = context.secondsLeft();
+    if (options.secondsLeft) progress.secondsLeft = options.secondsLeft();
     if (!trends.empty()) Predict(schedule, &progress);
     return progress;
 }

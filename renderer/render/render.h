@@ -66,6 +66,20 @@ struct RenderEvents {
 class LightRounds;
 class Peers;
 
+// Takes sample `index` of a pixel, as RenderSample() does; must depend on nothing but the sampler's
+// seed, pixel and index.
+using SampleSource = std::function<void(Sampler&, const Vec2i& pixel, uint32_t index, PathSample*)>;
+
+// Saves the state of a render, to resume it after an interruption.
+struct Checkpointing {
+    // Called with the state, with no thread at work, every `interval` seconds and when the render
+    // is cancelled. Can be empty.
+    std::function<void(const RenderState&)> write = {};
+    double interval = 60;
+    bool atEnd = false;  // also when every block has stopped
+};
+
+// How to render, and at the end what, which a Session sets.
 struct RenderOptions {
     ScheduleOptions schedule;
     Sampler sampler{SamplerKind::Sobol, 0};
@@ -91,33 +105,7 @@ struct RenderOptions {
     // with a clock a tenth of the time left, if that is less. Once the render has been cancelled,
     // and at the least, a twelfth of it.
     double rankPatience = 60;
-};
 
-struct RenderResult {
-    std::vector<BlockResult> blocks;
-    RenderProgress progress;          // at the end
-    bool cancelled = false;           // before every block had stopped
-    bool timeUp = false;              // the clock ended it before every block had stopped
-    int threads = 0;                  // that it could use
-    std::vector<double> shares = {};  // of the tiles, that ranks had in the end; empty: one rank
-    RuleTrend trend = {};             // of the rule, where the options have it
-};
-
-// Takes sample `index` of a pixel, as RenderSample() does; must depend on nothing but the sampler's
-// seed, pixel and index.
-using SampleSource = std::function<void(Sampler&, const Vec2i& pixel, uint32_t index, PathSample*)>;
-
-// Saves the state of a render, to resume it after an interruption.
-struct Checkpointing {
-    // Called with the state, with no thread at work, every `interval` seconds and when the render
-    // is cancelled. Can be empty.
-    std::function<void(const RenderState&)> write = {};
-    double interval = 60;
-    bool atEnd = false;  // also when every block has stopped
-};
-
-// Inputs and controls of a render; a Session makes them.
-struct RenderContext {
     SampleSource source = {};
     Film* film = nullptr;
     // Where an interrupted render left film and state; null: from the start. A block whose
@@ -134,11 +122,21 @@ struct RenderContext {
     Checkpointing checkpoints = {};
 };
 
+struct RenderResult {
+    std::vector<BlockResult> blocks;
+    RenderProgress progress;          // at the end
+    bool cancelled = false;           // before every block had stopped
+    bool timeUp = false;              // the clock ended it before every block had stopped
+    int threads = 0;                  // that it could use
+    std::vector<double> shares = {};  // of the tiles, that ranks had in the end; empty: one rank
+    RuleTrend trend = {};             // of the rule, where the options have it
+};
+
 // Renders the film's region. The pixels are the same bits for any number of threads and ranks
 // and, at equal samples per pixel, for any size of blocks and length of passes. A clock changes
 // nothing but the samples of blocks that have not stopped. Rethrows exceptions of criteria and
 // callbacks; throws std::invalid_argument for a display on several ranks.
-RenderResult Render(const RenderContext&, const RenderOptions&);
+RenderResult Render(const RenderOptions&);
 
 // Returns the scene as a source of samples, with the shares of the round of light paths where there
 // are some; both must outlive it.

@@ -76,10 +76,10 @@ Session::Session(const Scene& scene, const PixelRect& region, SessionOptions giv
       region(region),
       options(std::move(given)),
       film(region, FilmFor(scene, options.film)) {
-    context.film = &film;
+    options.render.film = &film;
     if (TracesFromLights(scene.integrator)) {
         lightRounds = std::make_unique<LightRounds>(scene, film, options.render.sampler);
-        context.lightRounds = lightRounds.get();
+        options.render.lightRounds = lightRounds.get();
     }
 }
 
@@ -96,7 +96,7 @@ void Session::Resume() {
         return;
     }
     interrupted = ReadCheckpoint(checkpoint.file, options.identity, &film, checkpoint.mayDiffer);
-    context.interrupted = &*interrupted;
+    options.render.interrupted = &*interrupted;
     Tell(onResume, "going on from {}{}", checkpoint.file,
          interrupted->criteria.empty() ? ", with another rule" : "");
 }
@@ -111,7 +111,7 @@ RenderResult Session::Run(const RenderFunction& render) {
     Display* display = options.render.display;
     PathOptions paths = options.estimator;
     paths.throughSpecular = options.film.layers.aovs.throughSpecular;
-    context.source = SamplesOf(scene, paths, lightRounds.get());
+    options.render.source = SamplesOf(scene, paths, lightRounds.get());
     SetClock();
     KeepCheckpoints();
     const Peers* peers = options.render.peers;
@@ -119,7 +119,7 @@ RenderResult Session::Run(const RenderFunction& render) {
     if (looks) TakeFirstLook(SamplesOf(scene, options.estimator), options.render, &film);
     if (display && (interrupted || looks)) display->Show(region, film);
     if (options.agree) options.agree(TextOf(options.identity) + TextOf(PlanesOf(film)));
-    RenderResult result = render(context, options.render);
+    RenderResult result = render(options.render);
     if (display) display->Show(region, film);  // some may have been undone
     if (Leads() && events.onFinish) events.onFinish(result.progress);
     return result;
@@ -132,7 +132,7 @@ void Session::SetClock() {
     const int pictures = std::max(1, options.film.layers.groups.Count());
     if (options.film.layers.features)
         reserve += pictures * SecondsToDenoise(region.Area(), threads);
-    context.secondsLeft = [clock = options.clock, reserve] { return clock() - reserve; };
+    options.render.secondsLeft = [clock = options.clock, reserve] { return clock() - reserve; };
 }
 
 // A checkpoint that cannot be written is a warning: the last good one stays, and so does the
@@ -150,36 +150,34 @@ void Session::KeepCheckpoints() {
         }
         said = problem;
     };
-    context.checkpoints = {write, options.checkpoint.interval, options.checkpoint.isKept};
+    options.render.checkpoints = {write, options.checkpoint.interval, options.checkpoint.isKept};
 }
 
 namespace {
 
 // This thread speaks with the other ranks, so the arena has none of its places for it.
-RenderResult RenderWithPeers(const RenderContext& context, const RenderOptions& options,
-                             int threads) {
+RenderResult RenderWithPeers(const RenderOptions& options, int threads) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads) + 1);
     tbb::task_arena arena(threads, 0);
-    RenderResult result = options.peers->Rank() == 0 ? LeadRanks(context, options, &arena)
-                                                     : FollowRanks(context, options, &arena);
+    RenderResult result =
+        options.peers->Rank() == 0 ? LeadRanks(options, &arena) : FollowRanks(options, &arena);
     result.threads = threads * options.peers->Count();
     return result;
 }
 
 }  // namespace
 
-RenderResult Render(const RenderContext& context, const RenderOptions& options) {
-    const PixelRect& region = context.film->Region();
-    if (context.interrupted && !HasBlocksOf(*context.interrupted, region, options.schedule))
+RenderResult Render(const RenderOptions& options) {
+    const PixelRect& region = options.film->Region();
+    if (options.interrupted && !HasBlocksOf(*options.interrupted, region, options.schedule))
         throw std::invalid_argument("the interrupted render has other blocks");
     const int threads = ThreadCount(options.threads);
     const bool alone = !options.peers || options.peers->Count() == 1;
     if (!alone && options.display) throw std::invalid_argument("several ranks have no viewer");
-    if (!alone) return RenderWithPeers(context, options, threads);
+    if (!alone) return RenderWithPeers(options, threads);
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     tbb::task_arena arena(threads);
-    RenderResult result =
-        arena.execute([&] { return Executor(context, options, StartsOf(context, options)).Run(); });
+    RenderResult result = arena.execute([&] { return Executor(options, StartsOf(options)).Run(); });
     result.threads = threads;
     return result;
 }

@@ -50,7 +50,7 @@ struct SessionOptions {
 };
 
 // Render(), or a function that prepares and calls it.
-using RenderFunction = std::function<RenderResult(const RenderContext&, const RenderOptions&)>;
+using RenderFunction = std::function<RenderResult(const RenderOptions&)>;
 
 class Session {
   public:
@@ -71,8 +71,7 @@ class Session {
     // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
     Film& GetFilm() { return film; }
-    // Return the image and its provenance.
-    const RenderContext& Context() const { return context; }
+    // Returns how it is rendered, and what.
     const RenderOptions& Options() const { return options.render; }
 
   private:
@@ -85,7 +84,6 @@ class Session {
     Film film;
     std::optional<RenderState> interrupted;
     std::unique_ptr<LightRounds> lightRounds;
-    RenderContext context;
 };
 
 // Checkpoint files: the complete state of a render, to continue it to the same bits.

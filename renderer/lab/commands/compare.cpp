@@ -278,8 +278,7 @@ ExitCode CompareRenders(CompareOptions options, MpiJob* ranks) {
     const RenderResult result = render.Run(&session);
     if (const auto code = render.End(result.cancelled)) return *code;
 
-    AddImages({session.Context(), session.Options(), result, compared->report.histories},
-              compared.get());
+    AddImages({session.Options(), result, compared->report.histories}, compared.get());
     VerifyAll(compared.get());
     WriteResults(result, compared.get());
     render.RemoveCheckpoint();

@@ -49,8 +49,10 @@ Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
 // Renders blocks from their first sample to `spp` each, and leaves out those where it is 0.
 void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Film* film) {
     RenderState state;
-    RenderContext context{.source = render.context.source, .film = film, .interrupted = &state};
     RenderOptions options;
+    options.source = render.options.source;
+    options.film = film;
+    options.interrupted = &state;
     options.schedule = render.options.schedule;
     options.schedule.smallestSide = 0;
     options.sampler = render.options.sampler;
@@ -64,7 +66,7 @@ void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Fi
         block.pixels = render.result.blocks[i].block.pixels;
         block.stopped = spp[i] == 0;
     }
-    Render(context, options);
+    Render(options);
 }
 
 // Makes an image of the right size, black, with the noise known.
@@ -91,7 +93,7 @@ void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelR
 // Denoises the image of the samples that its blocks took.
 void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blocks,
                     ComparedImage* image) {
-    const PixelRect& region = render.context.film->Region();
+    const PixelRect& region = render.options.film->Region();
     std::vector<int> spp;
     for (const BlockCost& cost : image->costs) spp.push_back(cost.spp);
     Film film(region, {.layers = {.features = true}});
@@ -268,7 +270,7 @@ CriterionMaker MakeMonitors(const std::vector<MonitoredRule>& rules, const Pixel
 ComparedImage TakeImage(const MonitoredRender& render, const std::vector<MonitoredRule>& rules,
                         size_t index) {
     const MonitoredRule& rule = rules[index];
-    const PixelRect& region = render.context.film->Region();
+    const PixelRect& region = render.options.film->Region();
     const int cap = render.options.schedule.cap;
     const std::vector<Block> blocks =
         MakeBlocks(region, ScheduleFor(rule, render.options.schedule));
@@ -301,7 +303,7 @@ ComparedImage TakeImage(const MonitoredRender& render, const std::vector<Monitor
         if (const auto snapshot = kept.find(cost.spp); snapshot != kept.end())
             PasteSnapshot(snapshot->second, blocks[i].pixels, region, &image);
         else if (whole.block.spp == cost.spp)
-            PasteSnapshot(SnapshotOf(*render.context.film, blocks[i].pixels, cost.spp),
+            PasteSnapshot(SnapshotOf(*render.options.film, blocks[i].pixels, cost.spp),
                           blocks[i].pixels, region, &image);
         else
             again[i] = cost.spp;
@@ -320,10 +322,10 @@ ComparedImage TakeImage(const MonitoredRender& render, const std::vector<Monitor
 }
 
 ComparedImage TakeWholeImage(const MonitoredRender& render) {
-    const PixelRect& region = render.context.film->Region();
+    const PixelRect& region = render.options.film->Region();
     ComparedImage image = EmptyImage(region, "reference", "");
     for (const BlockResult& result : render.result.blocks) {
-        PasteSnapshot(SnapshotOf(*render.context.film, result.block.pixels, result.block.spp),
+        PasteSnapshot(SnapshotOf(*render.options.film, result.block.pixels, result.block.spp),
                       result.block.pixels, region, &image);
         image.costs.push_back({.spp = result.block.spp, .seconds = result.seconds});
     }

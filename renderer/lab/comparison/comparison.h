@@ -101,7 +101,6 @@ CriterionMaker MakeMonitors(const std::vector<MonitoredRule>& rules, const Pixel
 
 // A monitored render that is complete.
 struct MonitoredRender {
-    const RenderContext& context;
     const RenderOptions& options;
     const RenderResult& result;
     const std::vector<BlockHistory>& histories;

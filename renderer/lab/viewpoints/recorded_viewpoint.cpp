@@ -116,10 +116,10 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
         (*limits)[i] = std::min((*limits)[i], int(std::ceil(past * row->spp[i])));
 }
 
-RenderResult RecordBlocks(RenderContext context, RenderOptions options,
-                          const std::vector<int>& limits, ViewpointRecording* viewpoint) {
+RenderResult RecordBlocks(RenderOptions options, const std::vector<int>& limits,
+                          ViewpointRecording* viewpoint) {
     const ScheduleOptions& schedule = options.schedule;
-    const std::vector<Block> blocks = MakeBlocks(context.film->Region(), schedule);
+    const std::vector<Block> blocks = MakeBlocks(options.film->Region(), schedule);
     std::vector<BlockRecording> recordings(blocks.size());
     options.makeCriterion = [&](const BlockInfo& info) {
         const size_t i = size_t(info.index);
@@ -133,8 +133,8 @@ RenderResult RecordBlocks(RenderContext context, RenderOptions options,
             tell(progress);
         };
     const RenderState beginning = Beginning(blocks, limits);
-    if (!context.interrupted) context.interrupted = &beginning;
-    RenderResult result = Render(context, options);
+    if (!options.interrupted) options.interrupted = &beginning;
+    RenderResult result = Render(options);
     if (result.cancelled || (options.peers && options.peers->Rank() > 0)) return result;
     for (size_t i = 0; i < blocks.size(); ++i)
         if (limits[i] > 0) AddBlock(i, std::move(recordings[i]), result.blocks[i], viewpoint);

@@ -46,8 +46,7 @@ void LimitByHuman(const std::string& human, const std::string& viewpoint, double
 // records to the viewpoint; nothing if it was cancelled. The options have no rule; progress is
 // reported towards the limits. Of several ranks, the first has the recordings. Throws as
 // Render() does.
-RenderResult RecordBlocks(RenderContext, RenderOptions, const std::vector<int>& limits,
-                          ViewpointRecording*);
+RenderResult RecordBlocks(RenderOptions, const std::vector<int>& limits, ViewpointRecording*);
 
 // Records the pictures of another renderer, for rules to learn from and to be judged on.
 

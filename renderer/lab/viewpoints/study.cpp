@@ -59,8 +59,7 @@ Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vec
     return study;
 }
 
-RenderResult RenderStudy(const RenderContext& context, RenderOptions options, Study* study,
-                         ViewpointRecording* viewpoint) {
+RenderResult RenderStudy(RenderOptions options, Study* study, ViewpointRecording* viewpoint) {
     const ScheduleOptions& schedule = options.schedule;
     std::vector<BlockRecording> recordings(study->blocks.size());
     options.makeCriterion = [&](const BlockInfo& info) {
@@ -72,7 +71,7 @@ RenderResult RenderStudy(const RenderContext& context, RenderOptions options, St
         return std::make_unique<PictureLadder>(study->levels, std::move(recorder),
                                                &study->blocks[i].pictures);
     };
-    RenderResult result = Render(context, options);
+    RenderResult result = Render(options);
     if (result.cancelled || !viewpoint) return result;
     for (size_t i = 0; i < recordings.size(); ++i)
         AddBlock(i, std::move(recordings[i]), result.blocks[i], viewpoint);

@@ -85,7 +85,6 @@ Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vec
 // same samples for learning in `viewpoint`, unless that is null. Starts from nothing or from where
 // an interrupted render of the same study left film and state. The options have no rule. If it was
 // cancelled, the study is not complete. Throws as Render() does.
-RenderResult RenderStudy(const RenderContext&, RenderOptions, Study*,
-                         ViewpointRecording* viewpoint);
+RenderResult RenderStudy(RenderOptions, Study*, ViewpointRecording* viewpoint);
 
 }  // namespace lull

@@ -10,9 +10,9 @@ namespace {
 
 class Follower {
   public:
-    Follower(const RenderContext& context, const RenderOptions& options, tbb::task_arena* arena)
-        : context(context),
-          rank(context, options, arena,
+    Follower(const RenderOptions& options, tbb::task_arena* arena)
+        : options(options),
+          rank(options, arena,
                {.onPassEnd = [this](int block) { SendPart(block); },
                 .completeView = {},
                 .onDecided = {},
@@ -50,17 +50,17 @@ class Follower {
         } else if (word == RankWord::Round) {
             TracePart(reader.Get<LightRound>());
         } else if (word == RankWord::Splats) {
-            SplatPlane& plane = context.lightRounds->Planes().at(size_t(reader.Get<int>()));
+            SplatPlane& plane = options.lightRounds->Planes().at(size_t(reader.Get<int>()));
             plane.Get(plane.Region(), &reader);
         } else if (word == RankWord::Lit) {
-            schedule.BeginRound(context.lightRounds->End());
+            schedule.BeginRound(options.lightRounds->End());
             executor.pausing = false;
             rank.EnqueueReady();
         } else if (word == RankWord::Start) {
             Begin(&reader);
         } else if (word == RankWord::Pixels) {
             const int block = GetBlock(reader, needs.size());
-            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), context.film);
+            GetPixels(reader, rank.NewTiles(block, channel.Rank(), before), options.film);
         } else if (word == RankWord::TimeUp) {
             schedule.CallTime();
         } else if (word == RankWord::Pause) {
@@ -102,18 +102,18 @@ class Follower {
 
     void TracePart(const LightRound& round) {
         // Those of a round that was interrupted go on.
-        if (context.lightRounds->End() > 0) context.film->ForgetSpreads();
-        context.lightRounds->Begin(round);
+        if (options.lightRounds->End() > 0) options.film->ForgetSpreads();
+        options.lightRounds->Begin(round);
         rank.Enqueue([this] {
-            isWhole = context.lightRounds->Trace([this] { return executor.IsCancelled(); },
+            isWhole = options.lightRounds->Trace([this] { return executor.IsCancelled(); },
                                                  channel.Rank(), channel.Count());
             isTraced = true;
         });
     }
 
     void SendSplats() {
-        for (size_t i = 0; i < context.lightRounds->Planes().size(); ++i)
-            channel.Post(0, PackSplats(int(i), context.lightRounds->Planes()[i]));
+        for (size_t i = 0; i < options.lightRounds->Planes().size(); ++i)
+            channel.Post(0, PackSplats(int(i), options.lightRounds->Planes()[i]));
         channel.Post(0, Pack(RankWord::Traced, isWhole));
     }
 
@@ -124,9 +124,9 @@ class Follower {
                                taken.seconds};
         touched[size_t(block)] = true;
         if (needs[size_t(block)] == ViewNeed::Measured)
-            channel.Post(0, PackPixels(block, tiles, *context.film));
+            channel.Post(0, PackPixels(block, tiles, *options.film));
         channel.Post(
-            0, Pack(RankWord::Part, part, MeansOf(tiles, needs[size_t(block)], *context.film)));
+            0, Pack(RankWord::Part, part, MeansOf(tiles, needs[size_t(block)], *options.film)));
     }
 
     // Sends pixels that have changed since the last time, or may have.
@@ -136,12 +136,12 @@ class Follower {
             if (!touched[size_t(i)] && !isUnderWay) continue;
             touched[size_t(i)] = false;
             const std::vector<PixelRect> tiles = schedule.TilesOfRank(i, channel.Rank());
-            if (!tiles.empty()) channel.Post(0, PackPixels(i, tiles, *context.film));
+            if (!tiles.empty()) channel.Post(0, PackPixels(i, tiles, *options.film));
         }
         channel.Post(0, Pack(RankWord::Collected));
     }
 
-    const RenderContext& context;
+    const RenderOptions& options;
     Rank rank;
     Executor& executor = rank.executor;
     LiveSchedule& schedule = executor.schedule;
@@ -157,16 +157,14 @@ class Follower {
 
 }  // namespace
 
-RenderResult FollowRanks(const RenderContext& given, const RenderOptions& asked,
-                         tbb::task_arena* arena) {
-    RenderContext context = given;
-    context.interrupted = nullptr;
-    context.checkpoints = {};
+RenderResult FollowRanks(const RenderOptions& asked, tbb::task_arena* arena) {
     RenderOptions options = asked;
+    options.interrupted = nullptr;
+    options.checkpoints = {};
     options.makeCriterion = nullptr;
     options.events = {};
     options.events.onSilence = asked.events.onSilence;
-    return Follower(context, options, arena).Follow();
+    return Follower(options, arena).Follow();
 }
 
 }  // namespace lull

@@ -16,11 +16,10 @@ constexpr double kLeastRun = 20;    // until the next pause, in lengths of the l
 
 class Leader {
   public:
-    Leader(const RenderContext& context, const RenderOptions& options, tbb::task_arena* arena)
-        : context(context),
-          options(options),
-          film(context.film),
-          rank(context, options, arena,
+    Leader(const RenderOptions& options, tbb::task_arena* arena)
+        : options(options),
+          film(options.film),
+          rank(options, arena,
                {.onPassEnd = [this](int block) { EndPass(block); },
                 .completeView = [this](int block, FilmView* view) { CompleteView(block, view); },
                 .onDecided = [this](int block, const BlockAnswer& a) { TellAnswer(block, a); },
@@ -35,7 +34,7 @@ class Leader {
         SendStart({});
         executor.RestartIntervals();
         // Passes that an interruption has cut off need the light of their round, too.
-        if (context.lightRounds && !schedule.IsOver()) EndLightRound();
+        if (options.lightRounds && !schedule.IsOver()) EndLightRound();
         for (;;) {
             executor.pausing = hasGivenUp;
             rank.EnqueueReady();
@@ -48,7 +47,7 @@ class Leader {
             const double pause = Seconds();
             const bool undo = schedule.TimeCalled() && IsOver() && !executor.IsCancelled();
             Gather(undo);
-            if (context.lightRounds && !undo && !hasGivenUp && schedule.Unlocked().NoPassUnderWay())
+            if (options.lightRounds && !undo && !hasGivenUp && schedule.Unlocked().NoPassUnderWay())
                 LearnLight();
             const bool takesOver = std::exchange(hasGivenUp, false) && !executor.IsCancelled();
             const bool over = !takesOver && IsOver() &&
@@ -82,7 +81,7 @@ class Leader {
     // Learns from the samples of all ranks, if a round has ended, and lets each of them trace a
     // part of the light of the next, of which all of them need the whole.
     void EndLightRound() {
-        LightRounds& rounds = *context.lightRounds;
+        LightRounds& rounds = *options.lightRounds;
         if (rounds.End() > 0) {
             Gather(false);
             if (executor.IsCancelled()) return;  // what is here may not be all
@@ -105,14 +104,14 @@ class Leader {
         for (size_t i = 0; i < rounds.Planes().size(); ++i)
             channel.PostToAll(PackSplats(int(i), rounds.Planes()[i]));
         channel.PostToAll(Pack(RankWord::Lit));
-        schedule.BeginRound(LightRoundEnd(context));
+        schedule.BeginRound(LightRoundEnd(options));
     }
 
     // Learns from the samples of all ranks, which are here, once a round: whoever goes on from the
     // checkpoint has to know what was learned. The others forget the spreads when the next round
     // begins, and may have sent them again.
     void LearnLight() {
-        LightRounds& rounds = *context.lightRounds;
+        LightRounds& rounds = *options.lightRounds;
         if (rounds.End() == 0) return;
         if (std::exchange(learnedEnd, rounds.End()) == rounds.End())
             film->ForgetSpreads();
@@ -124,7 +123,7 @@ class Leader {
     void TracePart(int part) {
         std::atomic<bool> isDone = false;
         rank.Enqueue([&] {
-            if (!context.lightRounds->Trace([this] { return executor.IsCancelled(); }, part,
+            if (!options.lightRounds->Trace([this] { return executor.IsCancelled(); }, part,
                                             channel.Count()))
                 executor.isLightTraced = false;
             isDone = true;
@@ -140,7 +139,7 @@ class Leader {
     void Merge(int from) {
         for (const std::vector<std::byte>& message : splats[from]) {
             StateReader reader(message);
-            context.lightRounds->Planes().at(size_t(reader.Get<int>())).Merge(&reader);
+            options.lightRounds->Planes().at(size_t(reader.Get<int>())).Merge(&reader);
         }
         splats.erase(from);
     }
@@ -156,13 +155,13 @@ class Leader {
         if (!channel.HasGivenUpAny() || (answers.empty() && !AreBehind()))
             executor.WriteCheckpoint();
         else
-            executor.nextCheckpoint = Seconds() + context.checkpoints.interval;
+            executor.nextCheckpoint = Seconds() + options.checkpoints.interval;
     }
 
     // Deals out the tiles by `deal`, with all pixels here and nobody at work.
     void Deal(const std::vector<BlockResult>& blocks) {
         const std::vector<int> before = schedule.Share().deal;
-        schedule.Restart(StartsOf(blocks, context, options), {0, std::exchange(deal, {})});
+        schedule.Restart(StartsOf(blocks, options), {0, std::exchange(deal, {})});
         executor.ledger.TakeEffort();
         ForgetParts();
         SendStart(before);
@@ -240,7 +239,7 @@ class Leader {
                 if (!tiles.empty()) channel.Post(to, PackPixels(i, tiles, *film));
             }
         // The first round of light paths begins where its light has come (RankWord::Lit).
-        if (!context.lightRounds || context.lightRounds->End() > 0)
+        if (!options.lightRounds || options.lightRounds->End() > 0)
             channel.PostToAll(Pack(RankWord::Begin));
     }
 
@@ -266,7 +265,7 @@ class Leader {
         while (!executor.pausing && !IsOver() && !schedule.IsRoundOver()) {
             Exchange();
             WatchOthers();
-            if (schedule.HasClock() && !schedule.TimeCalled() && !(context.secondsLeft() > 0)) {
+            if (schedule.HasClock() && !schedule.TimeCalled() && !(options.secondsLeft() > 0)) {
                 schedule.CallTime();
                 channel.PostToAll(Pack(RankWord::TimeUp));
             }
@@ -314,7 +313,7 @@ class Leader {
     void WatchOthers() {
         const double least = options.rankPatience / 12;
         double patience = executor.IsCancelled() ? least : options.rankPatience;
-        if (schedule.HasClock()) patience = std::clamp(context.secondsLeft() / 10, least, patience);
+        if (schedule.HasClock()) patience = std::clamp(options.secondsLeft() / 10, least, patience);
         for (const int silent : channel.FindSilent(least / 5, patience)) {
             channel.GiveUp(silent);
             hasGivenUp = executor.pausing = true;
@@ -399,7 +398,6 @@ class Leader {
             Pack(RankWord::Answer, AnswerMessage{block, answer.stop, answer.noise, need}));
     }
 
-    const RenderContext& context;
     const RenderOptions& options;
     Film* film;
     Rank rank;
@@ -428,9 +426,8 @@ class Leader {
 
 }  // namespace
 
-RenderResult LeadRanks(const RenderContext& context, const RenderOptions& options,
-                       tbb::task_arena* arena) {
-    return Leader(context, options, arena).Lead();
+RenderResult LeadRanks(const RenderOptions& options, tbb::task_arena* arena) {
+    return Leader(options, arena).Lead();
 }
 
 }  // namespace lull

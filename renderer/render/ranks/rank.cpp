@@ -87,9 +87,8 @@ RankHooks WithFailures(RankHooks hooks, Rank* rank) {
 
 }  // namespace
 
-Rank::Rank(const RenderContext& context, const RenderOptions& options, tbb::task_arena* arena,
-           RankHooks hooks)
-    : executor(context, options, StartsOf(context, options),
+Rank::Rank(const RenderOptions& options, tbb::task_arena* arena, RankHooks hooks)
+    : executor(options, StartsOf(options),
                {options.peers->Rank(), EvenDeal(options.peers->Count())},
                WithFailures(std::move(hooks), this)),
       channel(options.peers, options.events.onSilence),

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "renderer/film/film.h"
-#include "renderer/render/light_rounds.h"
 #include "renderer/render/executor_internal.h"
+#include "renderer/render/light_rounds.h"
 #include "renderer/render/peers.h"
 #include "stopping/base/block_view.h"
 #include "stopping/base/state.h"
@@ -209,7 +209,7 @@ double GainOfDealing(const std::vector<double>& speeds, const std::vector<int>& 
 // calling thread speaks with the other ranks.
 class Rank {
   public:
-    Rank(const RenderContext&, const RenderOptions&, tbb::task_arena*, RankHooks);
+    Rank(const RenderOptions&, tbb::task_arena*, RankHooks);
 
     // Runs `work` on a thread of the arena; its exceptions are thrown by the channel's Exchange().
     void Enqueue(std::function<void()> work) { executor.tasks.Enqueue(arena, std::move(work)); }
@@ -232,7 +232,7 @@ class Rank {
 
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
 // There is no display.
-RenderResult LeadRanks(const RenderContext&, const RenderOptions&, tbb::task_arena*);
-RenderResult FollowRanks(const RenderContext&, const RenderOptions&, tbb::task_arena*);
+RenderResult LeadRanks(const RenderOptions&, tbb::task_arena*);
+RenderResult FollowRanks(const RenderOptions&, tbb::task_arena*);
 
 }  // namespace lull

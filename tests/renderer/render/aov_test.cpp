@@ -17,7 +17,7 @@ const std::vector<std::string> kLayers = {"albedo", "normal",   "depth", "positi
 
 struct Rendered {
     Film film;
-    RenderSetup options;
+    RenderOptions options;
     RenderResult result;
 
     explicit Rendered(const AovSet& aovs = ParseAovs(kLayers))
@@ -31,7 +31,7 @@ struct Rendered {
         options.source = SyntheticSample;
         options.film = &film;
     }
-    void Run() { result = Render(options, options); }
+    void Run() { result = Render(options); }
 };
 
 // Adds the same samples one by one.
@@ -57,7 +57,7 @@ TEST(Aovs, HaveTheSamplesOfEachBlockForAnyThreads) {
         EXPECT_LT(render.result.blocks[0].block.spp, render.result.blocks[4].block.spp);
         EXPECT_TRUE(SameSums(render.film, Expected(render.film)));
         Film without(kRegion);
-        Render({.source = SyntheticSample, .film = &without}, render.options);
+        Render(Onto(&without, render.options));
         EXPECT_TRUE(SamePixels(render.film, without));
     }
 }

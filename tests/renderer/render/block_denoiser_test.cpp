@@ -42,7 +42,7 @@ int SppOf(bool withGroups) {
                                  .blockCount = 1,
                                  .cap = 640,
                                  .measures = {{kDenoisedRuleName, MeasureOf(denoiser)}}}));
-    const RenderResult result = Render({.source = OneOfTwoLamps, .film = &film}, options);
+    const RenderResult result = Render(Onto(&film, options, OneOfTwoLamps));
     const auto* lights = film.layers.Find<LightGroupLayer>();
     for (int y = 0; y < 40 && withGroups; ++y)
         for (int x = 0; x < 40; ++x) {

@@ -80,8 +80,7 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
     const TemporaryDirectory directory;
     const std::string path = directory.File("render.checkpoint");
     Film reference(kRegion);
-    const RenderResult expected =
-        Render({.source = SyntheticSample, .film = &reference}, SmallRender(2));
+    const RenderResult expected = Render(Onto(&reference, SmallRender(2)));
     EXPECT_LT(reference.SampleCount(), kRegion.Area() * 60);
 
     for (const int samplesARun : {5000, 12345, 100000, 300000}) {
@@ -97,11 +96,9 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
             const auto write = [&](const RenderState& s) {
                 WriteCheckpoint(path, kIdentity, s, film);
             };
-            result = Render({.source = Counted(&samples),
-                             .film = &film,
-                             .interrupted = begun ? &state : nullptr,
-                             .checkpoints = {write}},
-                            options);
+            if (begun) options.interrupted = &state;
+            options.checkpoints = {write};
+            result = Render(Onto(&film, options, Counted(&samples)));
             if (!result.cancelled) break;
             begun = true;
             film = Film(kRegion);
@@ -117,15 +114,16 @@ TEST(Checkpoint, GoesOnToTheSameBitsWhereverTheRenderWasInterrupted) {
 TEST(Checkpoint, LeavesOutBlocksThatHadStopped) {
     Film whole(kRegion), part(kRegion);
     const RenderOptions options = SmallRender(2);
-    const RenderResult expected = Render({.source = SyntheticSample, .film = &whole}, options);
+    const RenderResult expected = Render(Onto(&whole, options));
     RenderState state;
     for (const Block& block : MakeBlocks(kRegion, options.schedule)) {
         state.blocks.push_back({.block = block, .decisions = {}});
         state.blocks.back().block.stopped = state.blocks.size() != 3;
     }
     state.criteria.resize(state.blocks.size());
-    const RenderContext rest{.source = SyntheticSample, .film = &part, .interrupted = &state};
-    const RenderResult result = Render(rest, options);
+    RenderOptions rest = Onto(&part, options);
+    rest.interrupted = &state;
+    const RenderResult result = Render(rest);
     EXPECT_FALSE(result.cancelled);
     for (size_t i = 0; i < result.blocks.size(); ++i)
         EXPECT_EQ(result.blocks[i].block.spp, i == 2 ? expected.blocks[i].block.spp : 0);
@@ -133,7 +131,7 @@ TEST(Checkpoint, LeavesOutBlocksThatHadStopped) {
     EXPECT_EQ(part.At({20, 20}).count, 0u);
 
     state.criteria.pop_back();
-    EXPECT_THROW(Render(rest, options), std::invalid_argument);
+    EXPECT_THROW(Render(rest), std::invalid_argument);
 }
 
 // The checkpoint of a render that has just begun.
@@ -147,7 +145,8 @@ struct SmallCheckpoint {
         std::atomic<int> tiles = 0;
         options.isCancelled = [&] { return tiles++ >= 50; };
         const auto write = [&](const RenderState& s) { WriteCheckpoint(path, kIdentity, s, film); };
-        Render({.source = SyntheticSample, .film = &film, .checkpoints = {write}}, options);
+        options.checkpoints = {write};
+        Render(Onto(&film, options));
     }
 };
 

@@ -25,13 +25,13 @@ void UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSamp
 struct Clocked {
     Film film{{{0, 0}, {80, 20}}};
     std::atomic<int64_t> taken = 0;
-    RenderSetup setup;
+    RenderOptions setup;
     RenderState state;  // of its checkpoint
     RenderResult result;
 
     // `samples` is how many fit in the time; 0: all. Goes on from `before`, if that is given.
     explicit Clocked(int64_t samples, int threads = 1, const Clocked* before = nullptr,
-                     const std::function<void(RenderSetup*)>& change = {}) {
+                     const std::function<void(RenderOptions*)>& change = {}) {
         setup.schedule = {.blockSize = 20, .passLength = 20, .cap = 4000, .smallestSide = 10};
         setup.sampler = Sampler(SamplerKind::Random, 0);
         setup.threads = threads;
@@ -52,7 +52,7 @@ struct Clocked {
             ++taken;
             UnevenSample(sampler, pixel, index, sample);
         };
-        result = Render(setup, setup);
+        result = Render(setup);
     }
 
     int Spp(int block) const { return result.blocks[size_t(block)].block.spp; }
@@ -88,7 +88,7 @@ TEST(Clock, MakesTheWorstBlockAsGoodAsItCanBe) {
     for (int i = 0; i < 3; ++i) EXPECT_LE(render.Spp(i), render.Spp(i + 1)) << i;
     EXPECT_GT(render.Spp(3), 2 * render.Spp(2));
     // At equal samples the worst is a good deal noisier.
-    const Clocked even(0, 1, nullptr, [](RenderSetup* o) {
+    const Clocked even(0, 1, nullptr, [](RenderOptions* o) {
         o->schedule.cap = 60 / 4 * 20;
         o->makeCriterion = nullptr;
         o->secondsLeft = [] { return 1.0; };
@@ -120,7 +120,7 @@ TEST(Clock, LeavesTheStopsOfTheRule) {
 TEST(Clock, CanBeRepeatedFromTheSamplesOfEachBlock) {
     const Clocked render(Pixels(45) + 1234, 2);
     ASSERT_TRUE(render.result.timeUp);
-    const Clocked again(0, 2, nullptr, [&](RenderSetup* o) {
+    const Clocked again(0, 2, nullptr, [&](RenderOptions* o) {
         o->makeCriterion = [&](const BlockInfo& info) {
             return std::make_unique<ScriptedCriterion>(render.Spp(info.index));
         };
@@ -163,7 +163,7 @@ TEST(Clock, EndsWithinTheFirstPassWhereThereIsNoTimeForIt) {
 
 // A render without a clock is cut off within a pass; what goes on by the clock completes it.
 TEST(Clock, GoesOnFromInterruptedRenders) {
-    const Clocked first(0, 1, nullptr, [](RenderSetup* o) {
+    const Clocked first(0, 1, nullptr, [](RenderOptions* o) {
         o->isCancelled = [calls = std::make_shared<int>(0)] { return ++*calls > 50; };
     });
     EXPECT_TRUE(first.result.cancelled);
@@ -176,7 +176,8 @@ TEST(Clock, GoesOnFromInterruptedRenders) {
 }
 
 TEST(Clock, TakesBlocksOfAnySize) {
-    const Clocked render(Pixels(6), 1, nullptr, [](RenderSetup* o) { o->schedule.blockSize = 7; });
+    const Clocked render(Pixels(6), 1, nullptr,
+                         [](RenderOptions* o) { o->schedule.blockSize = 7; });
     EXPECT_TRUE(render.result.timeUp);
     for (const BlockResult& b : render.result.blocks) EXPECT_TRUE(std::isfinite(b.block.noise));
 }

@@ -196,7 +196,7 @@ TEST(LightRounds, TakeMoreLightPathsWhereTheseHaveTheVariance) {
         options.render.makeCriterion = {};
         Session session(*scene, kRegion, options);
         session.Run();
-        return session.Context().lightRounds->Shares().lightPaths;
+        return session.Options().lightRounds->Shares().lightPaths;
     };
     EXPECT_GT(pathsIn(true), LightRounds::kFirst.lightPaths);
     EXPECT_LT(pathsIn(false), LightRounds::kFirst.lightPaths);

@@ -79,8 +79,9 @@ void RenderRegion(benchmark::State& state, const Scene& scene, Estimator estimat
     const double cpuBefore = ProcessSeconds();
     for (auto _ : state) {
         Film film(region);
-        const RenderResult result =
-            Render({.source = SamplesOf(scene, estimator), .film = &film}, options);
+        options.source = SamplesOf(scene, estimator);
+        options.film = &film;
+        const RenderResult result = Render(options);
         samples += result.progress.samples;
         wall += result.progress.seconds;
         for (const BlockResult& block : result.blocks)

@@ -26,7 +26,7 @@ RenderOptions SmallRender() {
 
 Film Rendered(const RenderOptions& options, const PixelRect& region = kRegion) {
     Film film(region, {.grid = GridOf(options.schedule)});
-    Render({.source = SyntheticSample, .film = &film}, options);
+    Render(Onto(&film, options));
     return film;
 }
 
@@ -69,7 +69,7 @@ TEST(Render, StopsEachBlockWhenItsCriterionSaysSo) {
             return std::make_unique<ScriptedCriterion>(40 * (block.index + 1));
         };
         Film film(kRegion);
-        const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
+        const RenderResult result = Render(Onto(&film, options));
         ASSERT_EQ(result.blocks.size(), 6u);
         EXPECT_FALSE(result.cancelled);
         for (int i = 0; i < 6; ++i) {
@@ -109,7 +109,7 @@ TEST(Render, ShowsCriteriaTheBlockAfterEachPass) {
         return witness;
     };
     Film film({{5, 5}, {65, 35}});
-    const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
+    const RenderResult result = Render(Onto(&film, options));
     EXPECT_EQ(spp, (std::vector<int>{20, 40, 60, 70}));
     EXPECT_TRUE(result.blocks[0].decisions.empty());  // it never judged
 }
@@ -132,7 +132,7 @@ TEST(Render, SpreadsASingleBlockOverAllThreads) {
     options.threads = 4;
     options.schedule = {.blockSize = 200, .passLength = 4, .cap = 4};
     Film film({{0, 0}, {200, 200}});
-    Render({.source = meet, .film = &film}, options);
+    Render(Onto(&film, options, meet));
     EXPECT_EQ(inside.size(), 4u);
 }
 
@@ -143,7 +143,7 @@ TEST(Render, EndsAfterTheTilesUnderWayWhenCancelled) {
     options.schedule = {.blockSize = 50, .passLength = 20, .cap = 10000};
     options.isCancelled = [&] { return taken > 400000; };
     Film film(kRegion);
-    const RenderResult result = Render({.source = Counted(&taken), .film = &film}, options);
+    const RenderResult result = Render(Onto(&film, options, Counted(&taken)));
     EXPECT_TRUE(result.cancelled);
     EXPECT_EQ(film.SampleCount(), taken);
     EXPECT_EQ(result.progress.samples, taken);
@@ -161,11 +161,11 @@ TEST(Render, PassesOnWhatCriteriaAndSamplesThrow) {
     options.threads = 4;
     options.makeCriterion = [](const BlockInfo&) { return std::make_unique<Broken>(); };
     Film film(kRegion);
-    EXPECT_THROW(Render({.source = SyntheticSample, .film = &film}, options), std::runtime_error);
+    EXPECT_THROW(Render(Onto(&film, options)), std::runtime_error);
     const auto broken = [](Sampler&, const Vec2i&, uint32_t, PathSample*) -> void {
         throw std::bad_alloc();
     };
-    EXPECT_THROW(Render({.source = broken, .film = &film}, SmallRender()), std::bad_alloc);
+    EXPECT_THROW(Render(Onto(&film, SmallRender(), broken)), std::bad_alloc);
 }
 
 TEST(Render, ReportsProgressInOrderAndTheEnd) {
@@ -229,16 +229,15 @@ TEST(Render, PredictsTheTimeOnceThereAreData) {
         EXPECT_GT(predicted, 5);
     };
     options.isCancelled = [&] { return isInterrupted; };
-    RenderContext context{.source = SyntheticSample, .film = &film};
-    context.checkpoints.write = [&](const RenderState& s) { state = s; };
-    EXPECT_TRUE(Render(context, options).cancelled);
+    options.checkpoints.write = [&](const RenderState& s) { state = s; };
+    EXPECT_TRUE(Render(Onto(&film, options)).cancelled);
     check(0);
 
     reports.clear();
     const int64_t before = film.SampleCount();
     options.isCancelled = {};
-    context.interrupted = &state;
-    EXPECT_FALSE(Render(context, options).cancelled);
+    options.interrupted = &state;
+    EXPECT_FALSE(Render(Onto(&film, options)).cancelled);
     check(before);
 }
 
@@ -256,7 +255,7 @@ TEST(Render, ShowsPreviews) {
             EXPECT_EQ(result.progress.samples, film.SampleCount());
             samples.push_back(film.SampleCount());
         };
-        const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
+        const RenderResult result = Render(Onto(&film, options));
         EXPECT_FALSE(result.cancelled);
         EXPECT_TRUE(SamePixels(film, Rendered(SmallRender())));
         EXPECT_GT(samples.size(), 20u);
@@ -273,11 +272,9 @@ TEST(Render, WritesCheckpointsAndPreviewsEachInTheirTime) {
         options.events.previewInterval = previewInterval;
         options.events.onPreview = [&](const RenderResult&) { ++previews; };
         Film film(kRegion, {.grid = GridOf(options.schedule)});
-        Render({.source = SyntheticSample,
-                .film = &film,
-                .checkpoints = {.write = [&](const RenderState&) { ++checkpoints; },
-                                .interval = checkpointInterval}},
-               options);
+        options.checkpoints = {.write = [&](const RenderState&) { ++checkpoints; },
+                               .interval = checkpointInterval};
+        Render(Onto(&film, options));
         return std::pair(previews, checkpoints);
     };
     const auto [previews, none] = countAt(0, 1e6);

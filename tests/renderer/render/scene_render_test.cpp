@@ -64,7 +64,7 @@ Film Rendered(const Scene& scene, int threads, int passLength, Estimator estimat
     options.sampler = Sampler(SamplerKind::Random, seed);
     options.threads = threads;
     Film film(RegionOf(scene));
-    Render({.source = SamplesOf(scene, estimator), .film = &film}, options);
+    Render(Onto(&film, options, SamplesOf(scene, estimator)));
     return film;
 }
 
@@ -103,7 +103,7 @@ TEST(SceneRender, ShowsNoBordersOfBlocks) {
         return std::make_unique<ScriptedCriterion>(20 + 60 * (block.index % 3));
     };
     Film film(RegionOf(*scene));
-    Render({.source = SamplesOf(*scene, Estimator::Combined), .film = &film}, options);
+    Render(Onto(&film, options, SamplesOf(*scene, Estimator::Combined)));
 
     double atBorders = 0, elsewhere = 0, squares = 0;
     int borderPairs = 0, otherPairs = 0;

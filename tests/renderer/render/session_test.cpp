@@ -161,8 +161,8 @@ TEST(Session, HeedsTheClock) {
     options.clock = [&] { return 60 - 0.01 * ++asked; };
     Session session(*scene, kBoxRegion, options);
     const RenderResult result = session.Run();
-    ASSERT_TRUE(session.Context().secondsLeft);
-    EXPECT_LT(session.Context().secondsLeft(), options.clock());
+    ASSERT_TRUE(session.Options().secondsLeft);
+    EXPECT_LT(session.Options().secondsLeft(), options.clock());
     EXPECT_FALSE(result.timeUp);
     asked = 100000;
     Session late(*scene, kBoxRegion, options);

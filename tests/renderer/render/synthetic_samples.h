@@ -46,8 +46,13 @@ SampleSource Counted(std::atomic<Count>* taken) {
     };
 }
 
-// Context and options of a render, where a test changes either.
-struct RenderSetup : RenderContext, RenderOptions {};
+// Returns the options of a render of such samples onto a film.
+inline RenderOptions Onto(Film* film, RenderOptions options,
+                          const SampleSource& source = SyntheticSample) {
+    options.source = source;
+    options.film = film;
+    return options;
+}
 
 // Returns whether all sums of both films are the same bits.
 inline bool SamePixels(const Film& a, const Film& b) {
@@ -106,7 +111,7 @@ struct FeatureRender {
         options.makeCriterion = [](const BlockInfo&) {
             return std::make_unique<ScriptedCriterion>(1000);
         };
-        Render({.source = source, .film = &film}, options);
+        Render(Onto(&film, options, source));
     }
 };
 

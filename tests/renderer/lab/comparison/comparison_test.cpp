@@ -46,7 +46,7 @@ std::pair<RgbImage, std::vector<int>> RenderAlone(const MonitoredRule& rule) {
     RenderOptions options = Options();
     options.schedule.smallestSide = rule.smallestSide;
     options.makeCriterion = rule.make;
-    const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
+    const RenderResult result = Render(Onto(&film, options));
     std::vector<int> spp;
     for (const BlockResult& block : result.blocks) spp.push_back(block.block.spp);
     return {{kRegion.Width(), kRegion.Height(), film.MeanImage()}, spp};
@@ -55,8 +55,7 @@ std::pair<RgbImage, std::vector<int>> RenderAlone(const MonitoredRule& rule) {
 struct Observed {
     std::vector<MonitoredRule> rules = Rules();
     Film film{kRegion};
-    RenderContext context{.source = SyntheticSample, .film = &film};
-    RenderOptions options = Options();
+    RenderOptions options = Onto(&film, Options());
     std::vector<BlockHistory> histories;
     RenderResult result;
 
@@ -65,9 +64,9 @@ struct Observed {
         options.makeCriterion =
             MakeMonitors(rules, kRegion, options.schedule,
                          {.snapshots = true, .noise = true, .goesOn = goesOn}, &histories);
-        result = Render(context, options);
+        result = Render(options);
     }
-    MonitoredRender Get() const { return {context, options, result, histories}; }
+    MonitoredRender Get() const { return {options, result, histories}; }
 };
 
 // What the whole design rests on: one render holds the images of all rules, to the last bit.
@@ -109,7 +108,7 @@ TEST(VerificationOf, ComparesPixelsAndAddsUpSeconds) {
         RenderOptions options = Options();
         options.schedule.smallestSide = observed.rules[rule].smallestSide;
         options.makeCriterion = observed.rules[rule].make;
-        const RenderResult result = Render({.source = SyntheticSample, .film = &film}, options);
+        const RenderResult result = Render(Onto(&film, options));
         const Verification verification = VerificationOf(result, film, taken);
         EXPECT_EQ(verification.samePixels, rule == 1);
         EXPECT_EQ(verification.threads, 2);
@@ -247,9 +246,9 @@ TEST(MeasureCurves, GivesAPointForEachRule) {
     std::vector<BlockHistory> histories(4);
     options.makeCriterion = MakeMonitors(rules, region, options.schedule,
                                          {.snapshots = true, .goesOn = true}, &histories);
-    const RenderContext context{.source = SyntheticSample, .film = &film};
-    const RenderResult result = Render(context, options);
-    const MonitoredRender monitored{context, options, result, histories};
+    options = Onto(&film, options);
+    const RenderResult result = Render(options);
+    const MonitoredRender monitored{options, result, histories};
     Comparison comparison = BeginComparison(region, options.schedule);
     comparison.images = {TakeImage(monitored, rules, 0), TakeWholeImage(monitored)};
     Measure(&comparison);

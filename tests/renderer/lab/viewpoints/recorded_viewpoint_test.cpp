@@ -26,8 +26,7 @@ ViewpointRecording Frame() {
 ViewpointRecording Record(const std::vector<int>& limits) {
     Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    const RenderResult result =
-        RecordBlocks({.source = SyntheticSample, .film = &film}, RoomOptions(), limits, &viewpoint);
+    const RenderResult result = RecordBlocks(Onto(&film, RoomOptions()), limits, &viewpoint);
     EXPECT_FALSE(result.cancelled);
     return viewpoint;
 }
@@ -77,7 +76,7 @@ TEST(RecordBlocks, TellsOfProgressTowardsTheLimits) {
     RenderOptions options = RoomOptions();
     RenderProgress last;
     options.events.onProgress = [&](const RenderProgress& progress) { last = progress; };
-    RecordBlocks({.source = SyntheticSample, .film = &film}, options, {0, 6}, &viewpoint);
+    RecordBlocks(Onto(&film, options), {0, 6}, &viewpoint);
     EXPECT_EQ(last.samples, 8 * 45 * 44);
     EXPECT_EQ(last.samplesToCap, 0);
 }
@@ -85,20 +84,19 @@ TEST(RecordBlocks, TellsOfProgressTowardsTheLimits) {
 TEST(RecordBlocks, GoesOnWhereItWasCancelled) {
     Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    RenderOptions options = RoomOptions();
+    RenderOptions options = Onto(&film, RoomOptions());
     options.threads = 1;
     std::optional<RenderState> state;
     int tiles = 0;
     options.isCancelled = [&] { return ++tiles > 9; };
-    RenderContext context{.source = SyntheticSample,
-                          .film = &film,
-                          .checkpoints = {[&](const RenderState& s) { state = s; }}};
-    EXPECT_TRUE(RecordBlocks(context, options, {16, 6}, &viewpoint).cancelled);
+    options.checkpoints.write = [&](const RenderState& s) { state = s; };
+    EXPECT_TRUE(RecordBlocks(options, {16, 6}, &viewpoint).cancelled);
     EXPECT_TRUE(viewpoint.blocks.empty());
     ASSERT_TRUE(state);
     const RenderState before = *state;
-    context.interrupted = &before;
-    RecordBlocks(context, RoomOptions(), {16, 6}, &viewpoint);
+    RenderOptions rest = Onto(&film, RoomOptions());
+    rest.interrupted = &before;
+    RecordBlocks(rest, {16, 6}, &viewpoint);
     const ViewpointRecording whole = Record({16, 6});
     for (const int i : {0, 1}) {
         EXPECT_EQ(viewpoint.blocks.at(i).spp, whole.blocks.at(i).spp);
@@ -113,7 +111,7 @@ TEST(RenderStudy, KeepsThePicturesOfEachLevelAndRecordsTheSameSamples) {
     EXPECT_EQ(study.blocks[1].pixels, (PixelRect{{45, 0}, {90, 44}}));
     Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    RenderStudy({.source = SyntheticSample, .film = &film}, RoomOptions(), &study, &viewpoint);
+    RenderStudy(Onto(&film, RoomOptions()), &study, &viewpoint);
     for (const StudyBlock& block : study.blocks) {
         ASSERT_EQ(block.pictures.size(), 3u);
         for (const DisplayPixels& picture : block.pictures) EXPECT_EQ(picture.size(), 45u * 44 * 3);
@@ -123,7 +121,7 @@ TEST(RenderStudy, KeepsThePicturesOfEachLevelAndRecordsTheSameSamples) {
 
     Film again(kRoom);
     Study alone = BeginStudy("room", kRoom, {4, 8, 16}, blocks, {{"scene", "a"}});
-    RenderStudy({.source = SyntheticSample, .film = &again}, RoomOptions(), &alone, nullptr);
+    RenderStudy(Onto(&again, RoomOptions()), &alone, nullptr);
     EXPECT_EQ(StudyId(alone), StudyId(study));
 }
 

@@ -12,7 +12,7 @@ namespace lull::ranks_test {
 namespace {
 
 // Lets blocks stop at the samples that they have had in a render that was short of time.
-void StopAs(const RenderResult& result, RenderSetup* setup) {
+void StopAs(const RenderResult& result, RenderOptions* setup) {
     setup->schedule.smallestSide = 0;
     setup->schedule.passLength = 1;  // the time may have ended within the first pass
     setup->makeCriterion = [&](const BlockInfo& block) {
@@ -37,8 +37,8 @@ TEST(Ranks, ComeToTheSameBits) {
     const Shared reference = RenderShared(0);
     ASSERT_EQ(reference.result.blocks.size(), 9u);
     for (const auto& [ranks, threads] : {std::pair(1, 1), {2, 3}, {3, 4}, {4, 5}}) {
-        const Shared shared =
-            RenderShared(ranks, [threads = threads](RenderSetup* o, int) { o->threads = threads; });
+        const Shared shared = RenderShared(
+            ranks, [threads = threads](RenderOptions* o, int) { o->threads = threads; });
         ExpectSame(shared, reference, ranks);
         EXPECT_EQ(shared.result.progress.samples, reference.film->SampleCount());
         EXPECT_FALSE(shared.result.cancelled);
@@ -50,7 +50,7 @@ TEST(Ranks, ComeToTheSameBits) {
 
 // There are ranks without a tile, and rules that look at nothing.
 TEST(Ranks, CanBeMoreThanTiles) {
-    const auto change = [](RenderSetup* o, int) {
+    const auto change = [](RenderOptions* o, int) {
         o->schedule = {.blockSize = 10, .cap = 20, .tileSize = 8};
         o->makeCriterion = nullptr;
     };
@@ -59,7 +59,7 @@ TEST(Ranks, CanBeMoreThanTiles) {
 
 // What criteria are shown is the same numbers.
 TEST(Ranks, ShowCriteriaTheSame) {
-    const auto change = [](RenderSetup* o, int) {
+    const auto change = [](RenderOptions* o, int) {
         o->makeCriterion = [](const BlockInfo&) { return MakeCriterion(LightnessNoiseRule(12)); };
     };
     const Shared one = RenderShared(0, change), three = RenderShared(3, change);
@@ -75,7 +75,7 @@ TEST(Ranks, ShowCriteriaTheSame) {
 
 // Returns what cancels the last of the ranks after a while.
 auto SignalToLast(int ranks) {
-    return [ranks](RenderSetup* o, int rank) {
+    return [ranks](RenderOptions* o, int rank) {
         if (rank != ranks - 1) return;
         o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), ranks] {
             return ++*calls > 150 / ranks;
@@ -97,7 +97,7 @@ TEST(Ranks, GoOnFromCheckpointsOfOthers) {
 TEST(Ranks, PauseForCheckpoints) {
     const Shared reference = RenderShared(0);
     std::atomic<int> checkpoints = 0;
-    const auto change = [&](RenderSetup* o, int rank) {
+    const auto change = [&](RenderOptions* o, int rank) {
         if (rank > 0) return;
         o->checkpoints.interval = 0.002;
         o->checkpoints.write = [&](const RenderState&) { ++checkpoints; };
@@ -116,7 +116,7 @@ TEST(Ranks, PauseForCheckpoints) {
 
 // Others are quiet, and say so, before rank 0 has looked for messages.
 TEST(Ranks, MayAnswerAtOnce) {
-    const auto change = [](RenderSetup* o, int) { o->makeCriterion = nullptr; };
+    const auto change = [](RenderOptions* o, int) { o->makeCriterion = nullptr; };
     const auto nap = std::chrono::milliseconds(20);
     ExpectSame(RenderShared(2, change, nullptr, SameForAll, {.nap = nap}), RenderShared(0, change),
                2);
@@ -136,7 +136,7 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
             };
             const Shared timed = RenderShared(
                 3,
-                [&](RenderSetup* o, int rank) {
+                [&](RenderOptions* o, int rank) {
                     o->schedule.tileSize = 4;
                     o->makeCriterion = nullptr;
                     o->secondsLeft = [&taken, time, rank] {
@@ -147,7 +147,7 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
             EXPECT_TRUE(timed.result.timeUp);
             undone |= timed.film->SampleCount() < taken;
             const Shared again =
-                RenderShared(2, [&](RenderSetup* o, int) { StopAs(timed.result, o); });
+                RenderShared(2, [&](RenderOptions* o, int) { StopAs(timed.result, o); });
             EXPECT_TRUE(SameSums(*again.film, *timed.film));
             // How far each has got by then is for the machine to decide.
             for (const BlockResult& b : timed.result.blocks) EXPECT_GE(b.block.spp, 1);
@@ -165,7 +165,7 @@ TEST(Ranks, PassOnWhatTasksThrow) {
     const auto broken = [](Sampler&, const Vec2i&, uint32_t, PathSample*) -> void {
         throw std::bad_alloc();
     };
-    EXPECT_THROW(Render({.source = broken, .film = &film}, options), std::bad_alloc);
+    EXPECT_THROW(Render(Onto(&film, options, broken)), std::bad_alloc);
 }
 
 double ShareOf(const std::vector<int>& deal, int rank) {
@@ -261,7 +261,7 @@ SourceOfRank SlowWhere(const std::function<bool(int rank, uint32_t index)>& isSl
 
 TEST(Ranks, MoveTilesToWhereThereIsTime) {
     const Shared reference = RenderShared(0);
-    const auto change = [](RenderSetup* o, int) { o->dealInterval = 0.02; };
+    const auto change = [](RenderOptions* o, int) { o->dealInterval = 0.02; };
     for (const int ranks : {2, 3, 4}) {
         const Shared shared =
             RenderShared(ranks, change, nullptr,
@@ -280,7 +280,7 @@ TEST(Ranks, MoveTilesAsOftenAsSpeedsChange) {
     int checkpoints = 0;
     const Shared moved = RenderShared(
         3,
-        [&](RenderSetup* o, int rank) {
+        [&](RenderOptions* o, int rank) {
             o->dealInterval = 0;
             o->secondsLeft = [] { return 1000.0; };
             if (rank > 0) return;
@@ -297,7 +297,7 @@ struct GivenUp {
 
     // Returns what has ranks given up soon.
     Change Soon(const Change& change = {}) {
-        return [this, change](RenderSetup* o, int rank) {
+        return [this, change](RenderOptions* o, int rank) {
             o->rankPatience = 2;
             o->events.onGivenUp = [this](int given, double) { ranks.push_back(given); };
             if (change) change(o, rank);
@@ -313,7 +313,7 @@ TEST(Ranks, GoOnWithoutOneThatSleeps) {
          {std::pair(0, 60.0), {3, 0.002}, {12, 60.0}, {25, 0.002}}) {
         GivenUp givenUp;
         const Shared shared =
-            RenderShared(3, givenUp.Soon([seconds = interval](RenderSetup* o, int) {
+            RenderShared(3, givenUp.Soon([seconds = interval](RenderOptions* o, int) {
                 o->checkpoints.interval = seconds;
             }),
                          nullptr, SameForAll, {.sleeper = 2, .messagesBefore = messages});
@@ -329,7 +329,7 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
     for (const int messages : {0, 8, 20}) {
         std::atomic<int64_t> taken = 0;
         GivenUp givenUp;
-        const Shared shared = RenderShared(3, givenUp.Soon([&](RenderSetup* o, int rank) {
+        const Shared shared = RenderShared(3, givenUp.Soon([&](RenderOptions* o, int rank) {
             o->makeCriterion = nullptr;
             o->secondsLeft = [&taken, rank] {
                 return rank > 0 ? 1 : double(kImage.Area() * 35 - taken);

@@ -90,7 +90,7 @@ inline RenderOptions SharedOptions() {
     return options;
 }
 
-using Change = std::function<void(RenderSetup*, int rank)>;
+using Change = std::function<void(RenderOptions*, int rank)>;
 using SourceOfRank = std::function<SampleSource(int rank)>;
 
 inline SampleSource SameForAll(int) { return SyntheticSample; }
@@ -104,7 +104,7 @@ inline Shared RenderShared(int ranks, const Change& change = {}, const Shared* b
     mail.boxes.resize(size_t(std::max(1, ranks)));
     const auto runRank = [&](int rank) {
         QueuePeers peers(&mail, rank);
-        RenderSetup options{{}, SharedOptions()};
+        RenderOptions options = SharedOptions();
         if (ranks > 0) options.peers = &peers;
         // The least that any of them allows is what this process has for all.
         options.threads = ranks + 1;
@@ -120,7 +120,7 @@ inline Shared RenderShared(int ranks, const Change& change = {}, const Shared* b
         }
         options.source = sourceOf(rank);
         options.film = film.get();
-        RenderResult result = Render(options, options);
+        RenderResult result = Render(options);
         if (rank > 0) return;
         shared.film = std::move(film);
         shared.result = std::move(result);
