@@ -12,6 +12,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "stopping/base/block_view.h"
 
@@ -188,6 +189,12 @@ struct PixelRect {
     int Height() const { return max.y() - min.y(); }
     int64_t Area() const { return int64_t(Width()) * Height(); }
     bool operator==(const PixelRect& r) const { return min == r.min && max == r.max; }
+};
+
+// A rendered image: linear RGB, row-major triples.
+struct RgbImage {
+    int width = 0, height = 0;
+    std::vector<float> values;
 };
 
 // Converts between linear RGB, luminance and display values.

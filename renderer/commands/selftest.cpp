@@ -73,8 +73,8 @@ Outcome RenderBlock(const std::string& text, const std::string& rule, bool denoi
     Outcome outcome{.spp = result.blocks[0].block.spp};
     std::vector<float> rgb = film.MeanImage();
     if (denoise) {
-        const DenoiserResult clean = RunDenoiser(PictureOf(film, region), {&region, 1});
-        rgb = clean.rgb;
+        const DenoisedImage clean = RunDenoiser(PictureOf(film, region), {&region, 1});
+        rgb = clean.image.values;
         outcome.difference = clean.blocks[0]->upper;
     }
     for (size_t i = 1; i < rgb.size(); i += 3)

@@ -110,9 +110,9 @@ std::vector<float> MeasureShown(const ShownPicture& picture, std::span<const Pix
 }
 
 // Measures the error of a denoised picture, whose memory it uses.
-DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> places,
-                        const DenoiserOptions& options) {
-    DenoiserResult result;
+DenoisedImage Measured(DenoisedPicture denoised, std::span<const PixelRect> places,
+                       const DenoiserOptions& options) {
+    DenoisedImage result;
     const std::vector<Grading> plain(1);
     const std::vector<Grading>& gradings = options.gradings.empty() ? plain : options.gradings;
     for (size_t i = 0; i < gradings.size(); ++i) {
@@ -121,7 +121,7 @@ DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> pla
         std::vector<float> deviation = MeasureShown({denoised, gradings[i]}, places,
                                                     isFirst && options.withDeviation, &errors);
         if (isFirst) {
-            result.deviation = std::move(deviation);
+            result.error = std::move(deviation);
             result.blocks = std::move(errors);
         } else {
             Raise(errors, &result.blocks);
@@ -129,20 +129,20 @@ DenoiserResult Measured(DenoisedPicture denoised, std::span<const PixelRect> pla
     }
     denoised.noisy = denoised.halves = {};
     denoised.variance = {};
-    result.rgb = Interleaved(denoised.picture);
+    result.image = {denoised.picture.width, denoised.picture.height, Interleaved(denoised.picture)};
     return result;
 }
 
 }  // namespace
 
-DenoiserResult RunDenoiser(NoisyPicture picture, std::span<const PixelRect> blocks,
-                           const DenoiserOptions& options) {
+DenoisedImage RunDenoiser(NoisyPicture picture, std::span<const PixelRect> blocks,
+                          const DenoiserOptions& options) {
     return Measured(Denoise(std::move(picture), options.effort, options.onShare), blocks, options);
 }
 
-GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blocks,
+DenoisedImage RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blocks,
                           const DenoiserOptions& options) {
-    GroupedResult result;
+    std::vector<std::vector<float>> groups;
     std::vector<Blocks> errors;
     DenoisedPicture sum;
     for (int i = 0; i < picture.groups; ++i) {
@@ -158,16 +158,17 @@ GroupedResult RunDenoiser(GroupedPicture picture, std::span<const PixelRect> blo
         Add(denoised.noisy, &sum.noisy);
         Add(denoised.returned, &sum.returned);
         std::ranges::copy(denoised.fireflies, std::back_inserter(sum.fireflies));
-        DenoiserResult own = Measured(std::move(denoised), blocks,
-                                      {.withDeviation = false, .gradings = options.gradings});
-        result.groups.push_back(std::move(own.rgb));
+        DenoisedImage own = Measured(std::move(denoised), blocks,
+                                     {.withDeviation = false, .gradings = options.gradings});
+        groups.push_back(std::move(own.image.values));
         errors.push_back(std::move(own.blocks));
     }
     // The light of groups is not independent: a sample of one lamp is none of another.
     ForgetFireflies(sum.fireflies, sum.noisy, &picture.variance);
     sum.variance = EstimateVariance(sum.noisy, picture.variance);
-    result.sum = Measured(std::move(sum), blocks, options);
-    for (const Blocks& group : errors) Raise(group, &result.sum.blocks);
+    DenoisedImage result = Measured(std::move(sum), blocks, options);
+    result.groups = std::move(groups);
+    for (const Blocks& group : errors) Raise(group, &result.blocks);
     return result;
 }
 

@@ -25,16 +25,17 @@ struct DenoiserOptions {
     ShareListener onShare = {};  // of the filter, which takes 0.8 to 0.9 of the time
 };
 
-struct DenoiserResult {
-    std::vector<float> rgb;        // R, G, B of each pixel, row by row
-    std::vector<float> deviation;  // estimated standard error of each pixel in lightness
+struct DenoisedImage {
+    RgbImage image;
+    std::vector<float> error;  // estimated standard error of each pixel in lightness
     // Of each block; not known of those below kSmallestMeasuredSide.
     std::vector<std::optional<VisibleError>> blocks;
+    std::vector<std::vector<float>> groups = {};  // R, G, B of light groups, whose sum the image is
 };
 
 // Denoises a picture, whose memory it uses, and measures the error of blocks within it. The same
 // bits for any number of threads.
-DenoiserResult RunDenoiser(NoisyPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
+DenoisedImage RunDenoiser(NoisyPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
 // A picture as the sum of the light of groups of lights.
 struct GroupedPicture {
@@ -45,14 +46,9 @@ struct GroupedPicture {
     std::function<NoisyPicture(int group)> light;
 };
 
-struct GroupedResult {
-    // Of the sum of the denoised groups. Of its blocks the largest error: of the sum, or a group.
-    DenoiserResult sum;
-    std::vector<std::vector<float>> groups;  // R, G, B of each pixel
-};
-
-// Denoises the groups one by one, each in the time of a picture.
-GroupedResult RunDenoiser(GroupedPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
+// Denoises the groups one by one, each in the time of a picture. The errors of blocks are the
+// largest: of the sum, or of a group.
+DenoisedImage RunDenoiser(GroupedPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
 // Finds halves of the samples whose noise is not independent, which therefore cannot judge each
 // other.

@@ -280,14 +280,14 @@ void DenoiseInto(NoisyPicture picture, lull_denoised_picture* clean) {
     std::vector<PixelRect> measured;
     for (const lull_block_error& block : blocks)
         measured.push_back({{block.x, block.y}, {block.x + block.width, block.y + block.height}});
-    const DenoiserResult result =
+    const DenoisedImage result =
         RunDenoiser(std::move(picture), measured, {.withDeviation = clean->error != nullptr});
     for (size_t i = 0; i < blocks.size(); ++i) {
         blocks[i].estimate = result.blocks[i]->estimate;
         blocks[i].upper = result.blocks[i]->upper;
     }
-    std::ranges::copy(result.deviation, clean->error);
-    std::ranges::copy(result.rgb, clean->colour);
+    std::ranges::copy(result.error, clean->error);
+    std::ranges::copy(result.image.values, clean->colour);
 }
 
 }  // namespace

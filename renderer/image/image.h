@@ -44,10 +44,4 @@ struct Image {
     }
 };
 
-// A rendered image: linear RGB, row-major triples.
-struct RgbImage {
-    int width = 0, height = 0;
-    std::vector<float> values;
-};
-
 }  // namespace lull

@@ -302,20 +302,20 @@ void TakeFirstLook(const SampleSource& source, const RenderOptions& options, Fil
     if (!isCancelled()) film->SetFirstLook(std::move(look));
 }
 
-DenoiserResult BlockDenoiser::Run(const PixelRect& pixels) const {
+DenoisedImage BlockDenoiser::Run(const PixelRect& pixels) const {
     const PixelRect whole{{0, 0}, {pixels.Width(), pixels.Height()}};
     // The picture in the end is a little better than that which is judged.
     const DenoiserOptions options{
         .effort = Effort::Quick, .withDeviation = false, .gradings = gradings};
     if (film->layers.Find<LightGroupLayer>())
-        return RunDenoiser(GroupedPictureOf(*film, pixels), {&whole, 1}, options).sum;
+        return RunDenoiser(GroupedPictureOf(*film, pixels), {&whole, 1}, options);
     return RunDenoiser(PictureOf(*film, pixels), {&whole, 1}, options);
 }
 
 VisibleError BlockDenoiser::MeasureBlock(int block) const {
     const PixelRect& pixels = blocks.at(size_t(block)).pixels;
-    const DenoiserResult result = Run(pixels);
-    if (showPicture) showPicture(pixels, result.rgb);
+    const DenoisedImage result = Run(pixels);
+    if (showPicture) showPicture(pixels, result.image.values);
     return result.blocks.front().value();
 }
 

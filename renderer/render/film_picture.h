@@ -76,7 +76,7 @@ class BlockDenoiser {
     VisibleError MeasureBlock(int block) const;
 
   private:
-    DenoiserResult Run(const PixelRect& pixels) const;
+    DenoisedImage Run(const PixelRect& pixels) const;
 
     std::vector<Block> blocks;
     const Film* film = nullptr;

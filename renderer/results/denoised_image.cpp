@@ -10,35 +10,11 @@
 
 namespace lull {
 
-namespace {
-
-// Returns where blocks are in the region.
 std::vector<PixelRect> PlacesOf(const std::vector<Block>& blocks, const PixelRect& region) {
     std::vector<PixelRect> places;
     for (const Block& block : blocks)
         places.push_back({block.pixels.min - region.min, block.pixels.max - region.min});
     return places;
-}
-
-DenoisedImage ImageOf(DenoiserResult result, const PixelRect& region) {
-    return {{region.Width(), region.Height(), std::move(result.rgb)},
-            std::move(result.deviation),
-            std::move(result.blocks)};
-}
-
-}  // namespace
-
-DenoisedImage DenoiseImage(NoisyPicture picture, const PixelRect& region,
-                           const std::vector<Block>& blocks, const DenoiserOptions& options) {
-    return ImageOf(RunDenoiser(std::move(picture), PlacesOf(blocks, region), options), region);
-}
-
-DenoisedImage DenoiseImage(GroupedPicture picture, const PixelRect& region,
-                           const std::vector<Block>& blocks, const DenoiserOptions& options) {
-    GroupedResult result = RunDenoiser(std::move(picture), PlacesOf(blocks, region), options);
-    DenoisedImage image = ImageOf(std::move(result.sum), region);
-    image.groups = std::move(result.groups);
-    return image;
 }
 
 std::vector<float> RowsBeside(const std::vector<float>& left, const std::vector<float>& right,

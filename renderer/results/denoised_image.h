@@ -16,20 +16,16 @@ namespace lull {
 
 inline constexpr float kUnknownError = 100;  // in lightness, of pixels: all that is possible
 
-struct DenoisedImage {
-    RgbImage image;
-    std::vector<float> error;  // estimated standard error of each pixel in lightness
-    // Of each block; not known of those below kSmallestMeasuredSide.
-    std::vector<std::optional<VisibleError>> blocks;
-    std::vector<std::vector<float>> groups = {};  // R, G, B of light groups, whose sum the image is
-};
+// Returns where blocks are in the region.
+std::vector<PixelRect> PlacesOf(const std::vector<Block>&, const PixelRect& region);
 
 // Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they
 // have had.
-DenoisedImage DenoiseImage(NoisyPicture, const PixelRect& region, const std::vector<Block>&,
-                           const DenoiserOptions& = {});
-DenoisedImage DenoiseImage(GroupedPicture, const PixelRect& region, const std::vector<Block>&,
-                           const DenoiserOptions& = {});
+template <typename Picture>
+DenoisedImage DenoiseImage(Picture picture, const PixelRect& region,
+                           const std::vector<Block>& blocks, const DenoiserOptions& options = {}) {
+    return RunDenoiser(std::move(picture), PlacesOf(blocks, region), options);
+}
 
 // Returns what denoise(region, blocks) makes of an image, or of each eye of a pair by itself, so
 // that neither sees the other at the seam; as one image, side by side.

@@ -76,12 +76,11 @@ TEST(Bands, AreNotSeenInErrors) {
     };
     const PixelRect blocks[] = {{{0, 0}, {16, 100}}, {{4, 120}, {24, 260}}};
     for (const Grading& grading : {Grading(), dark}) {
-        const DenoiserResult result = RunDenoiser(tall, blocks, {.gradings = {grading}});
-        EXPECT_EQ(result.rgb, Interleaved(denoised.picture));
+        const DenoisedImage result = RunDenoiser(tall, blocks, {.gradings = {grading}});
+        EXPECT_EQ(result.image.values, Interleaved(denoised.picture));
         const DenoisedPicture shown = Graded(denoised, grading);
         const EstimatedError error = MeasureError(shown);
-        EXPECT_TRUE(
-            std::ranges::equal(result.deviation, StandardError(shown, error.structure).values));
+        EXPECT_TRUE(std::ranges::equal(result.error, StandardError(shown, error.structure).values));
         for (size_t i = 0; i < 2; ++i) {
             const VisibleError expected = MeasureVisibleError(shown, error, blocks[i]);
             EXPECT_EQ(result.blocks.at(i)->estimate, expected.estimate);

@@ -13,8 +13,8 @@ NoisyPicture NoisyExample() {
 
 TEST(RunDenoiser, LeavesOutWhatIsTooSmallAndWhatNobodyAsksFor) {
     const PixelRect blocks[] = {{{0, 0}, {9, 30}}, {{0, 0}, {10, 10}}, {{0, 20}, {40, 29}}};
-    const DenoiserResult result = RunDenoiser(NoisyExample(), blocks, {.withDeviation = false});
-    EXPECT_TRUE(result.deviation.empty());
+    const DenoisedImage result = RunDenoiser(NoisyExample(), blocks, {.withDeviation = false});
+    EXPECT_TRUE(result.error.empty());
     ASSERT_EQ(result.blocks.size(), 3u);
     EXPECT_FALSE(result.blocks[0]);
     EXPECT_TRUE(result.blocks[1]);
@@ -22,7 +22,7 @@ TEST(RunDenoiser, LeavesOutWhatIsTooSmallAndWhatNobodyAsksFor) {
 }
 
 TEST(RunDenoiser, IsQuickWhereAskedTo) {
-    EXPECT_EQ(RunDenoiser(NoisyExample(), {}, {.effort = Effort::Quick}).rgb,
+    EXPECT_EQ(RunDenoiser(NoisyExample(), {}, {.effort = Effort::Quick}).image.values,
               Interleaved(Denoise(NoisyExample(), Effort::Quick).picture));
 }
 
@@ -57,19 +57,19 @@ TEST(RunDenoiser, TellsTheShareThatIsDone) {
 TEST(RunDenoiser, AddsUpGroupsAndTakesTheLargestError) {
     const PixelRect block{{0, 0}, {40, 30}};
     const Planes features = NoisyExample().features;
-    const GroupedResult result = RunDenoiser(OppositeLamps(features), {&block, 1});
+    const DenoisedImage result = RunDenoiser(OppositeLamps(features), {&block, 1});
     ASSERT_EQ(result.groups.size(), 2u);
     double largest = 0;
     for (int group = 0; group < 2; ++group) {
         NoisyPicture light = OppositeLamps(features).light(group);
         light.features = features;
-        const DenoiserResult alone = RunDenoiser(std::move(light), {&block, 1});
-        EXPECT_EQ(result.groups[size_t(group)], alone.rgb);
+        const DenoisedImage alone = RunDenoiser(std::move(light), {&block, 1});
+        EXPECT_EQ(result.groups[size_t(group)], alone.image.values);
         largest = std::max(largest, alone.blocks.at(0)->upper);
     }
-    for (size_t i = 0; i < result.sum.rgb.size(); ++i)
-        ASSERT_EQ(result.sum.rgb[i], result.groups[0][i] + result.groups[1][i]);
-    EXPECT_EQ(result.sum.blocks.at(0)->upper, largest);
+    for (size_t i = 0; i < result.image.values.size(); ++i)
+        ASSERT_EQ(result.image.values[i], result.groups[0][i] + result.groups[1][i]);
+    EXPECT_EQ(result.blocks.at(0)->upper, largest);
     // That of the sum alone is much smaller.
     NoisyPicture clean{{Planes(40, 30, 3, 1), Planes(40, 30, 3, 1)}, features, {}};
     EXPECT_LT(RunDenoiser(std::move(clean), {&block, 1}).blocks.at(0)->upper, 0.1 * largest);
@@ -85,7 +85,7 @@ TEST(RunDenoiser, HeedsTheErrorOfTheSumOfGroups) {
     NoisyPicture one = lamps.light(0);
     one.features = lamps.features;
     const double ofOne = RunDenoiser(std::move(one), {&block, 1}).blocks.at(0)->upper;
-    EXPECT_GT(RunDenoiser(lamps, {&block, 1}).sum.blocks.at(0)->upper, ofOne);
+    EXPECT_GT(RunDenoiser(lamps, {&block, 1}).blocks.at(0)->upper, ofOne);
 }
 
 // One pixel of one half, as other programs leave them: the picture keeps its look, and the error
@@ -99,10 +99,10 @@ TEST(Denoiser, DoesNotCallAnExtremePixelClean) {
     for (const float extreme : {1e4f, 1e6f}) {
         NoisyPicture picture = calm;
         for (int c = 0; c < 3; ++c) picture.colour.a.Row(c, 20)[30] = extreme;
-        const DenoiserResult result = RunDenoiser(std::move(picture), {&block, 1});
-        for (const float v : result.rgb) EXPECT_LT(v, 0.6f);
+        const DenoisedImage result = RunDenoiser(std::move(picture), {&block, 1});
+        for (const float v : result.image.values) EXPECT_LT(v, 0.6f);
         EXPECT_GT(result.blocks[0]->upper, usual + 2) << extreme;
-        EXPECT_GT(result.deviation[20 * width + 30], 5);
+        EXPECT_GT(result.error[20 * width + 30], 5);
     }
 }
 

@@ -146,9 +146,9 @@ TEST(RunDenoiser, MeasuresThePictureAsItIsShown) {
     const auto upper = [](std::vector<Grading> gradings) {
         const PixelRect block{{0, 0}, {30, 20}};
         const Planes dark(30, 20, 3, 0.01f);
-        const DenoiserResult result = RunDenoiser(AddNoise(dark, FlatFeatures(30, 20), 0.003, 1),
-                                                  {&block, 1}, {.gradings = std::move(gradings)});
-        EXPECT_NEAR(result.rgb[0], 0.01f, 0.005f);
+        const DenoisedImage result = RunDenoiser(AddNoise(dark, FlatFeatures(30, 20), 0.003, 1),
+                                                 {&block, 1}, {.gradings = std::move(gradings)});
+        EXPECT_NEAR(result.image.values[0], 0.01f, 0.005f);
         return result.blocks.at(0).value().upper;
     };
     const Grading lift = [](std::span<float> rgb) {
