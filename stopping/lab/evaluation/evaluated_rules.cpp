@@ -23,38 +23,18 @@ constexpr double kDammertzErrors[] = {0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005,
 constexpr double kCyclesErrors[] = {0.64, 0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005};
 constexpr double kLuxErrors[] = {0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.04, 0.02};
 
-constexpr RecordedRule kRules[] = {{.name = "learned", .replay = Replay::Decides},
-                                   {.name = "entropy",
-                                    .replay = Replay::Decides,
-                                    .curve = kNoiseLevels,
-                                    .largest = 50,
-                                    .least = 0.01},
-                                   {.name = "dammertz",
-                                    .replay = Replay::Decides,
-                                    .channel = "dammertz",
-                                    .curve = kDammertzErrors,
-                                    .largest = 1,
-                                    .least = 1e-4},
-                                   {.name = "cycles",
-                                    .replay = Replay::RanAlong,
-                                    .curve = kCyclesErrors,
-                                    .largest = kCyclesThresholds.front(),
-                                    .least = kCyclesThresholds.back()},
-                                   {.name = "luxtile",
-                                    .replay = Replay::Decides,
-                                    .channel = "luxtile",
-                                    .curve = kLuxErrors,
-                                    .largest = 1,
-                                    .least = 1e-4},
-                                   {.name = kLightnessNoiseName,
-                                    .replay = Replay::Decides,
-                                    .channel = "masked_noise",
-                                    .curve = kNoiseLevels,
-                                    .largest = 50,
-                                    .least = 0.01},
-                                   {.name = kDenoisedRuleName, .replay = Replay::Unknown},
-                                   {.name = "thresholds", .replay = Replay::Counts},
-                                   {.name = "fixed", .replay = Replay::Counts}};
+// Name, replay, channel, curve, largest and least threshold.
+constexpr RecordedRule kRules[] = {
+    {"learned", Replay::Decides},
+    {"entropy", Replay::Decides, nullptr, kNoiseLevels, 50, 0.01},
+    {"dammertz", Replay::Decides, "dammertz", kDammertzErrors, 1, 1e-4},
+    {"cycles", Replay::RanAlong, nullptr, kCyclesErrors, kCyclesThresholds.front(),
+     kCyclesThresholds.back()},
+    {"luxtile", Replay::Decides, "luxtile", kLuxErrors, 1, 1e-4},
+    {kLightnessNoiseName, Replay::Decides, "masked_noise", kNoiseLevels, 50, 0.01},
+    {kDenoisedRuleName, Replay::Unknown},
+    {"thresholds", Replay::Counts},
+    {"fixed", Replay::Counts}};
 
 }  // namespace
 
