@@ -63,54 +63,50 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrup
 void AddCompareOptions(CLI::App& app, CompareOptions* o) {
     AddRenderSettings(app, &o->render);
     CLI::Option* scene = app.get_option("SCENE")->required(false);
-    CLI::Option* images =
-        app.add_option("--images", o->images,
-                       "Images of another renderer, their spp in the file names, to make the\n"
-                       "images of; NAME names the viewpoint [the folder's name]")
-            ->type_name("DIR[:NAME]")
+    auto* images =
+        AddOption(app, kOptions, "--images", &o->images,
+                  "Images of another renderer, their spp in the file names, to make the\n"
+                  "images of; NAME names the viewpoint [the folder's name]",
+                  "DIR[:NAME]")
             ->excludes(scene);
-    auto* stop = app.add_option("--stop", o->rule, "The automatic rule; see lull render --help")
-                     ->group(kCommonOptions)
-                     ->type_name("RULE")
+    auto* stop = AddOption(app, kCommonOptions, "--stop", &o->rule,
+                           "The automatic rule; see lull render --help", "RULE")
                      ->capture_default_str();
     AddCautionOptions(app, "Stopping", &o->render.caution);
-    app.add_option("--human", o->human, "Compare human thresholds, or an image rendered with them")
-        ->type_name("H.csv[:NAME]|H.exr|H.png");
-    app.add_option("--automatic", o->automatic,
-                   "Read the image of an automatic rule, instead of rendering")
-        ->type_name("A.exr|A.png")
+    AddOption(app, kOptions, "--human", &o->human,
+              "Compare human thresholds, or an image rendered with them",
+              "H.csv[:NAME]|H.exr|H.png");
+    AddOption(app, kOptions, "--automatic", &o->automatic,
+              "Read the image of an automatic rule, instead of rendering", "A.exr|A.png")
         ->excludes(scene)
         ->excludes(images)
         ->excludes(stop);
-    auto* reference = app.add_option("--reference", o->reference, "Image to compare with")
-                          ->excludes(images)
-                          ->type_name("R.exr|R.png");
-    app.add_flag("--snapshots", o->snapshots, "Take all images from one render to the cap")
+    auto* reference = AddOption(app, kOptions, "--reference", &o->reference,
+                                "Image to compare with", "R.exr|R.png")
+                          ->excludes(images);
+    AddOption(app, kOptions, "--snapshots", &o->snapshots,
+              "Take all images from one render to the cap")
         ->needs(scene)
         ->excludes(reference);
-    app.add_flag("--denoise", o->denoise, "Add \"denoised\", the image of `lull render --denoise`")
-        ->group(kCommonOptions)
+    AddOption(app, kCommonOptions, "--denoise", &o->denoise,
+              "Add \"denoised\", the image of `lull render --denoise`")
         ->needs(scene);
-    app.add_flag("--curves", o->curves,
-                 "Add curves of error against time: fixed sample counts, stopping rules")
-        ->group(kCommonOptions)
+    AddOption(app, kCommonOptions, "--curves", &o->curves,
+              "Add curves of error against time: fixed sample counts, stopping rules")
         ->needs(scene);
     AddViewingOption(app, &o->display);
-    app.add_option("--verify", o->verify,
-                   "Measure cost and savings of the rule on N threads; 0: all")
+    AddOption(app, kOptions, "--verify", &o->verify,
+              "Measure cost and savings of the rule on N threads; 0: all", "N,N,...",
+              Between(0, 4096))
         ->delimiter(',')
-        ->check(Between(0, 4096))
-        ->needs(scene)
-        ->type_name("N,N,...");
-    app.add_option("-o,--output", o->output, "Write files whose names begin with OUT, or to DIR/")
-        ->group(kCommonOptions)
-        ->type_name("OUT|DIR/");
-    app.add_option("--report", o->report, "Write a page with images and tables")
-        ->group(kCommonOptions)
+        ->needs(scene);
+    AddOption(app, kCommonOptions, "-o,--output", &o->output,
+              "Write files whose names begin with OUT, or to DIR/", "OUT|DIR/");
+    AddOption(app, kCommonOptions, "--report", &o->report, "Write a page with images and tables",
+              "R.html")
         ->check([](const std::string& file) {
             return file.ends_with(".html") ? "" : file + " does not end in .html";
-        })
-        ->type_name("R.html");
+        });
     AddCheckpointOptions(app, &o->render.checkpoint);
     app.footer(kFooter);
 }

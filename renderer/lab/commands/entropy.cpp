@@ -49,20 +49,16 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 void AddOptions(CLI::App& app, Options* o) {
     app.add_option("IMAGE", o->pictures, "Images: .png, .exr, ...");
-    app.add_option("--images", o->images, "Folder of images, with their spp in the file names")
-        ->type_name("DIR[:NAME]");
-    app.add_option("--block", o->blockSize, "Pixels a side of the blocks")
-        ->check(Between(5, 1 << 16))
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--sub-blocks", o->subBlocks, "Parts of each block, a square number")
-        ->check(Between(1, 10000))
+    AddOption(app, kOptions, "--images", &o->images,
+              "Folder of images, with their spp in the file names", "DIR[:NAME]");
+    AddOption(app, kOptions, "--block", &o->blockSize, "Pixels a side of the blocks", "N",
+              Between(5, 1 << 16));
+    AddOption(app, kOptions, "--sub-blocks", &o->subBlocks, "Parts of each block, a square number",
+              "M", Between(1, 10000))
         ->check([](const std::string& text) {
             const int n = std::stoi(text), root = int(std::lround(std::sqrt(n)));
             return root * root == n ? "" : text + " is not a square number, such as 25 or 100";
-        })
-        ->type_name("M")
-        ->capture_default_str();
+        });
     app.add_option("--csv", o->csv, "Write the entropies of all blocks")->type_name("F.csv");
     app.add_flag("--values", o->values, "Write the entropies of each sub-block as well");
     app.add_flag("--attributes", o->attributes, "Write the 26 attributes of each block as well");

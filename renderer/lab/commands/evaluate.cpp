@@ -114,14 +114,11 @@ Examples:
 Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
 void AddCriticalErrorOptions(CLI::App& app, ScoreOptions* score) {
-    app.add_option("--grid", score->grid, "Count the decisions of critical errors every N spp")
-        ->check(Between(1, kMostShownSpp))
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--margins", score->margins, "Set the margins of the critical error, in %")
+    AddOption(app, kOptions, "--grid", &score->grid,
+              "Count the decisions of critical errors every N spp", "N", Between(1, kMostShownSpp));
+    AddOption(app, kOptions, "--margins", &score->margins,
+              "Set the margins of the critical error, in %", "M,M,...", Between(0.0, 100.0))
         ->delimiter(',')
-        ->check(Between(0.0, 100.0))
-        ->type_name("M,M,...")
         ->default_str("2,6,10");
 }
 
@@ -129,14 +126,12 @@ void AddOptions(CLI::App& app, Options* o) {
     app.add_option("DATASET.h5", o->datasets, "Data sets to run rules on")
         ->check(CLI::ExistingFile);
     AddImagesOptions(app, &o->images, &o->blockSize);
-    CLI::Option* human = app.add_option("--human", o->human, "Read human thresholds")
-                             ->check(CLI::ExistingFile)
-                             ->type_name("H.csv");
-    app.add_option("--answers", o->answers,
-                   "Read the single answers of observers, instead of thresholds")
-        ->check(CLI::ExistingFile)
-        ->excludes(human)
-        ->type_name("A.csv");
+    auto* human = AddOption(app, kOptions, "--human", &o->human, "Read human thresholds", "H.csv",
+                            CLI::ExistingFile);
+    AddOption(app, kOptions, "--answers", &o->answers,
+              "Read the single answers of observers, instead of thresholds", "A.csv",
+              CLI::ExistingFile)
+        ->excludes(human);
     AddList(app, "--predicted", &o->predicted, "Evaluate these thresholds; can be given again")
         ->check(CLI::ExistingFile)
         ->type_name("P.csv");

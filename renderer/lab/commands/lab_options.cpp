@@ -69,10 +69,8 @@ void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blo
 }
 
 CLI::Option* AddBlockOption(CLI::App& app, int* blockSize) {
-    return app.add_option("--block", *blockSize, "Pixels a side of the blocks")
-        ->check(Between(1, 1 << 16))
-        ->type_name("N")
-        ->capture_default_str();
+    return AddOption(app, kOptions, "--block", blockSize, "Pixels a side of the blocks", "N",
+                     Between(1, 1 << 16));
 }
 
 std::vector<NamedFile> InputsOf(const PictureFolder& folder) {

@@ -55,45 +55,34 @@ Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrup
 void AddOptions(CLI::App& app, Options* o) {
     AddSceneOptions(app, &o->render.scene);
     CLI::Option* scene = app.get_option("SCENE")->required(false);
-    app.add_option("--images", o->images,
-                   "Images of another renderer, their spp in the file names, not a scene")
-        ->excludes(scene)
-        ->type_name("DIR");
+    AddOption(app, kOptions, "--images", &o->images,
+              "Images of another renderer, their spp in the file names, not a scene", "DIR")
+        ->excludes(scene);
     AddBlockOption(app, &o->render.schedule.blockSize)->group("Stopping");
     app.add_option("--name", o->name,
                    "Name of the viewpoint, as in thresholds files [the name of the folder]")
         ->check(CheckViewpointName);
-    app.add_option("-o,--output", o->output, "Write or extend this data set")
-        ->group(kCommonOptions)
-        ->required()
-        ->type_name("OUT.h5");
-    app.add_option("--blocks", o->blocks, "Record only these blocks, counted row by row from 0")
-        ->delimiter(',')
-        ->check(WholeNumber())
-        ->type_name("N,N,...");
-    auto* human = app.add_option("--human", o->human, "Read the human thresholds for --past")
-                      ->check(CLI::ExistingFile)
-                      ->type_name("H.csv");
-    app.add_option("--past", o->past, "Record each block up to X times its human threshold")
-        ->check(Between(0.1, 100.0))
-        ->type_name("X")
+    AddOption(app, kCommonOptions, "-o,--output", &o->output, "Write or extend this data set",
+              "OUT.h5")
+        ->required();
+    AddOption(app, kOptions, "--blocks", &o->blocks,
+              "Record only these blocks, counted row by row from 0", "N,N,...", WholeNumber())
+        ->delimiter(',');
+    auto* human = AddOption(app, kOptions, "--human", &o->human,
+                            "Read the human thresholds for --past", "H.csv", CLI::ExistingFile);
+    AddOption(app, kOptions, "--past", &o->past,
+              "Record each block up to X times its human threshold", "X", Between(0.1, 100.0))
+        ->default_str("")
         ->needs(human);
-    app.add_option(kCapOption, o->render.schedule.cap, "Record up to N spp")
-        ->group(kCommonOptions)
-        ->check(Between(1, 1 << 24))
-        ->type_name("N")
-        ->capture_default_str();
+    AddOption(app, kCommonOptions, kCapOption, &o->render.schedule.cap, "Record up to N spp", "N",
+              Between(1, 1 << 24));
     AddEstimatorOption(app, &o->render.estimator);
-    app.add_option("--seed", o->render.seed, "Seed the random numbers")
-        ->group("Sampling")
-        ->check(WholeNumber())
-        ->type_name("N")
-        ->capture_default_str();
+    AddOption(app, "Sampling", "--seed", &o->render.seed, "Seed the random numbers", "N",
+              WholeNumber());
     AddCheckpointInterval(app, &o->render.checkpoint);
-    app.add_flag("--quiet", o->render.quiet, "Print only warnings and errors")->group("Output");
-    app.add_flag("--json-progress", o->render.jsonProgress,
-                 "Print events as JSON, one object per line, on stderr")
-        ->group("Output");
+    AddOption(app, "Output", "--quiet", &o->render.quiet, "Print only warnings and errors");
+    AddOption(app, "Output", "--json-progress", &o->render.jsonProgress,
+              "Print events as JSON, one object per line, on stderr");
     app.footer(kFooter);
 }
 

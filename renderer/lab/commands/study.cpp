@@ -77,14 +77,10 @@ Examples:
 Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
 void AddStudyOptions(CLI::App& app, StudySettings* s) {
-    app.add_option("--repeats", s->repeats, "Ask this fraction of the blocks twice")
-        ->check(Between(0.0, 1.0))
-        ->type_name("X")
-        ->capture_default_str();
-    app.add_option("--catches", s->catches, "Check observers in this fraction of the blocks")
-        ->check(Between(0.0, 0.5))
-        ->type_name("X")
-        ->capture_default_str();
+    AddOption(app, kOptions, "--repeats", &s->repeats, "Ask this fraction of the blocks twice", "X",
+              Between(0.0, 1.0));
+    AddOption(app, kOptions, "--catches", &s->catches,
+              "Check observers in this fraction of the blocks", "X", Between(0.0, 0.5));
 }
 
 [[noreturn]] void Refuse(const std::string& message) {
@@ -94,30 +90,26 @@ void AddStudyOptions(CLI::App& app, StudySettings* s) {
 void AddOptions(CLI::App& app, Options* s) {
     AddRenderSettings(app, &s->render);
     app.get_option("SCENE")->required(false);
-    app.add_option("--images", s->images,
-                   "Read images of another renderer, with the spp in their file names")
-        ->type_name("DIR");
-    app.add_option("--collect", s->collect, "Collect these files of answers")
-        ->type_name("ANSWERS.json ...");
-    app.add_option("-o,--output", s->output, "The page to make, or the thresholds to write")
-        ->group(kCommonOptions)
-        ->type_name("STUDY.html|HUMAN.csv");
+    AddOption(app, kOptions, "--images", &s->images,
+              "Read images of another renderer, with the spp in their file names", "DIR");
+    AddOption(app, kOptions, "--collect", &s->collect, "Collect these files of answers",
+              "ANSWERS.json ...");
+    AddOption(app, kCommonOptions, "-o,--output", &s->output,
+              "The page to make, or the thresholds to write", "STUDY.html|HUMAN.csv");
     app.add_option("--name", s->name, "Name the viewpoint, as in thresholds files [the scene's]")
         ->check(CheckViewpointName);
     app.add_option("--levels", s->levels,
                    "Set the number of sample counts per block [each 1.25 times the last]")
         ->check(Between(2, 200))
         ->type_name("N");
-    app.add_option("--record", s->record,
-                   "Record the block histories of the render in this data set")
-        ->type_name("DATA.h5");
+    AddOption(app, kOptions, "--record", &s->record,
+              "Record the block histories of the render in this data set", "DATA.h5");
     AddCheckpointInterval(app, &s->render.checkpoint);
     AddStudyOptions(app, &s->study);
-    app.add_option("--study", s->studyPage, "With --collect: take only answers to this study")
-        ->type_name("STUDY.html");
-    app.add_option("--report", s->report, "Write a page of the answers, with --collect")
-        ->group(kCommonOptions)
-        ->type_name("PAGE.html");
+    AddOption(app, kOptions, "--study", &s->studyPage,
+              "With --collect: take only answers to this study", "STUDY.html");
+    AddOption(app, kCommonOptions, "--report", &s->report,
+              "Write a page of the answers, with --collect", "PAGE.html");
     app.footer(kFooter);
 }
 

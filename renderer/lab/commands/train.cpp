@@ -179,9 +179,8 @@ void AddPreset(CLI::App& app, TrainingPlan* plan, bool* isGiven) {
 void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     app.add_option("DATASET.h5", o->plan.datasets, "Recordings to learn from")
         ->check(CLI::ExistingFile);
-    app.add_option("--human", o->plan.human, "Read human thresholds")
-        ->check(CLI::ExistingFile)
-        ->type_name("H.csv");
+    AddOption(app, kOptions, "--human", &o->plan.human, "Read human thresholds", "H.csv",
+              CLI::ExistingFile);
     app.add_option("-o,--output", o->output, "Model to write")->type_name("MODEL.h5");
     AddPreset(app, &o->plan, &o->isPreset);
     AddSettings(app, &o->plan.settings);
