@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stopping/base/hdf5_file.h"
+#include "stopping/base/state.h"
 #include "tests/stopping/scratch_file.h"
 
 namespace lull {
@@ -66,4 +67,22 @@ TEST(Hdf5Group, SaysWhyAFileCannotBeOpened) {
 }
 
 }  // namespace
+
+namespace {
+
+TEST(State, SaysWhatIsDamaged) {
+    StateWriter writer;
+    writer.Put(uint32_t(7));
+    StateReader message(writer.bytes, "a message");
+    EXPECT_EQ(WhatOf([&] { message.Get<uint64_t>(); }), "a message is cut short");
+    EXPECT_EQ(WhatOf([&] { message.Finish(); }), "a message is longer than expected");
+    EXPECT_EQ(WhatOf([&] { message.Expect(8); }), "a message is of another kind");
+    EXPECT_EQ(WhatOf([&] { message.Finish(); }), "");
+    EXPECT_EQ(WhatOf([&] { StateReader(writer.bytes).Get<uint64_t>(); }),
+              "the saved state is cut short");
+    EXPECT_EQ(int(StateReader(writer.bytes).Get<bool>()), 1);
+}
+
+}  // namespace
+
 }  // namespace lull

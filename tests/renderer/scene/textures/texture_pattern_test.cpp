@@ -100,4 +100,115 @@ TEST(Turbulence, FadesToItsMean) {
 }
 
 }  // namespace
+
+namespace {
+
+// The expected values were computed by pbrt-v3's own functions, compiled on their own.
+struct NoiseCase {
+    Vec3f p;
+    float noise, fbm, rough;  // noise; 8 octaves of roughness 0.5; 3 of 0.7
+};
+const NoiseCase kNoiseCases[] = {
+    {{0.300000012f, 0.600000024f, 0.899999976f}, -0.141769052f, 0.026837213f, 0.00916262902f},
+    {{-1.70000005f, 2.20000005f, -3.4000001f}, 0.221766427f, 0.177036956f, 0.14951019f},
+    {{10.1000004f, -20.2000008f, 30.2999992f}, 0.340536952f, 0.177636191f, 0.0987504572f},
+    {{255.5f, 256.25f, -0.125f}, -0.139493883f, -0.325777709f, -0.356542796f},
+    {{1000.25f, -1.5f, 77.75f}, -0.206278801f, -0.0432690494f, -0.0333760679f},
+    {{0.00999999978f, 0.0199999996f, 0.0299999993f}, 0.0401485153f, 0.17639631f, 0.176211208f},
+    {{-0.5f, -0.5f, -0.5f}, -0.375f, -0.406777322f, -0.382000834f},
+    {{127.900002f, 64.0999985f, -300.700012f}, -0.300209522f, -0.5622527f, -0.723098576f},
+};
+
+struct MarbleCase {
+    Vec3f p;
+    Rgb plain, other;  // defaults; scale 4, variation 1.5, roughness 0.4, 5 octaves
+};
+const MarbleCase kMarbleCases[] = {
+    {{0.300000012f, 0.600000024f, 0.899999976f},
+     {15.7925291f, 15.0282898f, 16.1141033f},
+     {8.93919086f, 8.49662971f, 8.99497318f}},
+    {{-1.70000005f, 2.20000005f, -3.4000001f},
+     {26.3785629f, 25.1340675f, 27.1855145f},
+     {8.00689602f, 7.60930681f, 8.03198338f}},
+    {{10.1000004f, -20.2000008f, 30.2999992f},
+     {0.869888127f, 0.869888127f, 0.899860263f},
+     {29.3848343f, 28.0060959f, 30.3392601f}},
+    {{255.5f, 256.25f, -0.125f},
+     {0.86999619f, 0.86999619f, 0.899995387f},
+     {32.9284744f, 31.3923798f, 34.0606956f}},
+    {{1000.25f, -1.5f, 77.75f},
+     {0.870000005f, 0.870000005f, 0.900000036f},
+     {6.91330528f, 6.56904745f, 6.90498161f}},
+    {{0.00999999978f, 0.0199999996f, 0.0299999993f},
+     {3.14321566f, 2.990839f, 3.055825f},
+     {14.8672848f, 14.1457977f, 15.1499262f}},
+    {{-0.5f, -0.5f, -0.5f},
+     {0.842346787f, 0.841689587f, 0.862476289f},
+     {0.86357832f, 0.86357832f, 0.891973019f}},
+    {{127.900002f, 64.0999985f, -300.700012f},
+     {34.4349785f, 32.8322372f, 35.6439209f},
+     {0.869972348f, 0.869972348f, 0.899965525f}},
+};
+
+TEST(Noise, EqualsPbrt) {
+    for (const NoiseCase& c : kNoiseCases) {
+        EXPECT_NEAR(Noise(c.p), c.noise, 2e-6f) << c.p.transpose();
+        EXPECT_NEAR(FractionalBrownianMotion(c.p, 0, 0.5f, 8), c.fbm, 2e-5f) << c.p.transpose();
+        EXPECT_NEAR(FractionalBrownianMotion(c.p, 0, 0.7f, 3), c.rough, 2e-5f) << c.p.transpose();
+    }
+}
+
+TEST(Noise, VanishesOnTheLatticeAndHasPeriod256) {
+    for (int i = -3; i < 4; ++i) EXPECT_EQ(Noise(Vec3f(float(i), float(7 * i), float(-i))), 0);
+    EXPECT_EQ(Noise({0.25f, 0.5f, 0.75f}), Noise({256.25f, -255.5f, 512.75f}));
+}
+
+TEST(Noise, IsContinuousAcrossCells) {
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3f p(0.3f, 0.7f, 0.2f), q = p;
+        p[axis] = 2 - 1e-5f;
+        q[axis] = 2 + 1e-5f;
+        EXPECT_NEAR(Noise(p), Noise(q), 1e-4f);
+    }
+}
+
+TEST(Fbm, AppliesTheTransformationAsPbrt) {
+    TextureBuilder builder;
+    Mat4d scale = Mat4d::Identity();
+    scale.topLeftCorner<3, 3>() *= 2;
+    const int gray = builder.Add(true, "fbm", {}, scale);
+    const int rough = builder.Add(
+        false, "fbm", {IntParameter("octaves", 3), FloatParameter("roughness", {0.7f})}, scale);
+    const TextureTable table = builder.Build();
+    for (const NoiseCase& c : kNoiseCases) {
+        const TextureContext at = AtPoint(c.p / 2);
+        const Rgb v = table.Evaluate(builder.Spectrum(table, gray), at);
+        EXPECT_NEAR(v.x(), c.fbm, 2e-5f);
+        EXPECT_EQ(v.x(), v.z());
+        EXPECT_NEAR(table.Evaluate(builder.Float(table, rough), at), c.rough, 2e-5f);
+    }
+    EXPECT_FALSE(table.Needs(builder.Float(table, rough)) & kNeedsUv);
+}
+
+TEST(Marble, EqualsPbrt) {
+    TextureBuilder builder;
+    const int plain = builder.Add(true, "marble", {});
+    const int other =
+        builder.Add(true, "marble",
+                    {FloatParameter("scale", {4}), FloatParameter("variation", {1.5f}),
+                     FloatParameter("roughness", {0.4f}), IntParameter("octaves", 5)});
+    const TextureTable table = builder.Build();
+    for (const MarbleCase& c : kMarbleCases) {
+        const Rgb a = table.Evaluate(builder.Spectrum(table, plain), AtPoint(c.p));
+        const Rgb b = table.Evaluate(builder.Spectrum(table, other), AtPoint(c.p));
+        for (int i = 0; i < 3; ++i) {
+            // The extrapolated cubic magnifies the rounding of large coordinates.
+            EXPECT_NEAR(a[i], c.plain[i], 2e-4f * std::max(1.f, c.plain[i])) << c.p.transpose();
+            EXPECT_NEAR(b[i], c.other[i], 2e-3f * std::max(1.f, c.other[i])) << c.p.transpose();
+        }
+    }
+}
+
+}  // namespace
+
 }  // namespace lull
