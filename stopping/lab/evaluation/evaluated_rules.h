@@ -64,6 +64,10 @@ EvaluatedRule EvaluateThresholds(const std::string& path, const std::string& hum
                                  const std::vector<ThresholdsRow>& people, int grid,
                                  const WarningSink& warn);
 
+// Criterion for the best setting of a rule: the least mean error of the thresholds, or the least
+// critical error at 2 %.
+enum class ChooseBy { AbsoluteError, CriticalError };
+
 // Which rules are judged on recorded blocks.
 struct RulesToEvaluate {
     bool rivals = false;  // the rules that have one setting, see EvaluateRivals()
@@ -83,10 +87,6 @@ std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> block
                                             const RulesToEvaluate&);
 
 // Gives each simple rule the best chance: its setting is chosen on other viewpoints.
-
-// Criterion for the best setting of a rule: the least mean error of the thresholds, or the least
-// critical error at 2 %.
-enum class ChooseBy { AbsoluteError, CriticalError };
 
 // Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is the step of critical
 // errors, in spp.
