@@ -3,7 +3,7 @@
 build_packages="g++ cmake ninja-build libcli11-dev libdraco-dev libeigen3-dev libembree-dev libfmt-dev
     libhdf5-dev libimath-dev libmeshoptimizer-dev libopenexr-dev libopenimageio-dev libpng-dev
     libtbb-dev libtinygltf-dev nlohmann-json3-dev zlib1g-dev"
-test_packages="clang-format dpkg-dev file libbenchmark-dev libgtest-dev libopenmpi-dev openmpi-bin
+test_packages="clang-format dpkg-dev file libgtest-dev libopenmpi-dev openmpi-bin
     pybind11-dev python3-dev python3-numpy"
 
 # install_packages NAME...: does nothing, not even a call of apt-get, where all are there.
