@@ -1,4 +1,4 @@
-// Decides which samples are taken next. Pure book-keeping, without threads or pixels: render.cpp
+// Decides which samples are taken next. Pure book-keeping, without threads or pixels: executor.cpp
 // executes the decisions.
 #pragma once
 

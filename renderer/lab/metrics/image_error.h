@@ -19,7 +19,7 @@ struct ErrorMaps {
     std::vector<float> lightness;  // squared, of L in [0, 100] of the 8-bit display image
     std::vector<float> display;    // squared, of the 8-bit display values, the mean over R, G, B
     std::vector<float> ssim;       // image_error.h; NaN near the border
-    std::vector<float> flip;       // flip.h, at the viewing distance it takes by default
+    std::vector<float> flip;       // FlipMap(), at the viewing distance it takes by default
     VisibleDifference visibleDifference;  // of the 8-bit display images
 };
 

@@ -1,4 +1,4 @@
-// Materials that are textures and a few lobes: pbrt-v3's and, in coated.cpp, pbrt-v4's.
+// Materials that are textures and a few lobes: pbrt-v3's and pbrt-v4's.
 #pragma once
 
 #include <memory>
