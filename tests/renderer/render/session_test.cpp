@@ -59,62 +59,6 @@ struct Said {
     }
 };
 
-TEST(Session, GoesOnFromWhereverItWasInterrupted) {
-    const auto scene = MakeBox();
-    Session whole(*scene, kBoxRegion, OptionsFor(""));
-    ASSERT_FALSE(whole.Run().cancelled);
-
-    const TemporaryDirectory directory;
-    const std::string file = directory.File("c.h5");
-    int interruptions = 0, resumed = 0;
-    for (bool isDone = false; !isDone;) {
-        // Gets further than the last time, by as many tiles.
-        int left = 4 * (1 + interruptions);
-        Said said;
-        SessionOptions options = OptionsFor(file);
-        options.render.isCancelled = [&] { return left-- <= 0; };
-        said.Hear(&options);
-        Session session(*scene, kBoxRegion, options);
-        session.Resume();
-        resumed += said.resume == std::vector<std::string>{"going on from " + file};
-        isDone = !session.Run().cancelled;
-        interruptions += !isDone;
-        EXPECT_TRUE(said.warnings.empty());
-        if (!isDone) continue;
-        EXPECT_TRUE(SameSums(session.GetFilm(), whole.GetFilm()));
-    }
-    EXPECT_GT(interruptions, 2);
-    EXPECT_EQ(resumed, interruptions);
-}
-
-TEST(Session, TakesLightGroupsUpAgain) {
-    const auto scene = MakeBox();
-    const TemporaryDirectory directory;
-    SessionOptions options = OptionsFor("");
-    options.film.layers.groups = {{"lamp", "rest"}, {0}};
-    options.film.layers.groupNoise = true;
-    Session whole(*scene, kBoxRegion, options);
-    whole.Run();
-    options.checkpoint.file = directory.File("c.h5");
-    int left = 15;
-    options.render.isCancelled = [&] { return left-- <= 0; };
-    EXPECT_TRUE(Session(*scene, kBoxRegion, options).Run().cancelled);
-    options.render.isCancelled = nullptr;
-    SessionOptions others = options;
-    others.film.layers.groups.ofLight = {1};
-    Session other(*scene, kBoxRegion, others), same(*scene, kBoxRegion, options);
-    EXPECT_THROW(other.Resume(), Error);
-    same.Resume();
-    EXPECT_FALSE(same.Run().cancelled);
-    EXPECT_TRUE(SameSums(same.GetFilm(), whole.GetFilm()));
-    const FilmPixel pixel = same.GetFilm().At({16, 20});
-    EXPECT_GT(pixel.sum[0], 0);
-    const FilmPixel lamp =
-        same.GetFilm().layers.Find<LightGroupLayer>()->At(0, {16, 20}, pixel.count);
-    EXPECT_EQ(lamp.sum, pixel.sum);
-    EXPECT_EQ(lamp.halfSum, pixel.halfSum);
-}
-
 TEST(Session, CountsTheBytesOfLightGroups) {
     LayerOptions layers = {.groups = {{"a", "b", "rest"}, {}}};
     EXPECT_EQ(BytesOfLayers(layers), 3 * 48);

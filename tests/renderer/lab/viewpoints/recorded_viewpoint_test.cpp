@@ -81,29 +81,6 @@ TEST(RecordBlocks, TellsOfProgressTowardsTheLimits) {
     EXPECT_EQ(last.samplesToCap, 0);
 }
 
-TEST(RecordBlocks, GoesOnWhereItWasCancelled) {
-    Film film(kRoom);
-    ViewpointRecording viewpoint = Frame();
-    RenderOptions options = Onto(&film, RoomOptions());
-    options.threads = 1;
-    std::optional<RenderState> state;
-    int tiles = 0;
-    options.isCancelled = [&] { return ++tiles > 9; };
-    options.checkpoints.write = [&](const RenderState& s) { state = s; };
-    EXPECT_TRUE(RecordBlocks(options, {16, 6}, &viewpoint).cancelled);
-    EXPECT_TRUE(viewpoint.blocks.empty());
-    ASSERT_TRUE(state);
-    const RenderState before = *state;
-    RenderOptions rest = Onto(&film, RoomOptions());
-    rest.interrupted = &before;
-    RecordBlocks(rest, {16, 6}, &viewpoint);
-    const ViewpointRecording whole = Record({16, 6});
-    for (const int i : {0, 1}) {
-        EXPECT_EQ(viewpoint.blocks.at(i).spp, whole.blocks.at(i).spp);
-        EXPECT_EQ(viewpoint.blocks.at(i).values, whole.blocks.at(i).values);
-    }
-}
-
 TEST(RenderStudy, KeepsThePicturesOfEachLevelAndRecordsTheSameSamples) {
     const std::vector<Block> blocks = MakeBlocks(kRoom, RoomOptions().schedule);
     Study study = BeginStudy("room", kRoom, {4, 8, 16}, blocks, {{"scene", "a"}});
