@@ -167,18 +167,10 @@ DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result
     DenoiserResults made;
     const DenoiserOptions how{.gradings = GradingsOf(p.grades)};
     const ProgressStyle style = StyleOfReports(settings.jsonProgress, settings.quiet);
-    const auto denoise = [&](auto picture, const PixelRect& part,
-                             const std::vector<Block>& blocks) {
-        return DenoiseWithReports(std::move(picture), part, blocks, style, how);
-    };
-    // An image gives the denoiser the film's memory; an eye leaves it to the other.
-    const bool hasGroups = film.layers.Find<LightGroupLayer>();
     const auto denoisePart = [&](const PixelRect& part, const std::vector<Block>& blocks) {
-        if (part == region)
-            return hasGroups ? denoise(TakeGroups(&film), part, blocks)
-                             : denoise(TakePicture(&film), part, blocks);
-        return hasGroups ? denoise(GroupedPictureOf(film, part), part, blocks)
-                         : denoise(PictureOf(film, part), part, blocks);
+        if (film.layers.Find<LightGroupLayer>())
+            return DenoiseWithReports(TakeGroups(&film, part), part, blocks, style, how);
+        return DenoiseWithReports(TakePicture(&film, part), part, blocks, style, how);
     };
     const auto start = std::chrono::steady_clock::now();
     if (p.request.denoiseLayers) made.halves = MakeHalfChannels(film, region);

@@ -218,14 +218,16 @@ GroupedPicture GroupedPictureOf(const Film& film, const PixelRect& rect) {
     return GroupsOf(film, rect, FeaturesOf(film, rect));
 }
 
-NoisyPicture TakePicture(Film* film) {
+NoisyPicture TakePicture(Film* film, const PixelRect& rect) {
+    if (!(rect == film->Region())) return PictureOf(*film, rect);
     NoisyPicture picture = TakeFeatures(film);
     picture.colour = ColoursOf(*film, film->Region());
     film->DropHalf();
     return picture;
 }
 
-GroupedPicture TakeGroups(Film* film) {
+GroupedPicture TakeGroups(Film* film, const PixelRect& rect) {
+    if (!(rect == film->Region())) return GroupedPictureOf(*film, rect);
     film->DropHalf();
     return GroupsOf(*film, film->Region(), TakeFeatures(film));
 }

@@ -29,10 +29,10 @@ GroupedPicture GroupedPictureOf(const Film&, const PixelRect&);
 // 2^halvings x 2^halvings.
 NoisyPicture ReducedPictureOf(const Film&, const PixelRect& region, int halvings);
 
-// Do the same for all pixels, and free what the denoiser alone reads of the film, row by row: so
-// the picture takes its place.
-NoisyPicture TakePicture(Film*);
-GroupedPicture TakeGroups(Film*);
+// Do the same; of all pixels, they free what the denoiser alone reads of the film, row by row: so
+// the picture takes its place. A part, as an eye of a pair, leaves it to the others.
+NoisyPicture TakePicture(Film*, const PixelRect&);
+GroupedPicture TakeGroups(Film*, const PixelRect&);
 
 // Returns the colours alone.
 Halves ColoursOf(const Film&, const PixelRect&);

@@ -100,8 +100,7 @@ void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blo
     RenderBlocks(render, spp, &film);
     const double start = ProcessSeconds();
     const auto denoise = [&](const PixelRect& part, const std::vector<Block>& inPart) {
-        return DenoiseImage(part == region ? TakePicture(&film) : PictureOf(film, part), part,
-                            inPart);
+        return DenoiseImage(TakePicture(&film, part), part, inPart);
     };
     image->image = DenoiseEyes(region, blocks, render.options.schedule.eyeWidth, denoise).image;
     const double seconds = ProcessSeconds() - start;

@@ -69,7 +69,7 @@ TEST(TakePicture, IsThePictureOfTheFilm) {
             }
             tile.Set({x, y}, sums);
         }
-    const NoisyPicture expected = PictureOf(film, region), taken = TakePicture(&film);
+    const NoisyPicture expected = PictureOf(film, region), taken = TakePicture(&film, region);
     EXPECT_EQ(taken.colour.a.values, expected.colour.a.values);
     EXPECT_EQ(taken.colour.b.values, expected.colour.b.values);
     EXPECT_EQ(taken.features.values, expected.features.values);
