@@ -111,7 +111,7 @@ TEST(MakeRenderPage, HasCurvesAndDecisions) {
                                  {VisibleError{.estimate = .25, .upper = .5}}};
     const Json clean = DataOf(MakeRenderPage(provenance, result, film, histories, {}, &denoised));
     EXPECT_EQ(clean["images"].size(), 3);
-    EXPECT_EQ(clean["images"][0]["label"], "denoised (lnoise:2)");
+    EXPECT_EQ(clean["images"][0]["label"], "denoised image");
     EXPECT_EQ(clean["blocks"][0]["visibleDifference"]["upper"], .5);
 }
 

@@ -24,16 +24,18 @@ TEST(DenoisedImage, IsAcceptedWhereTheRuleStops) {
 }
 
 TEST(DenoisedImage, NamesTheWorstPixels) {
+    using Errors = std::vector<std::optional<VisibleError>>;
     const VisibleError clean{.estimate = 1, .upper = 2}, one{1, 2, 1, 7.4}, some{1, 2.5, 2, 20.6};
     const std::string most =
         "visible difference from the true image at most about 1 in half of the blocks and 1 in "
         "all, "
         "probably nowhere above 2 (threshold: " +
         fmt::format("{}", kAcceptedDifference) + ")";
-    EXPECT_EQ(TextOf({clean, clean}), most);
-    EXPECT_EQ(TextOf({clean, one}), most + ", except for a pixel that may be wrong by 7 in L*");
-    EXPECT_TRUE(
-        TextOf({one, some}).ends_with(", except for 3 pixels that may be wrong by up to 21 in L*"));
+    EXPECT_EQ(TextOf(Errors{clean, clean}), most);
+    EXPECT_EQ(TextOf(Errors{clean, one}),
+              most + ", except for a pixel that may be wrong by 7 in L*");
+    EXPECT_TRUE(TextOf(Errors{one, some})
+                    .ends_with(", except for 3 pixels that may be wrong by up to 21 in L*"));
 }
 
 void WithoutSpikes(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
