@@ -378,6 +378,8 @@ void CoatedConductor::AddLobes(const MaterialInputs& in, Bsdf* bsdf) const {
     absorption /= index;
     bool isCoatSmooth, isBaseSmooth;
     const TrowbridgeReitz top = coat.Evaluate(in, &isCoatSmooth);
+    // Of nearly the index around it, it turns no light, whose density would be infinite.
+    if (std::abs(index - 1) < 1e-4f) isCoatSmooth = true;
     const TrowbridgeReitz below = base.Evaluate(in, &isBaseSmooth);
     if (isCoatSmooth && isBaseSmooth) {
         bsdf->Add(SpecularReflection<CoatedConductorInterface>{

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 
 #include "renderer/base/math.h"
 #include "tests/renderer/scene/materials/material_scene.h"
@@ -138,6 +139,27 @@ TEST(Furnace, GetsNoMoreFromAMaterialThanItGives) {
             for (int samples = 1 << 12; samples <= 1 << 20 && !(found < most); samples *= 16)
                 found = Reflectance(table, scene.textures, int(i), wo, samples);
             EXPECT_LT(found, most) << NameOf(materials[i]) << " at cosine " << cosine;
+        }
+}
+
+// Where light is not refracted, formulas of rough interfaces have 0 / 0; a coat of that index is
+// none.
+TEST(Furnace, ACoatOfTheIndexAroundItIsNone) {
+    std::optional<double> smooth;
+    for (const float roughness : {0.f, 0.01f, 0.3f})
+        for (const float eta : {1.f, std::nextafter(1.f, 2.f)}) {
+            MaterialScene scene;
+            scene.AddMaterial(
+                "coatedconductor",
+                {Grey("reflectance", 1), Float("interface.eta", eta),
+                 Float("interface.uroughness", roughness), Float("interface.vroughness", roughness),
+                 Float("conductor.uroughness", 0.2f), Float("conductor.vroughness", 0.2f),
+                 Float("thickness", 0)});
+            const double found =
+                Reflectance(scene.Make(), scene.textures, 0, Vec3f(0.6f, 0, 0.8f), 1 << 14);
+            if (!smooth) smooth = found;
+            EXPECT_GT(found, 0.5);
+            EXPECT_NEAR(found, *smooth, 0.01) << roughness << " " << eta;
         }
 }
 
