@@ -1,13 +1,9 @@
 #include "renderer/base/sampler.h"
 
+#include "renderer/base/hash.h"
+
 namespace lull {
 namespace {
-
-uint64_t Mix(uint64_t z) {
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return z ^ (z >> 31);
-}
 
 uint32_t ReverseBits(uint32_t x) {
     x = __builtin_bswap32(x);
@@ -44,11 +40,11 @@ float ToUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; }
 
 void Sampler::StartSample(const Vec2i& pixel, uint32_t sampleIndex) {
     const uint64_t place = (uint64_t(uint32_t(pixel.y())) << 32) | uint32_t(pixel.x());
-    state = Mix(Mix(seed + 0x9e3779b97f4a7c15ull) ^ place);
+    state = MixBits(MixBits(seed + 0x9e3779b97f4a7c15ull) ^ place);
     if (kind == SamplerKind::Random)
-        state = Mix(state + 0xd1342543de82ef95ull * (uint64_t(sampleIndex) + 1));
+        state = MixBits(state + 0xd1342543de82ef95ull * (uint64_t(sampleIndex) + 1));
     const bool hasHalves = kind == SamplerKind::SobolHalves;
-    if (hasHalves) state = Mix(state + 0xd1342543de82ef95ull * (InHalf(sampleIndex) ? 2 : 1));
+    if (hasHalves) state = MixBits(state + 0xd1342543de82ef95ull * (InHalf(sampleIndex) ? 2 : 1));
     reversedIndex = ReverseBits(hasHalves ? PlaceInHalf(sampleIndex) : sampleIndex);
     dimension = 0;
     nextPair = kPairs;
@@ -61,8 +57,8 @@ void Sampler::StartSample(const Vec2i& pixel, uint32_t sampleIndex) {
 // independent, so that the compiler can make all of them at once.
 void Sampler::MakePairs() {
     for (uint32_t i = 0; i < kPairs; ++i) {
-        const uint64_t h = Mix(state + 0x9e3779b97f4a7c15ull * (dimension + i + 1));
-        const uint64_t g = Mix(h);
+        const uint64_t h = MixBits(state + 0x9e3779b97f4a7c15ull * (dimension + i + 1));
+        const uint64_t g = MixBits(h);
         const uint32_t shuffled = ReverseBits(LaineKarras(reversedIndex, uint32_t(h)));
         const uint32_t x = LaineKarras(shuffled, uint32_t(g));
         const uint32_t y = LaineKarras(SobolSecondReversed(shuffled), uint32_t(g >> 32));

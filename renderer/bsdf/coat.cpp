@@ -3,6 +3,8 @@
 #include <bit>
 #include <optional>
 
+#include "renderer/base/hash.h"
+
 namespace lull {
 namespace {
 
@@ -42,11 +44,11 @@ class WalkNumbers {
   public:
     WalkNumbers(const Vec3f& wo, const Vec3f& wi) {
         for (const float x : {wo.x(), wo.y(), wo.z(), wi.x(), wi.y(), wi.z()})
-            state = Mixed(state ^ std::bit_cast<uint32_t>(x));
+            state = MixBits(state ^ std::bit_cast<uint32_t>(x));
     }
     float Get1D() {
         state += 0x9e3779b97f4a7c15ull;
-        return float(Mixed(state) >> 40) * 0x1p-24f;
+        return UnitFloat(MixBits(state));
     }
     Vec2f Get2D() {
         const float x = Get1D();
@@ -54,11 +56,6 @@ class WalkNumbers {
     }
 
   private:
-    static uint64_t Mixed(uint64_t x) {
-        x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-        x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-        return x ^ (x >> 31);
-    }
     uint64_t state = 0x2545f4914f6cdd1dull;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/base/hash.h"
 #include "renderer/scene/geometry/accelerator_internal.h"
 #include "renderer/scene/geometry/shape.h"
 
@@ -175,15 +176,9 @@ void OccludedMoving(const RTCOccludedFunctionNArguments* args) {
 
 }  // namespace
 
-// Mixes by Stafford 2011, variant 13.
 float NumberOf(const RTCRay& ray, const RTCHit& hit) {
     uint64_t state = 0;
-    const auto mix = [&](uint64_t bits) {
-        state = (state ^ bits) + 0x9e3779b97f4a7c15ull;
-        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ull;
-        state = (state ^ (state >> 27)) * 0x94d049bb133111ebull;
-        state ^= state >> 31;
-    };
+    const auto mix = [&](uint64_t bits) { state = HashWith(state, bits); };
     const auto pair = [](float a, float b) {
         return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
     };
@@ -192,7 +187,7 @@ float NumberOf(const RTCRay& ray, const RTCHit& hit) {
     mix(pair(ray.dir_y, ray.dir_z));
     mix(uint64_t(hit.geomID) << 32 | hit.primID);
     mix(hit.instID[0]);
-    return float(state >> 40) * 0x1p-24f;
+    return UnitFloat(state);
 }
 
 EmbreeScene Accelerator::Implementation::NewScene() {

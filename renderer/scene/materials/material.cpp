@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "renderer/base/hash.h"
 #include "renderer/base/math.h"
 #include "renderer/base/variant.h"
 #include "renderer/input/spectrum.h"
@@ -194,16 +195,11 @@ Frame TangentFrame(const SurfaceInteraction& hit) {
     return frame;
 }
 
-// Returns a number of [0, 1) that a place determines. Mixes by Stafford 2011, variant 13.
-float NumberAt(const Vec3f& p) {
-    uint64_t state = 0;
-    for (const float x : p) {
-        state = (state ^ std::bit_cast<uint32_t>(x)) + 0x9e3779b97f4a7c15ull;
-        state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ull;
-        state = (state ^ (state >> 27)) * 0x94d049bb133111ebull;
-        state ^= state >> 31;
-    }
-    return float(state >> 40) * 0x1p-24f;
+// Returns a number of [0, 1) that a place and a material determine.
+float NumberAt(const Vec3f& p, int material) {
+    uint64_t state = uint64_t(material);
+    for (const float x : p) state = HashWith(state, std::bit_cast<uint32_t>(x));
+    return UnitFloat(state);
 }
 
 void WarnUnlessShare(const MaterialReader& in, const std::string& name, float least, float most) {
@@ -266,13 +262,13 @@ SurfaceNeeds MaterialTable::Needs(int material) const { return materials[materia
 
 Bsdf MaterialTable::MakeBsdf(const TextureTable& textures, SurfaceInteraction* hit) const {
     const TextureContext context{hit->p, hit->uv, hit->dpdx, hit->dpdy, &hit->n};
-    const Material* shown = &materials[hit->material];
-    while (shown->isChosen) {
-        const Mix& mix = std::get<Mix>(shown->kind);
-        const bool isFirst = NumberAt(hit->p) < textures.Evaluate(*mix.share, context);
-        shown = &materials[mix.operands[isFirst ? 0 : 1]];
+    int shown = hit->material;
+    while (materials[shown].isChosen) {
+        const Mix& mix = std::get<Mix>(materials[shown].kind);
+        const bool isFirst = NumberAt(hit->p, shown) < textures.Evaluate(*mix.share, context);
+        shown = mix.operands[isFirst ? 0 : 1];
     }
-    const Material& material = *shown;
+    const Material& material = materials[shown];
     if (material.isTilted) {
         if (material.tilt.bump) ApplyBumpMap(*material.tilt.bump, textures, hit);
         if (material.tilt.normalMap) ApplyNormalMap(*material.tilt.normalMap, textures, hit);

@@ -294,6 +294,24 @@ TEST(BumpMap, OfAMixIsThatOfTheMaterialShown) {
     EXPECT_NEAR(tilted, 250, 50);
 }
 
+// A mix within a mix makes a choice of its own.
+TEST(BumpMap, OfAMixOfMixesIsThatOfTheMaterialShown) {
+    MaterialScene b;
+    b.AddMaterial("matte");
+    b.AddMaterial("mirror", {Float("bumpmap", 0.5f)});
+    b.AddMaterial("mix", {Float("share", 0.5f)}).operands = {0, 1};
+    b.AddMaterial("mix", {Float("share", 0.5f)}).operands = {2, 0};
+    const MaterialTable table = b.Make();
+    int tilted = 0;
+    for (int i = 0; i < 1000; ++i) {
+        SurfaceInteraction hit = MaterialScene::Hit(3, Vec3f(0.5f, 0.001f * float(i), 0.5f));
+        hit.dndu = Vec3f(0, 0, 2);
+        table.MakeBsdf(b.textures, &hit);
+        tilted += !hit.ns.isApprox(Vec3f::UnitZ());
+    }
+    EXPECT_NEAR(tilted, 250, 50);
+}
+
 }  // namespace
 
 }  // namespace lull::test
