@@ -193,7 +193,7 @@ CLI::Option* AddOption(CLI::App& app, const char* group, const std::string& name
                        bool (*parse)(const std::string&, T*), T* value, const std::string& wanted,
                        const std::string& help, const std::string& type) {
     const auto read = [=](const std::string& text) {
-        if (!parse(text, value)) throw CLI::ValidationError(text, "is not " + wanted);
+        if (!parse(text, value)) throw CLI::ValidationError(name, text + " is not " + wanted);
     };
     return app.add_option_function<std::string>(name, read, help)->group(group)->type_name(type);
 }

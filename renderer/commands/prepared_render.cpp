@@ -8,15 +8,20 @@
 #include <filesystem>
 #include <initializer_list>
 #include <numeric>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
+#include "renderer/commands/command.h"
 #include "renderer/files/file_io.h"
 #include "renderer/image/image_io.h"
 #include "renderer/mpi/job.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
 #include "renderer/scene/light_groups.h"
+#include "renderer/transport/integrator.h"
 #include "stopping/base/input_file.h"
+#include "stopping/base/parallel.h"
 
 namespace lull::render {
 
@@ -54,23 +59,89 @@ float LargestIn(const Image& mask, const PixelRect& pixels, const Vec2i& size) {
     return std::min(largest, 1.f);
 }
 
-// Returns the caution of each block by the mask, in eighths of that of the settings: there are nine
-// rules at the most. Blocks that do not vote add theirs to their leader.
-std::vector<double> ReadCautions(const PreparedRender& p) {
-    const Image mask = ReadImage(p.request.importance);
-    const FilmSettings& film = p.filmSettings;
-    std::vector<double> cautions;
-    for (const Block& block : p.blocks) {
-        PixelRect pixels = block.pixels;
+// Sets the caution of each block to that of the settings times factorIn(pixels). Blocks that do not
+// vote add theirs to their leader.
+template <typename Factor>
+void SetCautions(const std::string& source, const Factor& factorIn, PreparedRender* p) {
+    for (const Block& block : p->blocks)
+        p->cautions.push_back(p->settings.caution * factorIn(block.pixels));
+    for (size_t i = 0; i < p->blocks.size(); ++i)
+        if (const int leader = p->blocks[i].leader; leader >= 0)
+            p->cautions[size_t(leader)] = std::max(p->cautions[size_t(leader)], p->cautions[i]);
+    p->rule.text += ", importance " + source;
+}
+
+// Multiplies the caution by 1 and the mask, in eighths: there are nine rules at the most.
+void SetCautionsByMask(PreparedRender* p) {
+    const Image mask = ReadImage(p->request.importance);
+    const FilmSettings& film = p->filmSettings;
+    const auto factorIn = [&](PixelRect pixels) {
         if (pixels.min.x() >= film.cropMax.x())  // of the right eye
             for (Vec2i* corner : {&pixels.min, &pixels.max}) corner->x() -= film.Size().x();
-        const double largest = std::round(8 * LargestIn(mask, pixels, film.resolution)) / 8;
-        cautions.push_back(p.settings.caution * (1 + largest));
-    }
-    for (size_t i = 0; i < p.blocks.size(); ++i)
-        if (const int leader = p.blocks[i].leader; leader >= 0)
-            cautions[size_t(leader)] = std::max(cautions[size_t(leader)], cautions[i]);
-    return cautions;
+        return 1 + std::round(8 * LargestIn(mask, pixels, film.resolution)) / 8;
+    };
+    SetCautions(FileChecksum(p->request.importance), factorIn, p);
+}
+
+// An object or a material, and the factor of caution where it is seen.
+struct ImportantObject {
+    std::string name;
+    double factor;
+};
+
+// Returns those of --importance NAME=X; nothing where it is a mask.
+std::optional<ImportantObject> ObjectOf(const std::string& importance) {
+    const size_t equals = importance.rfind('=');
+    std::array<double, 1> factor;
+    if (equals == std::string::npos ||
+        !ParseNumbers(std::string_view(importance).substr(equals + 1), ',', &factor))
+        return {};
+    if (!(factor[0] >= 0.01 && factor[0] <= 100))
+        throw UsageError("--importance: the factor of {} is not from 0.01 to 100", importance);
+    return {{importance.substr(0, equals), factor[0]}};
+}
+
+// Multiplies the caution of blocks where the first sample of a pixel sees the object or material.
+void SetCautionsByObject(const ImportantObject& important, PreparedRender* p) {
+    const Scene& scene = *p->scene;
+    const auto numbersOf = [&](size_t count, const auto& nameOf) {
+        std::vector<bool> isNamed(count + 1);
+        for (uint32_t n = 1; n <= count; ++n) isNamed[n] = nameOf(n) == important.name;
+        return isNamed;
+    };
+    const std::vector<bool> objects =
+        numbersOf(p->description.shapes.size() + scene.shapes.instances.size(),
+                  [&](uint32_t n) { return NameOfObject(n, p->description, scene); });
+    const std::vector<bool> materials = numbersOf(p->description.materials.size(), [&](uint32_t n) {
+        return NameOfMaterial(n, p->description);
+    });
+    if (std::ranges::count(objects, true) + std::ranges::count(materials, true) == 0)
+        throw Error(
+            "--importance: no object and no material is named '{}'; the EXR of --aov cryptomatte "
+            "has their names",
+            Printable(important.name));
+    const auto isSeenAt = [&](const Vec2i& pixel) {
+        Sampler sampler(SamplerKind::Random, p->settings.seed);
+        PathSample sample{.asksForHit = true};
+        RenderSample(scene, p->settings.estimator, sampler, pixel, 0, &sample);
+        return objects[sample.hit.object] || materials[sample.hit.material];
+    };
+    std::vector<char> isSeen(p->blocks.size());
+    RunWithThreads(p->settings.scene.compile.threads, [&] {
+        ForEachIndex(int(isSeen.size()), [&](int i) {
+            const PixelRect& rect = p->blocks[size_t(i)].pixels;
+            for (int y = rect.min.y(); y < rect.max.y() && !isSeen[size_t(i)]; ++y)
+                for (int x = rect.min.x(); x < rect.max.x() && !isSeen[size_t(i)]; ++x)
+                    isSeen[size_t(i)] = isSeenAt({x, y});
+        });
+    });
+    if (std::ranges::count(isSeen, 1) == 0)
+        p->warnings.Add({}, "--importance: nothing of that name is seen",
+                        Printable(important.name));
+    size_t i = 0;
+    SetCautions(
+        p->request.importance, [&](const PixelRect&) { return isSeen[i++] ? important.factor : 1; },
+        p);
 }
 
 // Reads the rule, lets the schedule suit it, and cuts the blocks.
@@ -95,8 +166,7 @@ void PrepareRule(PreparedRender* p) {
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
     if (p->request.importance.empty()) return;
     p->ReadRule("--importance", rule, 2 * settings.caution);  // has to be one that takes caution
-    p->cautions = ReadCautions(*p);
-    p->rule.text += ", importance " + FileChecksum(p->request.importance);
+    if (!ObjectOf(p->request.importance)) SetCautionsByMask(p);
 }
 
 // Warns of blocks that no criterion will ever stop.
@@ -212,6 +282,8 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     p->display = MakeDisplay(request, std::filesystem::path(p->files.exr).filename(), region,
                              ranks->Count());
     p->Compile();
+    if (const auto important = ObjectOf(request.importance))
+        SetCautionsByObject(*important, p.get());
     p->film.layers.groups = ChooseLightGroups(request.lightGroups, p->description, *p->scene);
     CheckFilmFits(region, FilmFor(*p->scene, p->film), BytesBeside(request));
     SetProvenance(*p, &p->provenance);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <utility>
 
 #include "renderer/base/clocks.h"
 #include "renderer/commands/prepared_render.h"
@@ -119,8 +120,10 @@ int RemoveUnknownErrors(const RenderResult& result, const PixelRect& region,
     return count;
 }
 
-// A preview that cannot be written is a warning: the files may be written in the end.
-void WritePreview(const PreparedRender& p, Session* session, const RenderResult& result) try {
+// A preview that cannot be written is a warning, the first time: the files may be written in the
+// end.
+void WritePreview(const PreparedRender& p, Session* session, const RenderResult& result,
+                  bool* warned) try {
     const Film& film = session->GetFilm();
     std::optional<DenoisedImage> denoised;
     if (p.request.denoise) {
@@ -135,7 +138,8 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
                {film, denoised ? &*denoised : nullptr, result, {}, p.request.pictures}, &written);
     written.Check();
 } catch (const Error& e) {
-    MessagesOf(p.settings).Warn(fmt::format("no preview: {}", e.what()));
+    if (!std::exchange(*warned, true))
+        MessagesOf(p.settings).Warn(fmt::format("no preview: {}", e.what()));
 }
 
 // Renders, and shows pictures on the way where they are asked for.
@@ -148,7 +152,9 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
             });
     if (p->request.preview)
         session->Preview(*p->request.preview,
-                         [=](const RenderResult& result) { WritePreview(*p, session, result); });
+                         [=, warned = false](const RenderResult& result) mutable {
+                             WritePreview(*p, session, result, &warned);
+                         });
     return p->Run(session);
 }
 

@@ -207,8 +207,9 @@ void AddRenderOptions(CLI::App& app, RenderRequest* o) {
     AddCautionOptions(app, kCommonOptions, &o->render.caution);
     AddOption(
         app, "Stopping", "--importance", &o->importance,
-        "Multiply the caution of a block by 1 + the largest value, 0 to 1, of this image in it",
-        "MASK.png");
+        "Multiply the caution of a block by 1 + the largest value, 0 to 1, of this image in it, or "
+        "by X where this object or material is seen",
+        "MASK.png|NAME=X");
     AddOption(app, "Stopping", "--graded-by", &o->gradedBy,
               "Judge the image brightened by EV stops as well; the noisier counts", "EV",
               Between(-100.f, 100.f));

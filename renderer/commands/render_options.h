@@ -27,7 +27,7 @@ struct RenderRequest {
     std::string time, until;     // of a clock, as given; both empty: none
     std::string output, report;  // empty: as the scene says; none
     std::optional<std::string> stop;
-    std::string importance;  // file of the mask that raises the caution of blocks; empty: none
+    std::string importance;  // mask, or NAME=X, that changes the caution of blocks; empty: none
     std::optional<int> spp;  // nothing: as the rule says
     AovSet aovs;
     std::vector<std::string> lightGroups;  // their names; empty: none

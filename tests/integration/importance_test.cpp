@@ -49,6 +49,23 @@ TEST(Importance, IsTheCautionOfBlocks) {
               directory.Stops(denoised + "--caution 2")[0]);
 }
 
+// A small sphere, here by its material, is seen in the middle of the three columns alone.
+TEST(Importance, IsThatOfAnObject) {
+    const MaskDirectory directory;
+    directory.Write("scene.pbrt",
+                    SceneText("MakeNamedMaterial \"ball\" \"string type\" \"matte\" "
+                              "NamedMaterial \"ball\" Shape \"sphere\" \"float radius\" 0.2"));
+    const std::string rule = "--stop lnoise:0.4 ";
+    const std::vector<int> careful = directory.Stops(rule + "--caution 2"),
+                           plain = directory.Stops(rule);
+    const std::vector<int> stops = directory.Stops(rule + "--importance ball=2");
+    for (size_t i = 0; i < 6; ++i) EXPECT_EQ(stops[i], i % 3 == 1 ? careful[i] : plain[i]) << i;
+    const std::string start = "render scene.pbrt -o out.exr --stop lnoise ";
+    ExpectFailure(directory, start + "--importance cube=2",
+                  {"--importance", "'cube'", "cryptomatte"});
+    ExpectFailure(directory, start + "--importance ball=0", {"--importance", "0.01"}, 2);
+}
+
 // Each eye of a pair has the whole mask, and a crop its part.
 TEST(Importance, CoversTheImage) {
     const MaskDirectory directory;
