@@ -8,8 +8,8 @@ Numbers may differ by 0.3 or 2 %: other processors round differently, and a bloc
 
 A command is an indented line, or several with \\ at their ends, that begins with "lull evaluate" or "lull train"; its
 output is the fenced block that follows it. Commands run in stopping/data. A figure elsewhere names the block that it
-repeats: `<!--LABEL:COLUMN-->` after it, with `<!-- output: LABEL: ROW -->` after the fenced block of that row. It may be
-rounded.
+repeats: `<!--LABEL:COLUMN-->` after it, with `<!--output:LABEL:ROW-->` after the fenced block of that row, `_` for blanks. It
+may be rounded.
 """
 
 import argparse
@@ -22,7 +22,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = ['tests/measurements/models.md', 'stopping/docs/paper.md', 'README.md']
 COMMAND = re.compile(r'^((?:    .*\\\n)*    lull (?:evaluate|train) [^\n]*(?:(?<=\\)\n    [^\n]*)*)\n\n```text\n(.*?)```\n', re.M | re.S)
-OUTPUT = re.compile(r'<!-- output: ([^:]*): ((?:[^:]|:(?! ))*) -->')
+OUTPUT = re.compile(r'<!--output:([\w-]+):(\S*)-->')
 FIGURE = re.compile(r'([0-9.-]+)(\**(?: %)?<!--([\w-]+):([^>]*)-->)')
 
 
@@ -80,7 +80,7 @@ def main():
             output = run(options.lull, match[1]) if runs else match[2]
             labels = re.match(r'(?:<!--.*?-->\n)*', text[match.end():])[0]
             for label, row in OUTPUT.findall(labels):
-                known[label] = output if options.write else match[2], row
+                known[label] = output if options.write else match[2], row.replace('_', ' ')
             if not agree(match[2], output):
                 wrong.append(f'{name}: {match[1].strip()}\n--- documented\n{match[2]}--- printed\n{output}')
             return f'{match[1]}\n\n```text\n{output}```\n'
