@@ -41,7 +41,7 @@ QUANTITIES = [
     ('scenes of the viewpoints', MODELS, 'ten viewpoints of # scenes', 'Evidence from # scenes'),
     ('blocks of the viewpoints', TRAINING, 'of the # blocks are missing', '89 of the # blocks'),
     ('blocks by night', MODELS, 'of the # night blocks', '# of the 89 are by night'),
-    ('blocks recorded first', MODELS, 'on the # of first-blocks.csv', 'these # again', 'constant for the #,', 'lists the # that'),
+    ('blocks recorded first', MODELS, 'on the # of first-blocks.csv', 'these # again', 'the # blocks. nearness', 'lists the # that'),
     ('blocks recorded later', MODELS, '# blocks were recorded after', 'before the other # '),
     ('early stops', RULES, 'below # % of the human threshold'),
     ('late stops', RULES, 'late ones above # %'),
