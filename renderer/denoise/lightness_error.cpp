@@ -23,12 +23,12 @@ constexpr int kCoarseRadius = 3;  // pixels
 constexpr float kCoarseGain = 1;
 constexpr float kVisible = 1.13f;  // times the standard deviation of a sum of products of noise
 // Total error / difference of the halves, and its standard deviation, over 53 pictures of nine
-// scenes (tests/measurements/denoiser.md).
+// scenes (tests/measurements/renderer.md).
 constexpr double kUsual = 1.27;
 constexpr double kUsualDeviation = 0.25;
 // Standard deviation of the logarithm of the true error about its estimate, beyond the variances of
 // the samples and of the usual ratio. Chosen on 13 scenes by three seeds, so that the bound of the
-// visible difference is exceeded in 7 % (tests/measurements/denoiser.md).
+// visible difference is exceeded in 7 % (tests/measurements/renderer.md).
 constexpr double kModelDeviation = 0.15;
 // The bound is not below this fraction of the samples' own bound, because of errors hidden under
 // the noise of unusual pictures.

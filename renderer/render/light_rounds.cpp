@@ -12,7 +12,7 @@ namespace {
 constexpr uint32_t kChunk = 1024;  // light paths that a thread takes
 
 // Costs of a light path, and of a subpath from a light with its connections, in camera's subpaths
-// with the light that is sampled at their vertices (renderer/docs/transport.md).
+// with the light that is sampled at their vertices (renderer/docs/rendering.md).
 constexpr double kCostOfLightPath = 1, kCostOfConnections = 2.5;
 
 // Moves a share half of the way, on a scale of ratios, to where `variance` at a share of 1, over

@@ -1,5 +1,11 @@
 // Writes the tables of this folder: cases.csv, all cases with their results, and heavy_tails.csv,
 // the bias of stopping rules on samples of heavy tails. Prints how many cases failed.
+//
+//     hard_cases_tables stopping/models/entropy.h5 tests/hard_cases
+//
+// A case passes if lull's value is within the tolerance of the answer. Radiance is rendered with
+// both estimators; the worse is shown. Its tolerance is 4.5 measured standard errors, plus the one
+// in the note. Counts of failures have no tolerance at all.
 #include <fmt/format.h>
 
 #include <fstream>

@@ -8,8 +8,8 @@ Numbers may differ by 0.3 or 2 %: other processors round differently, and a bloc
 
 A command is an indented line, or several with \\ at their ends, that begins with "lull evaluate" or "lull train"; its
 output is the fenced block that follows it. Commands run in stopping/data. A figure elsewhere names the block that it
-repeats: `<!-- figure: LABEL -->` after it, with `<!-- output: LABEL: ROW: COLUMN -->` after the fenced block of that
-row and column. It may be rounded.
+repeats: `<!--LABEL:COLUMN-->` after it, with `<!--output:LABEL:ROW-->` after the fenced block of that row, `_` for blanks. It
+may be rounded.
 """
 
 import argparse
@@ -22,8 +22,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = ['tests/measurements/models.md', 'stopping/docs/paper.md', 'README.md']
 COMMAND = re.compile(r'^((?:    .*\\\n)*    lull (?:evaluate|train) [^\n]*(?:(?<=\\)\n    [^\n]*)*)\n\n```text\n(.*?)```\n', re.M | re.S)
-OUTPUT = re.compile(r'<!-- output: ([^:]*): ((?:[^:]|:(?! ))*): ([^:]*) -->')
-FIGURE = re.compile(r'([0-9.-]+)(\**(?: %)?<!-- figure: ([^>]*?) -->)')
+OUTPUT = re.compile(r'<!--output:([\w-]+):(\S*)-->')
+FIGURE = re.compile(r'([0-9.-]+)(\**(?: %)?<!--([\w-]+):([^>]*)-->)')
 
 
 def run(lull, command):
@@ -79,19 +79,21 @@ def main():
             commands += runs
             output = run(options.lull, match[1]) if runs else match[2]
             labels = re.match(r'(?:<!--.*?-->\n)*', text[match.end():])[0]
-            for label, row, column in OUTPUT.findall(labels):
-                known[label] = cell(output if options.write else match[2], row, column)
+            for label, row in OUTPUT.findall(labels):
+                known[label] = output if options.write else match[2], row.replace('_', ' ')
             if not agree(match[2], output):
                 wrong.append(f'{name}: {match[1].strip()}\n--- documented\n{match[2]}--- printed\n{output}')
             return f'{match[1]}\n\n```text\n{output}```\n'
         texts[name] = COMMAND.sub(replace, text)
     for name, text in texts.items():
-        for number, _, label in FIGURE.findall(text):
-            if label not in known or rounded(known[label], number) != number:
-                wrong.append(f'{name}: {number} is not {label}, {known.get(label)}')
+        for number, _, label, column in FIGURE.findall(text):
+            value = cell(*known[label], column) if label in known else None
+            if value is None or rounded(value, number) != number:
+                wrong.append(f'{name}: {number} is not {label}:{column}, {value}')
     if options.write:
         for name, text in texts.items():
-            (ROOT / name).write_text(FIGURE.sub(lambda f: rounded(known.get(f[3], f[1]), f[1]) + f[2], text))
+            (ROOT / name).write_text(FIGURE.sub(
+                lambda f: rounded(cell(*known[f[3]], f[4]) if f[3] in known else f[1], f[1]) + f[2], text))
         return 0
     if not commands:
         wrong.append('no command was found')

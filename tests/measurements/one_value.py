@@ -18,8 +18,8 @@ WORDS = {word: number for number, word in enumerate(
     'zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen'.split())}
 WORDS['twenty-six'] = 26
 
-README, DATA = 'README.md', 'stopping/data/README.md'
-MODELS, RENDERER, DENOISER = (f'tests/measurements/{name}.md' for name in ('models', 'renderer', 'denoiser'))
+README = 'README.md'
+MODELS, RENDERER = (f'tests/measurements/{name}.md' for name in ('models', 'renderer'))
 RULES, PAPER, TRAINING = (f'stopping/docs/{name}.md' for name in ('entropy', 'paper', 'training'))
 REFERENCE, RENDERING, BLENDER = (f'renderer/docs/{name}.md' for name in ('reference', 'rendering', 'blender'))
 SPEED = 'tests/measurements/pbrt_speed.csv', 'samples_per_second'
@@ -39,7 +39,7 @@ QUANTITIES = [
      'Thirteen of the # are by night'),
     ('viewpoints', MODELS, '89 blocks of # viewpoints', '160 blocks of # viewpoints', r'\| 89 of # viewpoints'),
     ('scenes of the viewpoints', MODELS, 'ten viewpoints of # scenes', 'Evidence from # scenes'),
-    ('blocks of the viewpoints', DATA, 'of the # blocks are missing', '89 of the # blocks'),
+    ('blocks of the viewpoints', TRAINING, 'of the # blocks are missing', '89 of the # blocks'),
     ('blocks by night', MODELS, 'of the # night blocks', '# of the 89 are by night'),
     ('blocks recorded first', MODELS, 'on the # of first-blocks.csv', 'these # again', 'the # blocks. nearness', 'lists the # that'),
     ('blocks recorded later', MODELS, '# blocks were recorded after', 'before the other # '),
