@@ -21,7 +21,6 @@ namespace lull {
 
 namespace {
 
-// The subcommands that several ranks can share.
 constexpr std::array kSharedCommands = {"render", "compare", "record"};
 
 ExitCode Run(MpiJob* job, const Command& command) {

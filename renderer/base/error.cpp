@@ -18,7 +18,6 @@ std::string FileLoc::Prefix() const {
 
 namespace {
 
-// Returns a line of UTF-8 with " ... " in place of its middle where it is longer than `most` bytes.
 std::string WithoutMiddle(const std::string& line, size_t most) {
     if (line.size() <= most) return line;
     size_t begin = line.size() - most / 2;

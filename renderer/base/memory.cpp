@@ -50,7 +50,6 @@ constexpr uintptr_t kLargePage = uintptr_t(1) << 21;
 
 uintptr_t RoundedUp(uintptr_t at) { return (at + kLargePage - 1) / kLargePage * kLargePage; }
 
-// A range of addresses that belongs to no file.
 struct AnonymousRange {
     uintptr_t begin, end;
     uintptr_t kibibytesInUse;
@@ -76,7 +75,6 @@ std::vector<AnonymousRange> AnonymousRanges() {
     return ranges;
 }
 
-// Returns whether nine tenths of a large page's addresses are in memory.
 bool IsNearlyAllInUse(uintptr_t at, std::vector<unsigned char>* pages) {
     if (mincore(reinterpret_cast<void*>(at), kLargePage, pages->data()) != 0) return false;
     const auto inUse =

@@ -93,7 +93,6 @@ BlockDistribution::BlockDistribution(int columns, int rows, const Weigh& weigh, 
     blocks = Distribution2D(means, across, down);
     if (total > 0) scale = float(double(columns) * rows / Sqr(kSide));
 
-    // Leave out as many tables as the tolerance allows.
     std::vector<int> order(count);
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),

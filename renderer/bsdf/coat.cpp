@@ -13,7 +13,6 @@ float CosineInside(float cosine, float eta) {
     return std::sqrt(std::max(1 - (1 - Sqr(cosine)) / Sqr(eta), 1e-12f));
 }
 
-// Returns Smith's auxiliary function.
 float Lambda(const TrowbridgeReitz& distribution, const Vec3f& w) {
     return 0.5f * (distribution.Stretch(w) / std::abs(w.z()) - 1);
 }
@@ -24,7 +23,6 @@ float MaskingOfSecond(const TrowbridgeReitz& d, const Vec3f& v, const Vec3f& w) 
     return first / (first + Lambda(d, w));
 }
 
-// A point set in the unit cube (Roberts 2018).
 Vec3f LatticePoint(int i) {
     const auto fraction = [](double x) { return float(x - std::floor(x)); };
     return {fraction(0.5 + 0.8191725133961645 * i), fraction(0.5 + 0.6710436067037893 * i),
@@ -39,7 +37,6 @@ constexpr int kRows = 33;  // of rough coats
 
 float AlphaOfRow(int i) { return std::max(1e-3f, Sqr(float(i) / (kRows - 1))); }
 
-// Random numbers that two directions determine.
 class WalkNumbers {
   public:
     WalkNumbers(const Vec3f& wo, const Vec3f& wi) {
@@ -116,7 +113,6 @@ class ConductorWalk {
         return f;
     }
 
-    // Returns f of the coat's own reflection.
     float Reflected(const Vec3f& wo, const Vec3f& wi) const {
         if (isCoatSmooth) return 0;
         const Vec3f h = wo + wi;
@@ -142,7 +138,6 @@ class ConductorWalk {
     static float Power(float a, float b) { return a > 0 ? Sqr(a) / (Sqr(a) + Sqr(b)) : 0; }
     float Attenuation(const Vec3f& w) const { return lull::Attenuation(thickness, w); }
 
-    // Lets light from above through the coat.
     std::optional<Crossing> Enter(const Vec3f& w, WalkNumbers& numbers) const {
         const Vec2f u = numbers.Get2D();
         const Vec3f h = isCoatSmooth ? Vec3f(Vec3f::UnitZ()) : coat.SampleVisibleNormal(w, u);

@@ -169,7 +169,6 @@ constexpr float kMeanOfF90[kRoughnesses] = {0.0477837f,  0.0476552f,  0.0464072f
                                             0.0165212f,  0.012765f,   0.00981358f, 0.00754115f,
                                             0.00581187f, 0.00450308f, 0.0035134f,  0.00276321f};
 
-// A place between two nodes.
 struct Place {
     int i;
     float t;

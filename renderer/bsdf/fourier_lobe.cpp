@@ -23,7 +23,6 @@ struct WeightedSeries {
             }
     }
 
-    // Returns coefficient k of a channel.
     float Coefficient(const FourierTable& table, int channel, int k) const {
         float sum = 0;
         for (int e = 0; e < count; ++e)
@@ -34,7 +33,6 @@ struct WeightedSeries {
     }
 };
 
-// Samples mu of i from the spline of first coefficients in the row of wo.
 float SampleCosine(const FourierTable& table, const SplineWeights& o, float u) {
     const int n = int(table.mu.size());
     const auto cdf = [&](int i) {

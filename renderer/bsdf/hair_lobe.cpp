@@ -44,7 +44,6 @@ double SampleAzimuthal(double u, double s) {
     return std::clamp(x, -std::numbers::pi, std::numbers::pi);
 }
 
-// Terms of the outgoing direction alone.
 struct Outgoing {
     float sinTheta, cosTheta, phi;
     float gammaO, gammaT;  // angles to the normal, outside and inside, across the hair

@@ -51,7 +51,6 @@ double SingleScattering(double sigmaS, double g, double eta, double r) {
     return sum / kDepths;
 }
 
-// Integrates the spline through the values up to each node.
 void Integrate(std::span<const float> x, std::span<const float> f, std::span<float> cdf) {
     const int n = int(x.size());
     cdf[0] = 0;

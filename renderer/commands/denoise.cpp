@@ -89,7 +89,6 @@ void UseOneWindow(const Options& options, ExrImage* a, ExrImage* b) {
     MoveTo(ShownWindow(*b, options.half), b);
 }
 
-// Writes what an image shows within a window.
 void WriteShown(const std::string& png, const PixelRect& shown, const PixelRect& data,
                 const RgbImage& image) {
     const RgbImage picture = {shown.Width(), shown.Height(), MovedTo(shown, data, 3, image.values)};

@@ -90,7 +90,6 @@ void PrintAppearance(const Description& description, const Scene& scene) {
     Line("lights", CountsText(lights));
 }
 
-// Returns the names of glTF's objects that are flat slabs of clear solid glass.
 std::vector<std::string> NamesOfSlabs(const Description& description, const Scene& scene) {
     std::vector<std::string> names;
     size_t index = 0;

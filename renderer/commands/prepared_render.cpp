@@ -73,7 +73,6 @@ std::vector<double> ReadCautions(const PreparedRender& p) {
     return cautions;
 }
 
-// Reads the rule, lets the schedule suit it, and cuts the blocks.
 void PrepareRule(PreparedRender* p) {
     RenderSettings& settings = p->settings;
     ScheduleOptions& schedule = settings.schedule;
@@ -99,7 +98,6 @@ void PrepareRule(PreparedRender* p) {
     p->rule.text += ", importance " + FileChecksum(p->request.importance);
 }
 
-// Warns of blocks that no criterion will ever stop.
 void CheckBlocks(std::span<const Block> blocks, int smallestSide, Warnings& warnings) {
     for (const Block& block : blocks)
         if (!block.votes && block.leader < 0)
@@ -109,7 +107,6 @@ void CheckBlocks(std::span<const Block> blocks, int smallestSide, Warnings& warn
                                      smallestSide));
 }
 
-// Returns whether a rule looks at the half after any of the passes of a block.
 bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
     const std::unique_ptr<Criterion> criterion = MakeCriterion(rule);
     for (int spp = 0; spp < schedule.cap;) {
@@ -167,7 +164,6 @@ RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) 
     return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
 }
 
-// Returns all files that may be written or removed.
 std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
     std::vector<NamedFile> outputs;
     for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds})
@@ -229,7 +225,6 @@ std::string FirstDifference(const std::string& text, const std::string& other) {
     return "";
 }
 
-// Returns whether a file is there and was not cut short.
 bool IsWhole(const std::string& file) try {
     if (!IsThere(file)) return false;
     if (file.ends_with(".png")) return ReadImage(file).width > 0;
@@ -241,7 +236,6 @@ bool IsWhole(const std::string& file) try {
     return false;
 }
 
-// Returns whether all files but the EXR that a render ends with are there, none of them cut short.
 bool AreWhole(const RenderFiles& files) {
     const std::initializer_list<std::string> others = {files.png, files.sppMap, files.thresholds,
                                                        files.report};

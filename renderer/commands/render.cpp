@@ -44,7 +44,6 @@ CriterionMaker MakeCautiousCriteria(const PreparedRender& p) {
     };
 }
 
-// Returns the maker of the criteria; for a page, they also keep the curves of each block.
 CriterionMaker MakeCriterionMaker(PreparedRender* p) {
     CriterionMaker criteriaOf = MakeCautiousCriteria(*p);
     if (!p->request.HasPage()) return criteriaOf;
@@ -56,7 +55,6 @@ CriterionMaker MakeCriterionMaker(PreparedRender* p) {
     };
 }
 
-// Adds who hears of the render beside those that every command has.
 void AddListeners(const PreparedRender& p, RenderEvents* events) {
     const Messages messages = MessagesOf(p.settings);
     if (p.clock)
@@ -152,7 +150,6 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     return p->Run(session);
 }
 
-// Denoised image of a finished render.
 struct DenoiserResults {
     std::optional<DenoisedImage> image;
     std::vector<ExrChannel> halves;  // what can be denoised later
@@ -238,7 +235,6 @@ ResultFiles WriteFiles(PreparedRender& p, const Film& film, const RenderResult& 
     return results;
 }
 
-// Prints how the render ended, writes all files, and prints how it continues.
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
     const RenderSettings& settings = p.settings;
     const Messages messages = MessagesOf(settings);
@@ -258,7 +254,6 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     return result.cancelled ? kInterrupted : kDone;
 }
 
-// Prints the path of a sample instead.
 ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();

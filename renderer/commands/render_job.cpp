@@ -26,7 +26,6 @@ namespace lull {
 
 namespace {
 
-// Lets all ranks share a render, of which a warning says so if one does not answer.
 void ShareAmongRanks(MpiJob* ranks, SessionOptions* options) {
     options->agree = [ranks](const std::string& what) { ranks->Begin(what); };
     options->render.peers = ranks->GetPeers();

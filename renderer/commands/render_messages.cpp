@@ -60,7 +60,6 @@ void WarnOfRejected(int64_t rejected, const Messages& messages) {
             fmt::format("{} samples were not finite or negative; they count as black", rejected));
 }
 
-// Returns how much ranks of different speed had to do in the end.
 std::string SharesOf(const std::vector<double>& shares) {
     if (shares.empty()) return "";
     const auto [least, most] = std::ranges::minmax(shares);
@@ -155,7 +154,6 @@ std::string WayOf(const PathStep& step) {
         Numbers(step.direction), density);
 }
 
-// Returns why there is no further step.
 std::string EndOf(const PathLog& log, const Scene& scene) {
     if (log.steps.empty()) return "It meets nothing that emits or scatters.\n";
     const PathStep& last = log.steps.back();

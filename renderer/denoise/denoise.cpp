@@ -205,7 +205,6 @@ DenoisedPicture Denoise(NoisyPicture in, Effort effort, const ShareListener& onS
 
 namespace {
 
-// Adds an image of half the size, linearly interpolated between the centres of its pixels.
 void AddEnlarged(const Planes& half, Planes* image) {
     const auto neighbour = [](int i, int size) {
         return std::clamp(i / 2 + (i % 2 == 0 ? -1 : 1), 0, size - 1);

@@ -20,7 +20,6 @@ void Add(const Halves& halves, Halves* sum) {
     Add(halves.b, &sum->b);
 }
 
-// Replaces the errors of blocks by larger ones of the same blocks.
 void Raise(const Blocks& errors, Blocks* blocks) {
     for (size_t i = 0; i < blocks->size(); ++i) {
         if (!errors[i]) continue;
@@ -56,7 +55,6 @@ struct ShownPicture {
     static constexpr int kRows = 232;  // with margins not more than BandRows() takes at once
 };
 
-// Returns the structure that a picture lacks.
 Planes StructureLeft(const ShownPicture& picture) {
     const DenoisedPicture& linear = picture.linear;
     if (!picture.grading) return StructureLeft(linear.noisy, linear.variance, linear.halves);
@@ -69,7 +67,6 @@ Planes StructureLeft(const ShownPicture& picture) {
     return left;
 }
 
-// Returns the standard errors of pixels.
 std::vector<float> DeviationOf(const ShownPicture& picture, const Planes& structure) {
     std::vector<float> deviation;
     deviation.reserve(structure.Area());
@@ -82,7 +79,6 @@ std::vector<float> DeviationOf(const ShownPicture& picture, const Planes& struct
     return deviation;
 }
 
-// Measures the error of a block.
 VisibleError ErrorIn(const ShownPicture& picture, const Planes& structure, const PixelRect& block) {
     const ImageTile tile{block.min.x(), block.min.y(), block.max.x(), block.max.y()};
     const ImageTile crop = tile.Grown(kErrorReach).Within(picture.Width(), picture.Height());
@@ -109,7 +105,6 @@ std::vector<float> MeasureShown(const ShownPicture& picture, std::span<const Pix
     return withDeviation ? DeviationOf(picture, structure) : std::vector<float>();
 }
 
-// Measures the error of a denoised picture, whose memory it uses.
 DenoisedImage Measured(DenoisedPicture denoised, std::span<const PixelRect> places,
                        const DenoiserOptions& options) {
     DenoisedImage result;

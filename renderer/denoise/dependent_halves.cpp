@@ -72,7 +72,6 @@ TileSums SumTile(const Planes& a, const Planes& b, int x0, int y0) {
     return sums;
 }
 
-// A weighted mean of many values.
 struct Mean {
     double weights = 0, sum = 0, weightSquares = 0, weighted = 0, squares = 0;
     int count = 0;

@@ -14,7 +14,6 @@ constexpr int kBandRows = 256;          // over which what is taken is returned 
 constexpr int kRounds = 2;              // as fireflies hide each other
 constexpr float kMostReturned = 0.05f;  // of a pixel's brightness, by one firefly
 
-// The extremes of the luminance of a pixel and its eight neighbours.
 struct Around {
     Planes least, most;
 };
@@ -42,7 +41,6 @@ struct Bright {
     float scale;
 };
 
-// Finds the fireflies of a tile.
 std::vector<Bright> FindIn(float limit, const Halves& halves, const ImageTile& tile) {
     const ImageTile crop = tile.Grown(kScaleRadius).Within(halves.a.width, halves.a.height);
     const Halves part = Crop(halves, crop);
@@ -76,7 +74,6 @@ std::vector<Bright> FindIn(float limit, const Halves& halves, const ImageTile& t
     return found;
 }
 
-// Finds those of an image, always in the same order.
 std::vector<Bright> Find(float limit, const Halves& halves) {
     const int width = halves.a.width, height = halves.a.height;
     std::vector<std::vector<Bright>> columns(size_t(width / kTileWidth + 1));
@@ -94,7 +91,6 @@ Planes Spread(Planes image) {
     return BoxSum(BoxSum(std::move(image), kSpreadRadius), kSpreadRadius);
 }
 
-// Rows of an image, and those within reach of the spread.
 struct Band {
     int y0, y1;
     ImageTile around;
@@ -113,7 +109,6 @@ struct Band {
     }
 };
 
-// Calls use(band) for all bands of an image.
 template <typename Use>
 void ForEachBand(const Planes& image, const Use& use) {
     for (int y0 = 0; y0 < image.height; y0 += kBandRows) {

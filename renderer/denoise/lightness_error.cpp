@@ -34,7 +34,6 @@ constexpr double kModelDeviation = 0.15;
 // the noise of unusual pictures.
 constexpr double kTrust = 0.8;
 
-// Sums up a sub-block.
 struct Sums {
     double count = 0, lightness = 0, lightnessSquares = 0, squared = 0, variance = 0, least = 0;
 
@@ -57,7 +56,6 @@ struct Sums {
     }
 };
 
-// Mean squares of errors, with the variance of the first.
 struct Squares {
     double estimate = 0, variance = 0, least = 0;
 };
@@ -95,7 +93,6 @@ Estimate FromSamples(std::span<const Squares> all) {
     return {inverse * mean, inverse * inverse * variance};
 }
 
-// Returns the usual error for this difference of the denoised halves.
 Estimate Usual(double least) {
     const double mean = Sqr(kUsual * least);
     return {mean, Sqr(2 * kUsualDeviation * mean)};
@@ -120,7 +117,6 @@ Planes LuminancesOf(const Planes& image) {
     return luminances;
 }
 
-// Returns slope * (a - b) of the luminances of two pictures, in lightness.
 Planes Difference(const Planes& a, const Planes& b, const Planes& slope) {
     Planes difference(a.width, a.height, 1);
     for (size_t i = 0; i < difference.Area(); ++i)
@@ -137,7 +133,6 @@ void AddSquare(const Planes& a, const Planes& b, const Planes& slope, float shar
     for (size_t i = 0; i < sum->Area(); ++i) sum->values[i] += share * Sqr(difference.values[i]);
 }
 
-// Measures all but the structure.
 EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
     EstimatedError error;
     error.lightness = Planes(denoised.picture.width, denoised.picture.height, 1);

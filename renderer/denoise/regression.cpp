@@ -79,7 +79,6 @@ void Solve(Equations* equations) {
         }
 }
 
-// Position of a neighbour.
 struct Neighbour {
     int x, y;            // relative to the pixel
     ptrdiff_t distance;  // in memory
@@ -187,7 +186,6 @@ class TileFits {
         }
     }
 
-    // Sets the terms of a neighbour in the equations. Features are relative to the pixel's.
     void Look(const Neighbour& at, const float* featuresHere, const float* coloursHere,
               std::array<Lanes, kColumns>* values) const {
         (*values)[0] = Lanes::Ones();
@@ -264,7 +262,6 @@ constexpr float kDarkest = 1e-3f;  // squared luminance below which errors are n
 constexpr float kAlikeVariance = 1e-4f;  // relative, squared; below it, pixels count alike
 constexpr float kChanceDeviations = 2;   // of chance that a candidate must be better by
 
-// Scale and weights of all candidates' errors.
 struct ErrorScale {
     Planes ofSquares;  // makes squared errors relative
     Planes weight;     // of pixels

@@ -67,7 +67,6 @@ ShownBlock Show(Planes picture, const Planes& returned, const DisplayModel& disp
     return block;
 }
 
-// Returns half the difference of two pictures.
 Planes HalfDifference(const Halves& halves) {
     Planes half = halves.a;
     for (size_t i = 0; i < half.values.size(); ++i)
@@ -75,7 +74,6 @@ Planes HalfDifference(const Halves& halves) {
     return half;
 }
 
-// Sets the error to 0 in these pixels of a block.
 void Clear(std::span<const size_t> pixels, const PixelRect& block, EstimatedError* error) {
     for (const size_t i : pixels) {
         const int x = block.min.x() + int(i) % block.Width(),

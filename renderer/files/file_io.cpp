@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 // Members of AtomicFile. It has linkage, and so must these.
 namespace file_io {
 
-// Owns a descriptor and, while `temporary` is not empty, the file of that name.
 struct OutputFile {
     int fd = -1;
     int lock = -1;  // another descriptor of the same file, which keeps it locked
@@ -75,7 +74,6 @@ fs::path BesideTarget(const fs::path& target, const std::string& tag) {
                                               tag, target.extension().string().substr(0, 32));
 }
 
-// Creates the file; returns false, with errno, where there is one or it cannot be created.
 bool Create(const fs::path& name, OutputFile* file) {
     file->fd = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file->fd >= 0) file->temporary = name;

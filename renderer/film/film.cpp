@@ -21,7 +21,6 @@ void Store(const Rgb& c, float* to) {
     for (int i = 0; i < 3; ++i) to[i] = c[i];
 }
 
-// Returns the tile that each pixel along an axis of `size` pixels is in.
 std::vector<int> TilesAlong(int size, const TileGrid& grid, bool isAcross) {
     std::vector<int> tiles;
     int tile = -1;

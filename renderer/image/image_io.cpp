@@ -152,7 +152,6 @@ Image Read(const std::string& name, size_t fileSize, const Open& open) try {
     FailToRead(name, e.what());
 }
 
-// Converts a picture to an EXR of its values.
 ExrImage ExrOf(const Image& picture) {
     ExrImage image;
     image.width = picture.width;

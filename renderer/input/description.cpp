@@ -13,7 +13,6 @@
 namespace lull {
 namespace {
 
-// Returns the numbers of `parameter` that make up one value of `type`.
 int Components(ParameterType type) {
     switch (type) {
         case ParameterType::Point2:

@@ -39,7 +39,6 @@ struct MeshShapes {
     std::vector<Vec3f> outline;
 };
 
-// One place where a mesh stands.
 struct Placement {
     int node;
     Mat4d worldFromMesh;
@@ -87,7 +86,6 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
     return result;
 }
 
-// Returns the mesh of a node as the node has it.
 PosedMesh MeshOf(const GltfDocument& document, int index) {
     const tinygltf::Node& node = document.model.nodes[size_t(index)];
     const std::vector<double>& usual = document.model.meshes[size_t(node.mesh)].weights;

@@ -24,7 +24,6 @@ struct HalfEdgeMesh {
     static int Previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
 };
 
-// Connects twins by sorting half-edges by their pair of vertices.
 void FindTwins(HalfEdgeMesh* mesh, const FileLoc& loc) {
     struct Key {
         int low, high, edge;

@@ -72,7 +72,6 @@ constexpr Directive kDirectives[] = {
 };
 static_assert(std::ranges::is_sorted(kDirectives, {}, &Directive::name));
 
-// Returns null where a token is no directive.
 const Directive* FindDirective(const Token& token) {
     if (token.kind != TokenKind::Word) return nullptr;
     const auto it = std::ranges::lower_bound(kDirectives, token.text, {}, &Directive::name);

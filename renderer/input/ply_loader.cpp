@@ -27,7 +27,6 @@ constexpr int64_t kMostElements = std::numeric_limits<int32_t>::max();
 // Names where the values of a vertex property go.
 enum Slot { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
 
-// Maps each slot to the property that fills it, -1 for none.
 using SlotMap = std::array<int, kSlots>;
 
 // Names of texture coordinates of vertices, in lower case without underscores; pbrt-v3 reads u and
@@ -152,7 +151,6 @@ uint32_t IndexOf(double written, const PlyCursor& cursor) {
     return uint32_t(index);
 }
 
-// One row of the faces.
 struct Face {
     size_t corners = 0;
     std::vector<uint32_t> vertices;  // empty: more than are modelled
@@ -212,7 +210,6 @@ void ReadFace(const PlyElement& element, PlyCursor& cursor, Face* face) {
 // Texture coordinates of the corners of triangles; none where they are those of the vertices.
 using WedgeUvs = std::vector<std::optional<std::array<Vec2f, 3>>>;
 
-// Adds the triangles of a face; `uvs`, if there are any, keep to them.
 void AddFace(const Face& face, const FileLoc& loc, MeshData* mesh, WedgeUvs* uvs,
              Warnings& warnings) {
     if (face.corners < 3 || face.vertices.empty()) {

@@ -109,7 +109,6 @@ int LaunchedProcesses() {
     return 1;
 }
 
-// FNV-1a.
 uint64_t HashOf(const std::string& text) {
     uint64_t hash = 0xcbf29ce484222325;
     for (const char c : text) hash = (hash ^ uint8_t(c)) * 0x100000001b3;

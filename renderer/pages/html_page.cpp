@@ -43,7 +43,6 @@ std::vector<float> Shrink(std::span<const float> values, int width, int height, 
     return means;
 }
 
-// Returns the pixels of an image.
 std::vector<Rgb> PixelsOf(const RgbImage& image) {
     std::vector<Rgb> pixels;
     pixels.reserve(image.values.size() / 3);
@@ -52,7 +51,6 @@ std::vector<Rgb> PixelsOf(const RgbImage& image) {
     return pixels;
 }
 
-// Shows the estimated errors of pixels.
 std::string ErrorUri(const DenoisedImage& denoised) {
     std::vector<float> shares;
     for (const float error : denoised.error) shares.push_back(std::min(1.f, error / 2));

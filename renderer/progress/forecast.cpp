@@ -70,7 +70,6 @@ double UsualSlope(std::span<const StopTrend> trends, double certain) {
     return MedianOf(&slopes);
 }
 
-// At which spp a block stops, without regard to the cap.
 struct Stop {
     double spp = 0;
     bool isLeast = true;  // more than that is not to be told

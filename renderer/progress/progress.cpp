@@ -53,7 +53,6 @@ std::string TextOf(const TimeLeft& left) {
                                                  : time + " left";
 }
 
-// Returns the columns of a terminal.
 int ColumnsOf(std::FILE* stream) {
     constexpr int kUsualColumns = 80;
     winsize size = {};

@@ -71,7 +71,6 @@ Floats ToFloats(const py::array& array, const std::string& name, int channels, p
     return Floats(wanted);
 }
 
-// The arrays that a lull_halves points to.
 class Halves {
   public:
     Halves(const py::array& a, const py::array& b, const char* name, int channels,

@@ -21,7 +21,6 @@ int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film
     return end;
 }
 
-// Returns the visible noise of a block, of any size, both of whose means are in the view.
 double NoiseOf(const BlockView& view) {
     if (std::min(view.width, view.height) >= kSmallestNoiseSide) return VisibleNoise(view);
     const LightnessNoise noise = ComputeLightnessNoise(view);

@@ -104,7 +104,6 @@ void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film) {
     if (MostSamples(rect, *film) < 0) throw Error("it has impossible counts of samples");
 }
 
-// Returns the shares of light rounds.
 BdptShares SharesIn(const Hdf5Group& root) {
     const std::vector<float> shares = root.Array<float>("shares", std::array<int64_t, 1>{2});
     if (!(shares[0] >= 0 && shares[0] <= 1 && shares[1] > 0 && shares[1] <= 1))

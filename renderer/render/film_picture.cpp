@@ -30,7 +30,6 @@ struct WholeLight {
     Rgb Look(const Vec2i& p) const { return film.MeanAt(p); }
 };
 
-// The same of a group of lights.
 struct GroupLight {
     const Film& film;
     const LightGroupLayer& layer;

@@ -11,7 +11,6 @@ namespace lull {
 
 namespace {
 
-// Returns the noise of blocks that the rule has stopped.
 double NoiseAtStop(const std::vector<BlockResult>& blocks) {
     std::vector<double> noise;
     for (const BlockResult& b : blocks)

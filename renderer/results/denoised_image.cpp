@@ -142,7 +142,6 @@ void AddChannels(const std::string& layer, const Planes& planes,
 template <size_t N>
 using FoundChannels = std::array<const float*, N>;
 
-// Returns channels that must be there.
 template <size_t N>
 FoundChannels<N> Channels(const ExrImage& image, const std::string& file, const std::string& layer,
                           const std::array<const char*, N>& names) {

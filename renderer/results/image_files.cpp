@@ -20,7 +20,6 @@ bool MayBeHalf(const std::string& name) {
            name.starts_with("N.") || name.starts_with("noisy.") || name.starts_with("light.");
 }
 
-// Makes the header of an image of a region of the film, with channels R, G, B and spp.
 ExrImage MakeExr(const PictureOrigin& origin, const PixelRect& region, int64_t samples,
                  double seconds) {
     const auto& [scene, provenance] = origin;
@@ -125,7 +124,6 @@ RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& 
     };
 }
 
-// Returns R, G, B of each pixel of an image.
 std::vector<float> ValuesOf(const RowSource& rows, const ExrImage& exr) {
     const size_t stride = 3 * size_t(exr.width);
     std::vector<float> values(stride * size_t(exr.height));
@@ -192,7 +190,6 @@ RowSource HalfOf(const RowSource& rows, int width, int values, bool isRight) {
     };
 }
 
-// Returns the image of one eye of a pair.
 ExrImage ImageOfEye(const ExrImage& pair, const Camera& camera, const FilmSettings& film,
                     bool isRight) {
     ExrImage eye = pair;

@@ -24,7 +24,6 @@ void ForEachPixel(const PixelRect& region, const Visit& visit) {
         for (int x = region.min.x(); x < region.max.x(); ++x) visit(i++, Vec2i(x, y));
 }
 
-// Makes a channel of `value(p)`.
 template <typename Value>
 ExrChannel MakeChannel(const std::string& name, const PixelRect& region, const Value& value) {
     ExrChannel channel{.name = name, .values = std::vector<float>(size_t(region.Area()))};
@@ -44,7 +43,6 @@ std::string NamesOf(const FirstHitLayer& hits, uint32_t NearestHit::*number,
     return names.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-// Returns the standard error in lightness of a pixel whose mean luminance is `mean`.
 double Noise(double squares, double mean, double count) {
     constexpr double kUnknown = 100;  // from black to white
     if (count < 2) return kUnknown;

@@ -15,7 +15,6 @@
 namespace lull {
 namespace {
 
-// Runs `work` and returns the seconds it took.
 template <typename Work>
 double Timed(const Work& work) {
     const auto start = std::chrono::steady_clock::now();

@@ -15,7 +15,6 @@ int CountTiles(const PixelRect& r, int tileSize) {
     return CeilDiv(r.Width(), tileSize) * CeilDiv(r.Height(), tileSize);
 }
 
-// Returns the pixels of a block's tile, of all of them row by row.
 PixelRect TileAt(const PixelRect& block, int tileSize, int tile) {
     const int columns = CeilDiv(block.Width(), tileSize);
     const Vec2i min = block.min + tileSize * Vec2i(tile % columns, tile / columns);

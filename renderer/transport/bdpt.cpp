@@ -92,7 +92,6 @@ template <typename Recorder>
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
 
-        // Find the next surface, or add the light of the sky where there is none.
         Hit found;
         if (!scene.accelerator.Intersect(segment.ray, &found, context.time,
                                          bounces == 0 ? kCameraRay : kOtherRay)) {
@@ -101,7 +100,6 @@ template <typename Recorder>
             break;
         }
 
-        // Compute the interaction with the surface, and the densities of arriving there.
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         SurfaceInteraction hit;
@@ -113,7 +111,6 @@ template <typename Recorder>
                    bounces == 0 ? context.SeenFromCamera() : context.Connected(segment.connects));
         if (!(arrival.density > 0)) break;
 
-        // Add the emission of the surface.
         if (hit.areaLight >= 0)
             find(hit.areaLight, EmittedLight(context, segment, hit, found, arrival, choice));
         if (bounces == 0 && segment.ray.d != start.ray.d) found.t /= length;

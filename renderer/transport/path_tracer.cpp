@@ -102,7 +102,6 @@ template <typename Media, typename Vertex, typename Recorder>
 
 namespace {
 
-// What a medium does with a path.
 enum class MediumEvent { Passes, Scatters, Ends };
 
 // Adds what the medium about a path emits. By itself, as the sums of other scenes are then rounded
@@ -221,7 +220,6 @@ template <typename Media, typename Recorder>
         const bool emissionCounts = path.seesLights || estimator == Estimator::Combined;
         if (onlyEmits && !(emissionCounts && scene.lights.AnyVisible())) break;
 
-        // Find the next surface.
         Hit found;
         const bool isHit = scene.accelerator.Intersect(path.ray, &found, time,
                                                        bounces == 0 ? kCameraRay : kOtherRay);
@@ -244,7 +242,6 @@ template <typename Media, typename Recorder>
             break;
         }
 
-        // Compute the interaction with the surface, unless all that could come of it is known.
         path.lightPlace = scene.lights.PlaceOf(path.ray.o + found.t * path.ray.d);
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
@@ -255,7 +252,6 @@ template <typename Media, typename Recorder>
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.CameraOf(context.camera), context.camera, &hit);
 
-        // Add the emission of the surface.
         if (hit.areaLight >= 0)
             path.L += path.beta * Emission(scene, estimator, path, &hit, found, recorder);
         recorder.ReachSurface(path, found, hit);
@@ -269,7 +265,6 @@ template <typename Media, typename Recorder>
             continue;
         }
 
-        // Make the BSDF.
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         recorder.MeetSurface(path, found, hit, bsdf);
         const SurfaceVertex v{hit, bsdf, found.shape};

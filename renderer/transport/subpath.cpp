@@ -99,7 +99,6 @@ bool SurvivesRoulette(float brightest, int bounces, float threshold, Sampler& sa
 
 namespace {
 
-// Connects vertices of a light path to the camera.
 class CameraConnector {
   public:
     CameraConnector(const BdptContext& context, std::vector<Splat>* splats)

@@ -87,7 +87,6 @@ std::vector<double> BandFrequencies(int width, int height, double pixelsPerDegre
     return frequencies;
 }
 
-// Interpolates ContrastSensitivity() between luminances.
 class SensitivityCurve {
   public:
     SensitivityCurve(OpponentChannel channel, double frequency) {
@@ -149,7 +148,6 @@ ContrastBand TakeBase(Planes planes) {
     return {std::move(planes), std::vector<float>(planes[0].values.size(), mean)};
 }
 
-// Returns the sensitivity at luminances around each place, by channel.
 Planes SensitivityPlanes(double frequency, int width, int height,
                          const std::vector<float>& luminance) {
     const std::array<SensitivityCurve, kChannels> curves = {

@@ -26,7 +26,6 @@ T Load(std::span<const char> bytes, size_t at) {
     return value;
 }
 
-// Checks the objects of a heap; `bytes` end with the heap or with the file.
 void CheckHeap(std::span<const char> bytes) {
     for (size_t at = kHeaderBytes; at + kHeaderBytes <= bytes.size();) {
         const bool isFreeSpace = Load<uint16_t>(bytes, at) == 0;

@@ -117,7 +117,6 @@ bool NeedsEntropies(const ModelSettings& settings) {
            std::ranges::any_of(settings.features, IsEntropy);
 }
 
-// Measures the features of the display image.
 void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
                       BlockMeasures* measures) {
     if (Needs(settings, Feature::Attributes26)) {

@@ -45,7 +45,6 @@ class LayerReader {
         const std::vector<float> values = Read(weights, {size});
         return Eigen::Map<const Eigen::VectorXf>(values.data(), size);
     }
-    // Returns how many values the layer takes: the rows of its kernel.
     int64_t Inputs() const {
         const std::vector<int64_t> shape = group.Shape(Path("kernel"));
         return shape.empty() ? 0 : shape[0];

@@ -59,7 +59,6 @@ Taps GaussianTaps(int size, double sigma) {
     return {1 / sum, w1 / sum, w2 / sum};
 }
 
-// Filters along the rows and then along the columns.
 void Smooth(const PaddedImage& image, const Taps& taps, PaddedImage* rows,
             std::span<double> filtered) {
     for (int y = -kReach; y < image.height + kReach; ++y) {

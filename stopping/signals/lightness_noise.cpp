@@ -34,7 +34,6 @@ LightnessSlope<float> DisplayedLightness(float y) {
     return {std::min(100.f, at.lightness), at.slope};
 }
 
-// Answers the sums of rectangles of an image.
 class SumTable {
   public:
     // `value(i)` is for pixel i, row-major.
@@ -101,7 +100,6 @@ std::vector<float> Texture(const std::vector<float>& lightness, const std::vecto
     return texture;
 }
 
-// Collects sums over the pixels of a sub-block.
 struct PixelSums {
     int count = 0;
     double lightness = 0, squaredLightness = 0, texture = 0;

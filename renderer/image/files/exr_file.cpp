@@ -55,7 +55,6 @@ std::vector<std::string> NamesOf(const Imf::Header& header) {
     return names;
 }
 
-// Returns why the part cannot be read, "" if it can.
 std::string ProblemOf(const Imf::Header& header) {
     if (header.hasType() && Imf::isDeepData(header.type())) return "deep images are not supported";
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
@@ -124,7 +123,6 @@ struct ExrFile::Parts {
         uint64_t position = 0;
     };
 
-    // Where a channel is.
     struct Place {
         int part;
         std::string name;
@@ -197,7 +195,6 @@ struct ExrFile::Parts {
         const auto found = places.find(channel);
         return found == places.end() ? Place{part, channel} : found->second;
     }
-    // Returns whether the file has the channel, of this type.
     bool Has(const std::string& name, Imf::PixelType type) const {
         const auto found = places.find(name);
         return found != places.end() && file.header(found->second.part)

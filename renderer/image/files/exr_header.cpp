@@ -68,7 +68,6 @@ struct Channel {
     }
 };
 
-// The colours of a layer, and its alpha; "": it has none.
 struct LayerColours {
     std::string layer;
     std::array<std::string, 4> names;

@@ -122,7 +122,6 @@ namespace {
     throw Error("cannot write \"{}\": {}", path, reason);
 }
 
-// Takes the bytes of a PNG, in order.
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
 // Writes RGB rows of 8 or 16 bits. Errors of the sink are kept, as no exception may pass through
@@ -233,7 +232,6 @@ void DivideByAlpha(std::span<const float> rgba, std::span<float> rgb) {
     }
 }
 
-// Encodes a row of linear RGB, or RGBA.
 template <typename T>
 void EncodeRow(const PngFormat& format, std::span<float> linear, T* to) {
     const size_t components = format.hasAlpha ? 4 : 3, width = linear.size() / components;
@@ -274,7 +272,6 @@ void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
     writer->End();
 }
 
-// Writes encoded pixels.
 void WriteRows(PngWriter* writer, std::span<const uint8_t> srgb, int width, int height,
                bool isSmallest) {
     writer->WriteHeader(width, height, 8, PNG_COLOR_TYPE_RGB, {}, isSmallest);
@@ -282,7 +279,6 @@ void WriteRows(PngWriter* writer, std::span<const uint8_t> srgb, int width, int 
     writer->End();
 }
 
-// Writes a file through `write(writer)`.
 template <typename Write>
 void WriteFile(const std::string& path, const Write& write) {
     AtomicFile file(path);

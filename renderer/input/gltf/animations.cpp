@@ -63,7 +63,6 @@ Eigen::ArrayXd Slerp(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b, double t)
     return (std::sin((1 - t) * angle) * from + std::sin(t * angle) * to) / std::sin(angle);
 }
 
-// Evaluates an animation sampler (appendix C of the specification).
 Eigen::ArrayXd Evaluate(const Keys& keys, double seconds, bool isRotation) {
     const bool isCubic = keys.interpolation == "CUBICSPLINE";
     const size_t value = isCubic ? 1 : 0;
@@ -84,7 +83,6 @@ Eigen::ArrayXd Evaluate(const Keys& keys, double seconds, bool isRotation) {
            (3 * t2 - 2 * t3) * keys.Value(k + 1, 1) + length * (t3 - t2) * keys.Value(k + 1, 0);
 }
 
-// Returns the numbers of the animations that pose the scene, in their order.
 std::vector<size_t> Choose(const GltfDocument& document, const std::string& wanted) {
     std::vector<std::string> names;
     for (const tinygltf::Animation& animation : document.model.animations)
@@ -96,7 +94,6 @@ std::vector<size_t> Choose(const GltfDocument& document, const std::string& want
     return all;
 }
 
-// Sets the property of a node that a channel, at `loc`, animates.
 void PoseChannel(double seconds, const tinygltf::Animation& animation,
                  const tinygltf::AnimationChannel& channel, const FileLoc& loc,
                  GltfDocument* document, Warnings& warnings) {
@@ -183,7 +180,6 @@ std::vector<GltfNode> PoseNodes(const GltfOptions& options, GltfDocument* docume
 
 namespace {
 
-// A set of four joints and weights for each vertex.
 struct Influences {
     GltfArray joints, weights;
 };

@@ -191,7 +191,6 @@ Callbacks FileCallbacks(std::vector<Bytes>* buffers) {
     return callbacks;
 }
 
-// Keeps images as they are encoded.
 bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int,
                const unsigned char* bytes, int size, void*) {
     image->image.assign(bytes, bytes + size);

@@ -76,7 +76,6 @@ int AddMedium(const tinygltf::Value& volume, const FileLoc& loc, Description* de
     return int(description->media.size()) - 1;
 }
 
-// Makes the area light of a material that emits L.
 Entity EmissionOf(const Rgb& L, bool twoSided, const std::optional<TextureRef>& texture, int uvSet,
                   const FileLoc& loc) {
     Entity light{"diffuse", {}, loc};

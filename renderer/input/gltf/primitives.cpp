@@ -61,7 +61,6 @@ GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
     return array;
 }
 
-// Gives colours an alpha.
 std::vector<float> WithAlpha(GltfArray colors) {
     if (colors.components == 4) return std::move(colors.values);
     std::vector<float> values;
@@ -249,7 +248,6 @@ Vec3f Unit(const Vec3f& v) {
 
 Vec3f Tangential(const Vec3f& v, const Vec3f& n) { return Unit(v - n * n.dot(v)); }
 
-// Copies vertex `from` to the end of all arrays.
 uint32_t CopyVertex(uint32_t from, GltfTriangles* t) {
     const auto copy = [&](std::vector<float>* values, size_t components) {
         if (values->empty()) return;

@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-// Returns a member of an object; null where there is none.
 json* Member(json* value, const char* name) {
     if (!value->is_object()) return nullptr;
     const auto found = value->find(name);
@@ -24,7 +23,6 @@ json* Extension(json* owner, const char* name) {
     return extensions ? Member(extensions, name) : nullptr;
 }
 
-// Calls f(element, index) for the objects in an array that is a member.
 template <typename F>
 void ForEachObject(json* owner, const char* name, const F& f) {
     json* array = Member(owner, name);

@@ -277,7 +277,6 @@ bool IsStrandOf(const ShapeEntity& last, const ShapeEntity& next) {
            });
 }
 
-// Adds a shape, or makes it a strand of the last one.
 void AddShape(ShapeEntity shape, std::vector<ShapeEntity>* shapes) {
     if (!shapes->empty() && IsStrandOf(shapes->back(), shape))
         shapes->back().strands.push_back(std::move(static_cast<Entity&>(shape)));

@@ -247,7 +247,6 @@ std::vector<float> ReadFloatsOf(const TypeName& type, PbrtLexer& lexer, const To
     return values;
 }
 
-// Reads a spectrum as it stands, and rgb as linear sRGB.
 void ReadSpectrumV4(const TypeName& type, PbrtLexer& lexer, const Token& owner,
                     const Mat3f& rgbFromColorSpace, Parameter* parameter) {
     switch (type.encoding) {

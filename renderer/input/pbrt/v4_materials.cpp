@@ -66,7 +66,6 @@ void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflecta
     }
 }
 
-// Reads the layer between a coat and its base.
 void CopyLayer(V4Reader* in) {
     in->write.Float("thickness", in->given.GetFloat("thickness", 0.01f));
     in->Ignore({"g", "maxdepth", "nsamples"});
@@ -208,7 +207,6 @@ namespace {
 
 constexpr float kDegree = kPi / 180;
 
-// Returns the light's colour times its "scale".
 Rgb Color(const V4Reader& in, const char* name) {
     return in.Light(name, Rgb::Ones()) * in.given.GetFloat("scale", 1);
 }

@@ -40,7 +40,6 @@ std::vector<NamedFile> OutputsOf(const CompareOptions& options,
     return outputs;
 }
 
-// Returns the input files, without those of the scene.
 std::vector<NamedFile> InputsOf(const CompareOptions& options) {
     std::vector<NamedFile> inputs = {{"--automatic", options.automatic},
                                      {"--human", options.human},
@@ -50,7 +49,6 @@ std::vector<NamedFile> InputsOf(const CompareOptions& options) {
     return inputs;
 }
 
-// Compares images from files.
 ExitCode CompareFiles(CompareOptions options) {
     if (options.reference.empty() || (options.automatic.empty() && options.human.empty()))
         throw Error(
@@ -87,7 +85,6 @@ std::vector<ComparedImage> ReadImagesBeside(const CompareOptions& options,
     return images;
 }
 
-// A scene that is ready, and the rules to be compared on it.
 struct Compared {
     Compared(const CompareOptions& options, MpiJob* ranks)
         : options(options), render(options.render, ranks) {
@@ -107,7 +104,6 @@ MonitoredRule MakeRule(const std::string& name, const Rule& rule) {
     return {name, rule.text, rule.smallestSide, CriteriaOf(rule)};
 }
 
-// Adds the rule of people, and that of denoised images, where they are asked for.
 void AddOtherRules(Compared* compared) {
     const CompareOptions& options = compared->options;
     if (!options.human.empty() && !IsImageFile(options.human)) {
@@ -157,7 +153,6 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& given, MpiJob* ranks) {
     return compared;
 }
 
-// Returns how to render, once for all images.
 SessionOptions MakeOptions(Compared* compared) {
     const CompareOptions& options = compared->options;
     const bool hasPage = !options.report.empty();
@@ -214,7 +209,6 @@ ResultFiles WriteImages(const Compared& compared) {
     return results;
 }
 
-// Takes all images from a render, adds those that were read, and measures them.
 void AddImages(const MonitoredRender& monitored, Compared* compared) {
     const CompareOptions& options = compared->options;
     ComparisonReport* report = &compared->report;
@@ -246,7 +240,6 @@ void VerifyAll(Compared* compared) {
     }
 }
 
-// Completes the report, and writes all files.
 void WriteResults(const RenderResult& result, Compared* compared) {
     const CompareOptions& options = compared->options;
     const RenderJob& render = compared->render;

@@ -169,7 +169,6 @@ std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
     return rules;
 }
 
-// Reads data sets, and records folders of pictures.
 std::vector<ViewpointRecording> ReadViewpoints(const Options& options) {
     std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
     for (const std::string& images : options.images)
@@ -263,7 +262,6 @@ ExitCode RunEvaluate(const Options& options) {
     return kDone;
 }
 
-// Throws a usage error if there is nothing to judge, or nothing to judge it on.
 void CheckUsage(const CLI::App& app, const Options& options) {
     const bool runs = options.rivals || !options.rules.empty();
     if (!options.answers.empty()) {

@@ -113,7 +113,6 @@ void AddOptions(CLI::App& app, Options* s) {
     app.footer(kFooter);
 }
 
-// Throws CLI::ValidationError for options that do not fit together.
 void CheckOptions(const CLI::App& app, const Options& s) {
     if (s.output.empty()) throw CLI::ValidationError("--output", "is required");
     const bool hasScene = !s.render.scene.file.empty();

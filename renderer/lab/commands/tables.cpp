@@ -15,13 +15,11 @@ namespace lull {
 
 namespace {
 
-// The row of a table.
 struct Row {
     std::string rule, viewpoint, setting;
     Scores scores;
 };
 
-// Makes the rows of a rule: one for each viewpoint, and one for all of them.
 std::vector<Row> MakeRows(const EvaluatedRule& rule, const ScoreOptions& options) {
     std::vector<Row> rows;
     for (const ViewpointOutcome& viewpoint : rule.viewpoints)

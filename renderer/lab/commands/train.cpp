@@ -249,7 +249,6 @@ std::string ValuesText(TrainingPlan plan) {
            flag("class-weights", plan.training.balanceClasses);
 }
 
-// Returns the recordings and thresholds that a training reads.
 std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {
     std::vector<NamedFile> inputs = {{"--human", plan.human}};
     for (const std::string& file : plan.datasets) inputs.push_back({"DATASET.h5", file});
@@ -272,7 +271,6 @@ class TrainingPrinter {
         return style != ProgressStyle::Silent && SecondsSince(start) >= nextReport;
     }
     void Print(const TrainingProgress& progress);
-    // Prints the last state, and ends the line.
     void Finish(const TrainingProgress& progress);
 
   private:
@@ -308,7 +306,6 @@ void TrainingPrinter::Finish(const TrainingProgress& progress) {
     std::fflush(stderr);
 }
 
-// Shows a training.
 TrainingEvents PrintTo(TrainingPrinter* printer, const Messages& messages, const BlockSplit& split,
                        bool quiet) {
     return {

@@ -110,7 +110,6 @@ void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blo
     image->noise.clear();
 }
 
-// Leaves only the figures of the display image.
 void ForgetLinear(ComparedImage* image) {
     const auto forget = [](ErrorFigures* figures) {
         figures->rmse = figures->relMse = std::numeric_limits<double>::quiet_NaN();
@@ -181,7 +180,6 @@ ErrorFigures FiguresOf(const std::vector<ErrorMaps>& maps) {
             .visibleDifference = std::max(a.visibleDifference, b.visibleDifference)};
 }
 
-// Sets all figures by the reference, and their maps.
 void SetFigures(const Comparison& comparison, ComparedImage* image) {
     const std::vector<ErrorMaps> maps = CompareEyes(comparison, image->image);
     image->figures = FiguresOf(maps);

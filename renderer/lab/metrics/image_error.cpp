@@ -47,7 +47,6 @@ double MeanOf(const std::vector<float>& map, int width, const PixelRect& rect) {
     return count > 0 ? sum / double(count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-// Decodes 8-bit sRGB values.
 std::vector<float> LinearValues(std::span<const uint8_t> srgb) {
     const std::array<double, 256>& linear = DecodeSrgb8();
     std::vector<float> values;
@@ -115,7 +114,6 @@ double RootMeanSquare(std::span<const float> noise, int width, const PixelRect& 
     return std::sqrt(sum / double(rect.Area()));
 }
 
-// Averages jumps.
 struct Jumps {
     std::span<const float> noise;
     int width;
@@ -218,7 +216,6 @@ using Triple = std::array<double, 3>;
 // The names of the constants are the paper's.
 constexpr double qc = 0.7, pc = 0.4, pt = 0.95, w = 0.082, qf = 0.5;
 
-// One colour at each pixel, a plane a component.
 using ColourPlanes = std::array<std::vector<float>, 3>;
 
 constexpr double kXyzFromRgb[3][3] = {{0.4123866, 0.3575915, 0.1804505},
@@ -332,7 +329,6 @@ std::vector<Triple> SeenColours(const ColourPlanes& planes, int width, int heigh
     return colours;
 }
 
-// How strong edges and points are at each pixel.
 struct Features {
     std::vector<float> edges, points;
 };

@@ -87,7 +87,6 @@ Json ImageJson(const Comparison& comparison, const ComparedImage& image) {
     return json;
 }
 
-// Compares the automatic image with the human one, block by block and in all.
 Json AgainstHuman(const Comparison& comparison) {
     const ComparedImage *automatic = comparison.Find("automatic"),
                         *human = comparison.Find("human");

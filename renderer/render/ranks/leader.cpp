@@ -119,7 +119,6 @@ class Leader {
             rounds.Learn(film);
     }
 
-    // Traces a rank's part, and gives signs of life meanwhile.
     void TracePart(int part) {
         std::atomic<bool> isDone = false;
         rank.Enqueue([&] {
@@ -135,7 +134,6 @@ class Leader {
         executor.Quiesce();
     }
 
-    // Takes the light that a rank has traced.
     void Merge(int from) {
         for (const std::vector<std::byte>& message : splats[from]) {
             StateReader reader(message);
@@ -203,7 +201,6 @@ class Leader {
         for (int i = 0; i < int(parts.size()); ++i) missing.push_back(PartCount(i));
     }
 
-    // Decides on another deal, where it gains enough.
     void ThinkOfDeal() {
         if (Seconds() < nextDeal || schedule.TimeCalled()) return;
         std::lock_guard lock(partsMutex);

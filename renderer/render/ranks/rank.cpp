@@ -185,7 +185,6 @@ void RankChannel::Exchange(const Handler& handle) {
         Wait();
 }
 
-// Returns whether there was anything.
 bool RankChannel::Send() {
     std::vector<std::pair<int, std::vector<std::byte>>> posted;
     {

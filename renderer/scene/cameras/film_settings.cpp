@@ -10,7 +10,6 @@
 namespace lull {
 namespace {
 
-// Sets the pixels to be rendered.
 void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings* film) {
     std::array<float, 4> crop = {0, 1, 0, 1};
     if (const auto window = entity.parameters.GetFloats(ParameterType::Float, "cropwindow");
@@ -57,7 +56,6 @@ float Sinc(float x) { return std::abs(x) < 1e-5f ? 1 : std::sin(kPi * x) / (kPi 
 // The filter's function of x along an axis, and of the radius of that axis.
 using AxisFunction = std::function<float(float, float)>;
 
-// Makes that of a filter other than a box. Throws Error for others.
 AxisFunction MakeAxisFunction(const Entity& entity) {
     const Parameters& params = entity.parameters;
     if (entity.name == "gaussian") {

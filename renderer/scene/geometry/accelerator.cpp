@@ -44,7 +44,6 @@ bool Accelerator::Occluded(const Ray& ray, float time) const {
     return r.tfar < 0;
 }
 
-// Builds the acceleration structure.
 namespace {
 
 // Receives every error of Embree, so that its calls need not be checked one by one.
@@ -73,7 +72,6 @@ bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     return share <= 0 || (share < 1 && NumberOf(ray, hit) >= share);
 }
 
-// Returns whether alpha cuts out the place of a hit.
 template <bool isShadow>
 bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     const Shape& shape = user.shapes->shapes[user.shape];

@@ -16,7 +16,6 @@ void CheckReach(const Bounds3f& bounds, const FileLoc& loc, const std::string& w
                     what, kFarthest);
 }
 
-// Carries an interaction from the space of an object into the world.
 void Place(const Instance& instance, SurfaceInteraction* hit) {
     // The transform itself is rounded to float where rays go through it, so its error counts with
     // the size of the summands (pbrt 3rd ed., 3.9.4).

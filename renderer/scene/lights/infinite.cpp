@@ -133,7 +133,6 @@ float IlluminanceOf(const EnvironmentMap& map, int width, int height) {
     return float(4 * kPi * sum / solidAngle);
 }
 
-// Returns the steradians that an area of the square shows, where DirectionOf() finds this sine.
 float SolidAnglePerArea(MapProjection projection, float sine) {
     return projection == MapProjection::EqualArea ? 4 * kPi : 2 * kPi * kPi * sine;
 }

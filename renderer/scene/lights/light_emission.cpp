@@ -5,7 +5,6 @@ namespace {
 
 constexpr float kUniformSphere = 1 / (4 * kPi);
 
-// A cone of directions about an axis.
 struct Cone {
     Vec3f axis = Vec3f::UnitZ();
     float cosAngle = -1;

@@ -14,7 +14,6 @@ void Gather(const LightBounds& light, LightBounds* sum) {
     sum->isTwoSided |= light.isTwoSided;
 }
 
-// Begins a sum for Gather.
 LightBounds Nothing() { return {.axis = Vec3f::Zero(), .cosEmission = 1}; }
 
 // Turns the sum of axes into an axis. Without a common direction, any normal is possible.
@@ -25,7 +24,6 @@ void FindAxis(LightBounds* sum) {
     sum->cosNormals = hasDirection ? 1 : -1;
 }
 
-// Returns the cosine of a + b, given their cosines, or -1 beyond pi.
 float CosOfSum(float cosA, float cosB) {
     if (cosA <= -cosB) return -1;
     return cosA * cosB - SafeSqrt(1 - Sqr(cosA)) * SafeSqrt(1 - Sqr(cosB));
@@ -112,7 +110,6 @@ struct LightHierarchy::Builder {
         return node;
     }
 
-    // Returns the cheapest cut; without an axis where all centres coincide.
     Cut FindCut(std::span<const uint32_t> range) const {
         Bounds3f centers;
         for (const uint32_t i : range) centers.Extend(Center(lights[i]));

@@ -17,7 +17,6 @@ namespace {
 // tables, which sample every light 128 times for each voxel, take longer than many a render.
 constexpr size_t kMostTableLights = 100;
 
-// Returns the radius of a sphere about the scene.
 float WorldRadius(const Bounds3f& bounds) {
     const Vec3f center = 0.5f * (bounds.lower + bounds.upper);
     return bounds.IsEmpty() ? 1 : std::max((bounds.upper - center).norm(), 1e-10f);
@@ -55,7 +54,6 @@ constexpr Kind<Light(const LightReader&)> kLights[] = {
     {"projection", Make<ProjectionLight>},
 };
 
-// Makes the light of one LightSource directive; nothing substitutes an unknown kind.
 std::optional<Light> MakeLight(const LightReader& in) {
     const LightEntity& entity = in.entity;
     entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
@@ -143,7 +141,6 @@ size_t CountLights(const Description& description, const ShapeTable& shapes) {
     return count;
 }
 
-// Returns where a light is and where it shines; nothing if it has no place.
 template <typename L>
 std::optional<LightBounds> BoundsOf(const L& light) {
     if constexpr (requires { light.Bounds(); })
@@ -176,7 +173,6 @@ std::string StrategyOf(const Entity& integrator, Warnings& warnings) {
     return "spatial";
 }
 
-// Returns the same weight for each light, or its power.
 std::vector<float> WeightsOf(const std::vector<Light>& lights, bool byPower) {
     std::vector<float> weights(lights.size(), 1.f);
     if (byPower)

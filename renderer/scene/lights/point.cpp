@@ -100,7 +100,6 @@ float FactorOfPower(const Entity& entity, float whole) {
     return power > 0 && whole > 0 ? power / whole : 1;
 }
 
-// Integrates the image over the directions that it is projected to.
 float WholePower(const ProjectionLight& light) {
     const Image& image = light.image->image;
     double sum = 0;

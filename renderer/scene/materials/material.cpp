@@ -18,7 +18,6 @@
 
 namespace lull {
 
-// Represents a weighted sum of two other materials.
 struct Mix {
     SpectrumTexture amount;             // of the first; the second gets 1 - amount
     std::optional<FloatTexture> share;  // the amount where it is a number, as in pbrt-v4
@@ -125,7 +124,6 @@ SurfaceNeeds NeedsOf(const SurfaceTilt& tilt, const TextureTable& textures) {
     return needs;
 }
 
-// Returns why the material cannot be rendered, "" if it can.
 std::string ProblemOf(const MaterialKind& kind, const MaterialReader& in) {
     const std::string problem = Visit(kind, [&](const auto& k) {
         if constexpr (requires { k.Problem(in); })
@@ -139,7 +137,6 @@ std::string ProblemOf(const MaterialKind& kind, const MaterialReader& in) {
     return problem;
 }
 
-// Makes the lobes of a constant material once and for all.
 void FoldConstants(const MaterialReader& in, Material* m) {
     if (!m->traits.isConstant) return;
     Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, Vec3f::UnitZ());

@@ -19,7 +19,6 @@ std::pair<Ray, float> Normalised(const Ray& ray) {
     return {{ray.o, ray.d / length, ray.tMax * length}, 1 / length};
 }
 
-// Returns a coefficient of scattering or absorption; throws Error.
 Rgb ReadCoefficient(const MediumEntity& entity, const char* name, const Rgb& otherwise,
                     float scale) {
     const Rgb value =
@@ -92,7 +91,6 @@ float GreatestOf(const Grid<T>& grid) {
     return most;
 }
 
-// Returns the matrix from the unit cube to the box from p0 to p1.
 Mat4d MatrixOfBox(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1) {
     Mat4d m = Mat4d::Identity();
     m.topLeftCorner<3, 3>() = (p1 - p0).asDiagonal();
@@ -105,7 +103,6 @@ Mat4d MatrixOfBox(const MediumEntity& entity) {
                        entity.parameters.GetPoint3("p1", Vec3f::Ones()).cast<double>());
 }
 
-// Sets where a medium is that fills the unit cube.
 void Place(const MediumEntity& entity, const Mat4d& mediumFromGrid, GridMedium* medium) {
     const Mat4d worldFromGrid = entity.worldFromMedium * mediumFromGrid;
     medium->gridFromWorld = worldFromGrid.inverse();
@@ -210,7 +207,6 @@ GridMedium ReadCloud(const MediumEntity& entity, GridMedium medium) {
     return medium;
 }
 
-// Sets where the unit cube is in a grid.
 void PlaceVoxels(const Mat4d& voxelFromUnit, SparseGrid* grid) {
     grid->scale = voxelFromUnit.topLeftCorner<3, 3>().cast<float>();
     grid->offset = voxelFromUnit.topRightCorner<3, 1>().cast<float>();

@@ -101,7 +101,6 @@ void CheckKind(const Bytes& file, const Entry& entry) {
     if (entry.kind != 0 && entry.kind != kFog) file.Fail(owner + " is no fog volume");
 }
 
-// Returns the bytes of the grid; `unpacked` holds them if need be.
 std::string_view Unpack(const Bytes& file, const Entry& entry, std::unique_ptr<char[]>* unpacked) {
     enum { kPlain, kZip, kBlosc };
     if (entry.codec == kBlosc)

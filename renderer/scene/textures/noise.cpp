@@ -33,7 +33,6 @@ constexpr float kGradients[16][3] = {
 
 uint8_t Permute(int i) { return kPermutation[i & 255]; }
 
-// Splits a coordinate into its lattice cell and the place in it.
 struct Cell {
     int i;
     float d;

@@ -95,7 +95,6 @@ Image ExtractChannel(const Image& image, TextureChannels wanted) {
     return grey;
 }
 
-// Returns whether the image has an alpha that is not 1 all over.
 bool HasAlpha(const Image& image) {
     if (image.channels % 2 != 0) return false;
     return std::visit(

@@ -161,7 +161,6 @@ Curve CurveOf(const RuleOutcome& outcome, int end, bool isProbability) {
     return curve;
 }
 
-// A rule's runs over all blocks.
 struct RuleRun {
     std::string rule;
     bool isKnown = false;  // whether its stops need no recording

@@ -102,7 +102,6 @@ EvaluatedRule EvaluateFile(const std::string& path, std::span<const LabelledBloc
     return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator)};
 }
 
-// Marks the blocks that a model was trained on.
 void MarkSeen(const std::map<std::string, std::vector<int>>& trainedOn, EvaluatedRule* rule) {
     for (ViewpointOutcome& viewpoint : rule->viewpoints) {
         const auto known = trainedOn.find(viewpoint.name);
@@ -265,7 +264,6 @@ EvaluatedRule EvaluateRival(const std::string& name, std::span<const LabelledBlo
     return rival;
 }
 
-// Runs a rule over recordings, each of which it reads once.
 Run MakeRun(std::span<const LabelledBlock> blocks, const RecordedRule& entry) {
     if (entry.replay == Replay::RanAlong)
         return [=](size_t index, double setting, bool brief) {

@@ -23,7 +23,6 @@ double MeanOf(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-// Collects verdicts and the observers' verdicts at the same spp.
 struct Verdicts {
     std::vector<float> scores;
     std::vector<char> labels;                      // whether people see noise

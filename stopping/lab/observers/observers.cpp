@@ -129,7 +129,6 @@ void AddDisplayDoubts(const ObserverAnswers& answers, const Add& add) {
         add(fmt::format("saw {:.0f} pixels a degree", *pixels));
 }
 
-// Returns doubts about the answers that count.
 std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
     std::string doubts;
     const auto add = [&](const std::string& doubt) {
@@ -176,7 +175,6 @@ CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& opt
     return judged;
 }
 
-// Returns the standard deviation of a sample, nothing for fewer than two values.
 std::optional<double> SampleDeviation(const std::vector<double>& values) {
     if (values.size() < 2) return {};
     double mean = 0, sum = 0;

@@ -40,7 +40,6 @@ Law LawOf(std::string_view channel) {
     return channel == "attributes26" ? kFilteredLaw : kConstant;
 }
 
-// The law of one number of a record.
 struct Fit {
     Law law;
     double level = 0, slope = 0;
@@ -76,7 +75,6 @@ Fit FitLaw(const BlockRecording& recording, size_t first, size_t number, const L
     return fit;
 }
 
-// Returns the laws of all numbers of a record.
 std::vector<Fit> FitAll(const BlockRecording& recording) {
     const double begin = recording.spp.back() / std::exp2(kDoublings);
     const auto from = std::ranges::lower_bound(recording.spp, int(begin));
@@ -105,7 +103,6 @@ void ExtendCycles(int last, int passSpp, int end, BlockRecording* recording) {
     }
 }
 
-// Returns how far the last two records are apart, in spp.
 int LastStep(const BlockRecording& recording) {
     const size_t count = recording.spp.size();
     return count > 1 ? recording.spp[count - 1] - recording.spp[count - 2] : recording.spp[0];

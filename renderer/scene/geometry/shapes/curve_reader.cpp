@@ -29,12 +29,10 @@ int ReadSplitDepth(const Entity& entity) {
     return depth;
 }
 
-// Elevates a quadratic curve to a cubic one.
 std::array<Vec3f, 4> Elevated(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
     return {a, Between(2.f / 3, a, b), Between(1.f / 3, b, c), c};
 }
 
-// How control points make pieces.
 struct Basis {
     bool isSpline;
     int degree;
@@ -104,7 +102,6 @@ std::array<float, 2> ReadWidths(const Entity& entity) {
     return {GetNonnegative(entity, "width0", width), GetNonnegative(entity, "width1", width)};
 }
 
-// Adds the pieces of one strand, in shape space.
 void AddStrand(const Entity& entity, Curves* curves, Warnings& warnings) {
     const Basis basis = ReadBasis(entity);
     const std::vector<Vec3f> points = ReadVectors(entity, ParameterType::Point3, "P");

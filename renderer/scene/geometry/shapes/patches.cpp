@@ -11,7 +11,6 @@ using Eigen::Vector4d;
 
 constexpr int kMaxSide = 1 << 14;  // of a heightfield or a net: the square still fits an int
 
-// Joins an nu by nv grid of vertices, rows of nu, by two triangles a cell.
 void JoinGrid(int nu, int nv, MeshData* data) {
     const auto vertex = [&](int u, int v) { return uint32_t(v * nu + u); };
     for (int v = 0; v + 1 < nv; ++v)
@@ -21,7 +20,6 @@ void JoinGrid(int nu, int nv, MeshData* data) {
         }
 }
 
-// Reads a number of grid points, at least `least`.
 int ReadCount(const ShapeEntity& entity, const char* name, int least) {
     const int n = entity.parameters.GetInt(name, -1);
     if (n < least || n > kMaxSide)
@@ -98,7 +96,6 @@ void Evaluate(const Spline& s, double t, const At& at, Vector4d* value, Vector4d
     *value = d[degree];
 }
 
-// Returns the derivative of the point that a homogeneous one stands for.
 Vector3d Dehomogenised(const Vector4d& p, const Vector4d& dp) {
     return dp.head<3>() / p.w() - p.head<3>() * (dp.w() / (p.w() * p.w()));
 }

@@ -74,13 +74,11 @@ float OneMinusCosMax(float sin2Max) { return sin2Max / (1 + SafeSqrt(1 - sin2Max
 float Theta(const Sphere& sphere, float z) {
     return std::acos(std::clamp(z / sphere.radius, -1.f, 1.f));
 }
-// Returns theta where v is 0 and where it is 1.
 std::pair<float, float> Thetas(const Sphere& sphere) {
     return {Theta(sphere, std::min(sphere.zMin, sphere.zMax)),
             Theta(sphere, std::max(sphere.zMin, sphere.zMax))};
 }
 
-// Computes the derivatives at p of position and, where asked for, normal, in shape space.
 void ComputeTangents(const Sphere& sphere, const Vec3f& p, SurfaceNeeds needs,
                      SurfaceInteraction* hit) {
     const float r = sphere.radius, zRadius = std::hypot(p.x(), p.y());

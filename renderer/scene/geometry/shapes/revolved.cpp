@@ -19,7 +19,6 @@ Vector3d HalfGradient(const Revolved& shape, const Vector3d& p) {
     return {p.x(), p.y(), -0.5 * shape.r2[1] - shape.r2[2] * p.z()};
 }
 
-// Returns v of the height z.
 double HeightToV(const Revolved& shape, double z) {
     return (z - shape.start.z()) / (shape.end.z() - shape.start.z());
 }
@@ -40,7 +39,6 @@ CurvePoint Curve(const Revolved& shape, double z) {
     return {{x, 0, z}, {slope * dz, 0, dz}, {-slope * slope / x * dz * dz, 0, 0}};
 }
 
-// Returns the azimuth of p in [0, 2 pi), counted from the curve.
 double AzimuthFromCurve(const Revolved& shape, const Vector3d& p) {
     const Vector3d c = Curve(shape, p.z()).p;
     const double phi = std::atan2(c.x() * p.y() - p.x() * c.y(), p.x() * c.x() + p.y() * c.y());

@@ -234,7 +234,6 @@ std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEn
     return coverage;
 }
 
-// Inputs of the makers of shapes.
 struct ShapeReader {
     const Description& description;
     const ShapeEntity& entity;
