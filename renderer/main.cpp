@@ -73,8 +73,7 @@ std::string NearestName(const std::string& word, const std::vector<std::string>&
     return isNear ? *nearest : "";
 }
 
-// Returns what to use instead of a command or an option that there is no longer; "" where all
-// are known, or not known at all.
+// Returns what to use instead of a command or an option that was removed; "" where none was.
 std::string ProblemOfRemoved(std::span<const char* const> words) {
     for (const std::string_view word : words.subspan(1))
         for (const Removed& removed : kRemoved)
@@ -109,8 +108,7 @@ std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     return fmt::format("{}; there are {}", start, fmt::join(names, ", "));
 }
 
-// Returns which option has a list with an empty entry, which the parser would drop; "" where none
-// has.
+// Returns which option has an empty entry in its list, which the parser would drop; "": none.
 std::string ProblemOfLists(const CLI::App& command, std::span<const char* const> words) {
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string word = words[i], name = word.substr(0, word.find('='));
@@ -125,8 +123,7 @@ std::string ProblemOfLists(const CLI::App& command, std::span<const char* const>
     return "";
 }
 
-// Returns why the words of a command cannot be read, and which option one may have been meant to
-// be.
+// Returns why the words of a command cannot be read, and which option may have been meant.
 std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
     const auto given = app.get_subcommands();
     const CLI::App& command = given.empty() ? app : *given.front();

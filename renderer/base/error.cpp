@@ -25,8 +25,7 @@ std::string WithoutMiddle(const std::string& line, size_t most) {
     return BeginningOf(line, most / 2) + " ... " + line.substr(begin);
 }
 
-// Returns the bytes of the character of UTF-8 that a text begins with; 0 if it is none, or a
-// control character.
+// Returns the bytes of a text's first character in UTF-8; 0 if it is none, or a control one.
 size_t PrintedBytes(std::string_view text) {
     const auto first = static_cast<unsigned char>(text[0]);
     const size_t bytes = CharacterBytes(text);
@@ -61,8 +60,7 @@ std::string OneLine(const std::string& text, size_t most) {
 
 namespace {
 
-// Returns a phrase with "..." in place of all that it quotes. An apostrophe within a word does not
-// quote.
+// Returns a phrase with "..." for all that it quotes; an apostrophe within a word does not.
 std::string WithoutQuotes(const std::string& phrase) {
     std::string text;
     for (size_t i = 0; i < phrase.size(); ++i) {

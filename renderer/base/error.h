@@ -64,9 +64,8 @@ class Errors : public Error {
 };
 
 // Collects the messages on a scene: warnings, and errors after which the rest of the scene can
-// still be checked. Of each kind of warning the first is passed on at once, and all are counted.
-// Kinds that differ only in quoted names are alike, and at most kMostAlike of them are passed
-// on. Thread-safe.
+// still be checked. Of each kind of warning the first is passed on at once, and all are counted. Of
+// kinds that differ only in quoted names kMostAlike at most are passed on. Thread-safe.
 class Warnings {
   public:
     using Sink = std::function<void(const std::string&)>;

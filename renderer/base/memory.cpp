@@ -55,8 +55,7 @@ struct AnonymousRange {
     uintptr_t kibibytesInUse;
 };
 
-// Lists the anonymous memory of the process. Addresses that are only reserved, as sanitizers do by
-// the terabyte, are not in use.
+// Addresses that are only reserved, as sanitizers do by the terabyte, are not in use.
 std::vector<AnonymousRange> AnonymousRanges() {
     std::vector<AnonymousRange> ranges;
     std::ifstream in("/proc/self/smaps");

@@ -8,9 +8,8 @@ namespace {
 constexpr int kCosines = 32, kRoughnesses = 16;
 using Table = float[kRoughnesses][kCosines];
 
-// Integrals over 400 x 400 visible normals each, of f cos / pdf with 1 - (1 - cos)^5 and with
-// (1 - cos)^5 for the reflectance. Rows: the square root of alpha from 0 to 1. Columns: the square
-// root of the cosine from 0 to 1.
+// Integrals over 400 x 400 visible normals each, of f cos / pdf with 1 - (1 - cos)^5 and with (1 -
+// cos)^5 for the reflectance. Rows: sqrt(alpha) from 0 to 1. Columns: sqrt(cosine) from 0 to 1.
 constexpr Table kOfF0 = {
     {0.027234f, 0.017485f, 0.024419f, 0.047679f, 0.081467f, 0.12406f, 0.17416f, 0.2305f,
      0.29167f,  0.35626f,  0.42279f,  0.48981f,  0.55593f,  0.61983f, 0.68035f, 0.73651f,

@@ -1,5 +1,4 @@
-// The lobes of Disney's principled material (Burley 2012 and 2015) as pbrt-v3 has them. See
-// lobes.h for the interface.
+// The lobes of Disney's principled material (Burley 2012 and 2015) as in pbrt-v3 (see lobes.h).
 #pragma once
 
 #include "renderer/bsdf/microfacet.h"

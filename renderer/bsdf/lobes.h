@@ -52,8 +52,7 @@ struct LambertianTransmission {
     }
 };
 
-// Approximates a surface of V-shaped Lambertian grooves (Oren and Nayar 1994, the qualitative
-// model, eq. 30).
+// A surface of V-shaped Lambertian grooves (Oren and Nayar 1994, the qualitative model, eq. 30).
 struct OrenNayar {
     static constexpr bool kIsSpecular = false, kTransmits = false;
     StoredRgb r;

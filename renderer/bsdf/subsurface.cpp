@@ -36,8 +36,7 @@ double MultipleScattering(double sigmaS, double sigmaA, double g, double eta, do
     return sum / kDepths;
 }
 
-// Radiant exitance at distance r after one scattering, at the depths from where it is not reflected
-// totally (15.5.4).
+// Radiant exitance at distance r after one scattering, at depths without total reflection (15.5.4).
 double SingleScattering(double sigmaS, double g, double eta, double r) {
     const double least = r * std::sqrt(Sqr(eta) - 1);
     double sum = 0;

@@ -49,8 +49,7 @@ bool IsReplaced(const std::string& name) {
            name.starts_with("half") || name.starts_with("noisy.") || name.starts_with("variance.");
 }
 
-// Returns R, G, B of the mean of both halves, or of all samples where the file has it; 0 for values
-// that are not finite.
+// Returns R, G, B of all samples or, if absent, of both halves; 0 for values that are not finite.
 std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool isWhole) {
     std::vector<float> mean(picture.colour.a.values.size());
     for (size_t c = 0; c < 3; ++c) {
@@ -81,8 +80,7 @@ void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture
             options.input, kLeastDenoisedSpp);
 }
 
-// Moves images of other programs to the display window if their data windows differ: some write
-// those pixels alone that are not black.
+// Uses the display window where data windows differ: some programs write no black borders.
 void UseOneWindow(const Options& options, ExrImage* a, ExrImage* b) {
     if (DataWindow(*a) == DataWindow(*b)) return;
     MoveTo(ShownWindow(*a, options.input), a);
@@ -108,8 +106,7 @@ NoisyPicture ReadHalves(const Options& options, ExrImage* exr) {
     return ReadPicture(*exr, options.input, half, options.half);
 }
 
-// Leaves out the channels that the denoised image replaces, as the next steps need the memory, and
-// NaN.
+// Leaves out NaN, and channels that the denoised image replaces: the next steps need the memory.
 void KeepOtherChannels(ExrImage* exr) {
     std::erase_if(exr->channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     for (ExrChannel& channel : exr->channels)  // depths may be infinite

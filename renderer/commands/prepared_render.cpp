@@ -33,8 +33,7 @@ int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule)
     return std::max(1, length);
 }
 
-// Returns the largest value in [0, 1] of a mask, stretched over an image of `size`, in these
-// pixels.
+// Returns the largest value in [0, 1] in these pixels of a mask stretched over an image of `size`.
 float LargestIn(const Image& mask, const PixelRect& pixels, const Vec2i& size) {
     const std::array<int64_t, 2> extent = {mask.width, mask.height};
     const auto begin = [&](int i) { return pixels.min[i] * extent[size_t(i)] / size[i]; };
@@ -116,8 +115,7 @@ bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
     return false;
 }
 
-// Returns how the film is kept, with no light groups yet: whoever goes on from a checkpoint may
-// look at the half.
+// Without light groups yet. Whoever goes on from a checkpoint may look at the half.
 FilmOptions FilmOf(const PreparedRender& p) {
     const RenderSettings& settings = p.settings;
     const LayerOptions layers = p.request.WantedLayers();
@@ -183,8 +181,7 @@ LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Descr
     }
 }
 
-// Returns the memory of previews and of the denoiser's written inputs, bytes per pixel, which the
-// film and its layers do not include.
+// Returns the bytes per pixel of previews and of the denoiser's written inputs.
 int64_t BytesBeside(const RenderRequest& request) {
     const bool hasPreviews = request.denoise && request.preview;
     return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);

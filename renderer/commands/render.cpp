@@ -19,8 +19,7 @@ namespace lull::render {
 
 namespace {
 
-// Returns the maker of criteria that see blocks as the grades show them, unless the rule sees to
-// that itself, or only counts.
+// Makes criteria that see blocks as graded, unless the rule sees to that itself, or only counts.
 CriterionMaker MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& grades) {
     CriterionMaker criteriaOf = CriteriaOf(rule);
     if (grades.empty() || rule.stopAt || rule.need == ViewNeed::Measured) return criteriaOf;

@@ -16,8 +16,7 @@ namespace lull {
 
 namespace {
 
-// Returns which blocks have ended, and how: a block at the cap that its rule has not stopped is not
-// stopped.
+// Returns which blocks have ended, and how: one that its rule leaves at the cap is not stopped.
 std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     const RenderProgress& p = result.progress;
     if (kind == RuleTrend::Samples)
@@ -28,8 +27,7 @@ std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     return text;
 }
 
-// Returns the savings compared with the highest sample count of a block everywhere, unless there
-// are none.
+// Returns the savings compared with the highest sample count of a block everywhere, if any.
 std::string SavingsOf(const RenderResult& result) {
     int most = 0;
     for (const BlockResult& b : result.blocks) most = std::max(most, b.block.spp);

@@ -75,8 +75,7 @@ std::function<double()> StartClock(const RenderRequest&);
 std::unique_ptr<Display> MakeDisplay(const RenderRequest&, const std::string& name,
                                      const PixelRect& region, int ranks);
 
-// Returns the name of the file of frame `number`, counted from 1: image.0001.exr for image.exr; an
-// empty name as it is.
+// Returns the name of the file of frame `number`, from 1: image.0001.exr for image.exr; "" for "".
 std::string NumberedFile(const std::string& file, int number);
 
 }  // namespace lull::render

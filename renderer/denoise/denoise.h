@@ -26,9 +26,8 @@ inline float DisparityOf(float depth) { return depth > 0 ? 1 / std::max(depth, 1
 using FeatureReader = std::function<Halves(int y0, int y1)>;
 
 // Returns the mean of both halves, each filtered by non-local means with weights from the other
-// half, and scaled to [-1, 1]. Noise comes from lenses, motion and glossy paths; without noise,
-// nothing is changed. NaN counts as 0. Calls forget(end), if there is such, when the rows above
-// `end` will not be read again.
+// half, and scaled to [-1, 1]. Without noise, nothing is changed. NaN counts as 0. Calls
+// forget(end), if there is such, when the rows above `end` will not be read again.
 Planes FilterFeatures(int width, int height, const FeatureReader&,
                       const std::function<void(int end)>& forget = {});
 
@@ -59,8 +58,7 @@ Halves FilterColours(const Halves& noisy, Planes features, const Planes& varianc
 struct RegressionInput {
     const Planes& colour;
     const Planes& features;
-    // The other half of the samples, from which weights come (PatchWeights::Of), so that they do
-    // not depend on the noise of `colour`.
+    // The other half, from which weights come, so that they do not depend on the noise of `colour`.
     PatchGuide guide;
     PatchOptions patches;
     std::span<const float> bandwidths;
@@ -69,8 +67,7 @@ struct RegressionInput {
     int rowsPerFit = 1;
 };
 
-// Returns for each bandwidth the fit of the colours of a tile, which lies within the image, to its
-// features.
+// Returns for each bandwidth the fit of the colours of a tile, within the image, to its features.
 std::vector<Planes> RegressTile(const RegressionInput&, const ImageTile&);
 
 // Chooses, place by place, which of several pictures is nearest to the truth.
@@ -150,8 +147,7 @@ struct DenoisedPicture {
 };
 
 // Estimates the variance of a pixel of either half, R, G, B, > 0, from that of the mean (see
-// NoisyPicture), if it is known, and the difference of the halves, whose values are as Sane() has
-// them.
+// NoisyPicture), if it is known, and the difference of the halves, whose values are Sane().
 Planes EstimateVariance(const Halves& colour, const Planes& ofMean);
 
 // Lowers the variance of the mean, where it is known, of pixels from which fireflies were taken to

@@ -31,8 +31,7 @@ void Raise(const Blocks& errors, Blocks* blocks) {
     }
 }
 
-// A denoised picture as it is shown, some pixels of which are made at a time, as a graded copy of a
-// large one would take much memory.
+// A denoised picture as it is shown, made part by part: a graded copy would take much memory.
 struct ShownPicture {
     const DenoisedPicture& linear;
     const Grading& grading;  // null: the same
@@ -88,8 +87,7 @@ VisibleError ErrorIn(const ShownPicture& picture, const Planes& structure, const
                                {{part.x0, part.y0}, {part.x1, part.y1}});
 }
 
-// Measures the error of a picture as it is shown. Returns the standard errors of pixels, where they
-// are wanted.
+// Measures the error of a picture as it is shown. Returns the standard errors of pixels, if wanted.
 std::vector<float> MeasureShown(const ShownPicture& picture, std::span<const PixelRect> places,
                                 bool withDeviation, Blocks* blocks) {
     if (places.empty() && !withDeviation) return {};

@@ -47,8 +47,7 @@ float MedianDisparity(int height, const FeatureReader& read) {
     return std::bit_cast<float>(middle * kCounters + find(low, &rank));
 }
 
-// Brings features to [-1, 1]: of one over the depth, d becomes d / (d + median), which is 0 where
-// there is nothing.
+// Brings features to [-1, 1]: one over the depth, d, becomes d / (d + median).
 void ScaleFeatures(float median, Planes* half) {
     for (int f = 0; f < kDisparity; ++f)
         for (size_t i = 0; i < half->Area(); ++i) {

@@ -17,8 +17,7 @@ constexpr int kSmoothRadius = kErrorReach;
 constexpr double kLeast = 0.01;  // of the mean deviation
 // Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
 // 10 degrees, 40 pixels a degree): people see blotches of 4, 8, 16 pixels 2.2, 2.0, 1.4 times as
-// well as noise that changes from pixel to pixel. By these constants they count 1.5, 1.8, 1.9
-// times.
+// well as noise by the pixel. By these constants they count 1.5, 1.8, 1.9 times.
 constexpr int kCoarseRadius = 3;  // pixels
 constexpr float kCoarseGain = 1;
 constexpr float kVisible = 1.13f;  // times the standard deviation of a sum of products of noise
@@ -30,8 +29,7 @@ constexpr double kUsualDeviation = 0.25;
 // the samples and of the usual ratio. Chosen on 13 scenes by three seeds, so that the bound of the
 // visible difference is exceeded in 7 % (tests/measurements/denoiser.md).
 constexpr double kModelDeviation = 0.15;
-// The bound is not below this fraction of the samples' own bound, because of errors hidden under
-// the noise of unusual pictures.
+// The bound is not below this fraction of the samples' own bound, for errors hidden under noise.
 constexpr double kTrust = 0.8;
 
 struct Sums {

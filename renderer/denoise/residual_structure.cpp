@@ -242,8 +242,7 @@ void AddToRows(std::span<const Found> all, std::span<const Rgb> means,
     }
 }
 
-// Adds to each pixel of a half the weighted mean of all, row by row, that is found by kernels with
-// it in their middle.
+// Adds to each pixel of a half the weighted mean of all that kernels in whose middle it is find.
 void AddFound(const std::vector<Found>& all, const std::vector<Kernel>& kernels,
               const Planes& noisy, Planes* picture) {
     std::vector<Rgb> means(all.size());

@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kMostError = 100;  // in lightness: black instead of white
 
-// Returns the detail that a block lacks, in lightness, where its error is `ratio` times half the
-// difference of the halves.
+// Returns the lightness that a block lacks, where its error is `ratio` times HalfDifference().
 Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const float> slope,
                  float ratio) {
     const Planes& size = noisy.a;
@@ -141,8 +140,7 @@ Plane TakeBand(Plane* image) {
     return band;
 }
 
-// Returns an upper estimate of the mean square by which the error of a band exceeds the expected
-// one; 0 where that is not significant.
+// Returns an upper estimate of the excess of a band's mean squared error; 0 if not significant.
 double Excess(const Plane& a, const Plane& b, const Plane& noise, const Plane& half, float ratio) {
     double sum = 0, squares = 0;
     for (size_t i = 0; i < a.values.size(); ++i) {

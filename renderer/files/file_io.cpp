@@ -95,8 +95,7 @@ bool CreateLocked(const fs::path& name, OutputFile* file) {
     return false;
 }
 
-// Removes the file that a killed writer has left; returns false if another process is writing to
-// it, or that cannot be determined.
+// Removes the file that a killed writer has left; returns false if another may be writing to it.
 bool RemoveLeftover(const fs::path& name) {
     OutputFile old;
     old.fd = open(name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -106,9 +105,8 @@ bool RemoveLeftover(const fs::path& name) {
     return !IsNamed(old.fd, name) || unlink(name.c_str()) == 0;
 }
 
-// Creates a new file in the folder of `target`. It has always the same name, so that files left by
-// killed writers do not accumulate; where another writer has that, or the file system has no locks,
-// a name of its own.
+// Creates a new file in the folder of `target`. It always has the same name, so that files of
+// killed writers do not accumulate, or, without locks or where another has that, a name of its own.
 void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* file) {
     const fs::path common = BesideTarget(target, "tmp");
     for (int attempt = 0; attempt < 10; ++attempt) {

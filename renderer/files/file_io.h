@@ -16,8 +16,7 @@ namespace lull {
 
 // Names of open files.
 
-// Returns whether the name is still of the open file: an earlier holder of its lock may have
-// removed or renamed it.
+// Returns whether the name is still of the open file: who had its lock may have moved it.
 bool IsNamed(int fd, const std::string& name);
 
 // Replaces the file at `path` by `bytes` atomically: they are written to a new file in its folder,
@@ -63,8 +62,7 @@ FileContents ReadFile(const std::string& path, const FileLoc& loc = {});
 
 // Cleans texts of what editors and old programs put around them.
 
-// Returns the text without UTF-8's byte-order mark. Throws Error at `loc` for UTF-16 and UTF-32,
-// with or without theirs.
+// Returns the text without UTF-8's byte-order mark. Throws Error at `loc` for UTF-16 and UTF-32.
 std::string_view WithoutByteOrderMark(std::string_view text, const FileLoc& loc);
 
 // Does so, and leaves out Control-Z and NUL at the end, by which old programs mark it.

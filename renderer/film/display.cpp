@@ -42,8 +42,7 @@ DisplayAddress ParseDisplayAddress(const std::string& text) {
     return address;
 }
 
-// State of the thread; the thread shares it, so that a slow look-up of a name does not
-// block.
+// Shared by the thread, so that a slow look-up of a name does not block.
 struct Display::State {
     State(const DisplayAddress& address, const std::string& name, const PixelRect& region,
           std::function<void(const std::string&)> warn)

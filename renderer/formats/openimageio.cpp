@@ -1,6 +1,5 @@
-// The module of all formats but PNG and OpenEXR: OpenImageIO reads them. It is apart from the
-// program since OpenImageIO brings some 200 libraries, which take longer to load than many a
-// render.
+// The module of all formats but PNG and OpenEXR: OpenImageIO reads them. It is apart since
+// OpenImageIO brings some 200 libraries, which take longer to load than many a render.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -136,8 +135,7 @@ struct RadianceHeader {
     }
 };
 
-// Returns whether a TIFF leaves out how many bits a pixel has, which makes it one; OpenImageIO
-// takes it for eight.
+// Returns whether a TIFF leaves out its bits a pixel: it is one, OpenImageIO takes eight.
 bool LacksBitsPerSample(std::string_view tiff) {
     constexpr unsigned kBitsPerSample = 258;
     const bool isBig = tiff.starts_with("MM");

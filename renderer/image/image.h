@@ -13,8 +13,7 @@
 
 namespace lull {
 
-// A 16-bit IEEE 754 float. Eigen::half is not used, since Eigen 3.4 converts it in software
-// when compiled by GCC.
+// A 16-bit IEEE 754 float. Eigen 3.4 converts Eigen::half in software by GCC.
 struct Half {
     uint16_t bits = 0;
 

@@ -113,15 +113,13 @@ struct ExrImage {
 // Returns how many values were clamped to 16 bits. Throws Error with the path and the reason.
 int64_t WriteExr(const std::string& path, const ExrImage& image);
 
-// Fills in row `y` of an image, 0 at the top, with adjacent channels. Is called from any thread,
-// for several rows at the same time.
+// Fills in row `y` of an image, 0 at the top, with adjacent channels. Is called from any thread.
 using RowSource = std::function<void(int y, std::span<float> values)>;
 
 // Does the same with channels of `image` that have no values: they come row by row.
 int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
-// Writes several images as the parts of one file, whose attributes "view" name them; `rows` has
-// those of each.
+// Writes images as the parts of a file, whose attributes "view" name them; `rows`: one of each.
 int64_t WriteExr(const std::string& path, std::span<const ExrImage> parts,
                  std::span<const RowSource> rows);
 
@@ -133,22 +131,19 @@ ExrImage ReadExr(const std::string& path);
 // rounded, clamped to [0, 255]; NaN is black. Throws Error.
 std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height);
 
-// Encodes 8-bit sRGB pixels (R, G, B, rows from the top) as they are, as small as PNG can. Throws
-// Error.
+// Encodes 8-bit sRGB pixels (R, G, B, rows from the top), as small as PNG can. Throws Error.
 std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height);
 
 // How a PNG shows linear RGB.
 struct PngFormat {
     int bits = 8;  // a component, or 16
     Grade grade = {};
-    // Rows have alpha as a fourth value, by which the colours are multiplied; in the file, as PNG
-    // has it, they are not.
+    // Rows have alpha as a fourth value, by which colours are multiplied; in the file they are not.
     bool hasAlpha = false;
     std::map<std::string, std::string> text = {};  // for the header: name (letters only), value
 };
 
-// Write PNGs, whole or not at all: of linear RGB, of linear RGB that comes row by row, and of 8-bit
-// sRGB. Throw Error.
+// Write PNGs, whole or not at all, of linear RGB, all or row by row, or of 8-bit sRGB. Throw Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
               const PngFormat& format = {});
 void WritePng(const std::string& path, const RowSource& rows, int width, int height,

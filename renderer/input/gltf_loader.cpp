@@ -32,8 +32,7 @@ struct PosedMesh {
     }
 };
 
-// Shapes of a mesh: in its own space, or in the world if it has a skin, and, on request, points on
-// their outline.
+// Shapes of a mesh, in the world if it has a skin, and, on request, points on their outline.
 struct MeshShapes {
     std::vector<ShapeEntity> shapes;
     std::vector<Vec3f> outline;
@@ -101,8 +100,7 @@ bool HasExtent(const Mat4d& m) {
 }
 
 // Returns a transform that flattens the mesh with a millionth of its extent left across, which has
-// an inverse: a flat mesh stays as it is. A transform onto a line or a point is returned as it
-// is.
+// an inverse: a flat mesh stays as it is. One onto a line or a point is returned as it is.
 Mat4d Thickened(const Mat4d& m) {
     if (HasExtent(m) || !m.allFinite()) return m;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.topLeftCorner<3, 3>(),

@@ -25,8 +25,7 @@ struct Directive {
     void (PbrtBuilder::*run)();
 };
 
-// Lists every directive, and whether it belongs before WorldBegin, after it or both. Four of them
-// are pbrt-v4's.
+// Lists every directive, and whether it belongs before WorldBegin, after it or both.
 constexpr Directive kDirectives[] = {
     {"Accelerator", Place::Options, &PbrtBuilder::Accelerator},
     {"ActiveTransform", Place::Anywhere, &PbrtBuilder::ActiveTransform},
@@ -78,8 +77,7 @@ const Directive* FindDirective(const Token& token) {
     return it != std::end(kDirectives) && it->name == token.text ? it : nullptr;
 }
 
-// Returns the directive that a token begins. Throws Error if it is none, or stands where it must
-// not.
+// Returns the directive that a token begins. Throws Error if it is none, or at a wrong place.
 const Directive& DirectiveAt(const Token& token, PbrtBuilder::Stage stage) {
     const Directive* directive = FindDirective(token);
     if (!directive)

@@ -36,8 +36,7 @@ Rgb RgbFromBlackbody(double kelvin, const FileLoc& loc = {});
 double Planck(double wavelength, double kelvin);
 
 // Reads a file of wavelengths (nm) and values, separated by white space or commas, with comments
-// from '#' to the end of the line. `loc` is the place that names the file. Throws Error if it
-// cannot be read.
+// from '#' to the end of the line. `loc` names the file. Throws Error if it cannot be read.
 Rgb LoadSpectrum(const std::string& path, const FileLoc& loc = {}, Warnings* warnings = nullptr);
 
 // Return pbrt-v3's defaults for metals: copper's index of refraction and absorption as RGB.
@@ -54,12 +53,10 @@ std::vector<float> ReadNumberFile(const std::string& path, const std::string& ki
 
 // Reads numbers that have to be at least 0, of which rounding may have left some just below.
 
-// Returns x, and 0 for what rounding a 0 could leave below it (NotNegative()). Other negative
-// numbers and NaN stay as they are.
+// Returns NotNegative(x); negative numbers and NaN as they are.
 float RaisedToZero(float x);
 
-// Returns a parameter so. Throws Error with its place for all that is then no finite number of at
-// least 0.
+// Returns a parameter so. Throws Error with its place unless that is finite and at least 0.
 float GetNonnegative(const Entity& entity, const std::string& name, float otherwise);
 
 }  // namespace lull

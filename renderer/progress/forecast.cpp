@@ -219,8 +219,7 @@ std::time_t NextTimeOfDay(const std::string& text, std::time_t now) {
 
     std::tm today = {};
     localtime_r(&now, &today);
-    // A day more until it is in the future; mktime() knows of the ends of months, and finds out
-    // about summer time.
+    // A day more until it is in the future; mktime() knows of months and of summer time.
     for (int day = 0;; ++day) {
         std::tm then = today;
         then.tm_mday += day;

@@ -42,8 +42,7 @@ struct GroupLight {
     }
 };
 
-// Returns the mean of the four neighbours of a pixel that have samples and are within `rect`;
-// nothing where none are.
+// Returns the mean of those of the four neighbours within `rect` that have samples; may be nothing.
 template <typename Light>
 std::optional<Rgb> NeighbourMean(const Light& light, const PixelRect& rect, const Vec2i& p) {
     Rgb sum(0, 0, 0);
@@ -73,8 +72,7 @@ struct Split {
 
 constexpr auto kSkip = [](const Vec2i&) {};
 
-// Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others,
-// rows on all threads.
+// Calls use(split, pixel, p) for pixels p with samples, useEmpty(p) for others, on all threads.
 template <typename Light, typename Use, typename UseEmpty = decltype(kSkip)>
 void ForEachPixel(const Light& light, const PixelRect& rect, const Use& use,
                   const UseEmpty& useEmpty = kSkip) {
@@ -134,8 +132,7 @@ Planes VarianceOfLight(const Light& light, const PixelRect& rect) {
     return variance;
 }
 
-// Returns all but the colours. Calls forget(end), if there is such, when features of the rows above
-// `end` are not needed any more.
+// Returns all but the colours. Calls forget(end), if given, when rows above `end` have been read.
 NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect,
                         const std::function<void(int end)>& forget = {}) {
     const auto read = [&](int y0, int y1) {

@@ -25,8 +25,7 @@ NoisyPicture PictureOf(const Film&, const PixelRect&);
 // which has to be there; the first look belongs to the last group.
 GroupedPicture GroupedPictureOf(const Film&, const PixelRect&);
 
-// Returns a region of the film at a lower resolution, for a quick look: each pixel is the mean of
-// 2^halvings x 2^halvings.
+// Returns a region of the film at a lower resolution: each pixel is the mean of 2^halvings a side.
 NoisyPicture ReducedPictureOf(const Film&, const PixelRect& region, int halvings);
 
 // Do the same; of all pixels, they free what the denoiser alone reads of the film, row by row: so
@@ -37,11 +36,9 @@ GroupedPicture TakeGroups(Film*, const PixelRect&);
 // Returns the colours alone.
 Halves ColoursOf(const Film&, const PixelRect&);
 
-// Return the features of both halves of the samples, not filtered, and the variance of the mean
-// luminance.
+// Return the unfiltered features of both halves, and the variance of the mean luminance.
 Halves FeatureHalvesOf(const Film&, const PixelRect&);
-// Returns NoisyPicture::emission: 0 in pixels with too few samples for two halves, no channels
-// where the film has no such layer.
+// Returns NoisyPicture::emission: 0 in pixels without two halves, no channels without such a layer.
 Halves EmissionOf(const Film&, const PixelRect&);
 Planes VarianceOf(const Film&, const PixelRect&);
 

@@ -56,8 +56,7 @@ Variances VariancesOf(const Film& film) {
     return of;
 }
 
-// Returns the part of the pixels that were active when the round began: blocks that have stopped in
-// it were.
+// Returns the part of the pixels active when the round began: also of blocks that stopped in it.
 double ActivePart(const Schedule& schedule) {
     const int first = schedule.LeastSpp();
     int64_t active = 0, all = 0;

@@ -94,8 +94,7 @@ bool HidesShapes(const Scene& scene) {
                                [](const Shape& s) { return (s.hiddenFrom & kCameraRay) != 0; });
 }
 
-// Returns the share of the picture in which the camera looks through single-sided shapes from
-// behind.
+// Returns the picture's share in which the camera looks through single-sided shapes from behind.
 double ShareOpenBehind(const Scene& scene) {
     const auto isSingleSided = [](const Shape& s) { return s.coverage && s.coverage->singleSided; };
     const std::vector<Shape>& shapes = scene.shapes.shapes;
@@ -115,8 +114,7 @@ double ShareOpenBehind(const Scene& scene) {
     return double(count) / (kSide * kSide);
 }
 
-// Returns the volumes that a point lies in: those that a ray from there leaves without having
-// entered them, the innermost first.
+// Returns the volumes about a point, the innermost first: a ray leaves them without entering.
 MediumStack VolumesAbout(const Scene& scene, const Vec3f& point) {
     constexpr int kMostHits = 1000;
     std::vector<int> left;

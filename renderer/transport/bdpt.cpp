@@ -50,8 +50,7 @@ template <typename Use>
             use(fromLight->Light(), ConnectedLight(context, v, vertices[i]));
 }
 
-// Scatters a subpath from the camera at vertex v, and ends dim ones by Russian roulette. Returns
-// false where it ends.
+// Scatters a camera's subpath at v, and ends dim ones by Russian roulette: returns false.
 template <typename Recorder>
 [[gnu::always_inline]] inline bool GoesOn(const BdptContext& context, const SubpathVertex& v,
                                           int bounces, Segment* segment, Path* path,

@@ -1,5 +1,4 @@
-// Start and end of a sample, the same for all integrators, and the function of each kind of
-// Integrator in between.
+// Start and end of a sample, the same for all integrators, and each kind's function in between.
 #pragma once
 
 #include "renderer/base/math.h"

@@ -61,8 +61,7 @@ class Beam {
 
 namespace {
 
-// Calls visit(medium, isLeft) for the surfaces of volumes that a ray to wi meets, until that
-// returns false.
+// Calls visit(medium, isLeft) for the surfaces of volumes on a ray to wi, until it returns false.
 template <typename Visit>
 void ForVolumesAhead(const Scene& scene, const SurfaceInteraction& hit, const Vec3f& wi,
                      const Visit& visit) {
@@ -207,8 +206,7 @@ namespace {
 // Chosen half of the time is the probe along the normal, which finds most.
 constexpr std::array<float, 3> kAxisShares = {0.25f, 0.25f, 0.5f};
 
-// Returns the density over the surface with which p, whose normal is n, is found by the probes of
-// all axes and channels together.
+// Returns the density by area of finding p, of normal n, by probes of all axes and channels.
 float ProbePdf(const SubsurfaceProfile& profile, const Frame& frame, const Vec3f& d,
                const Vec3f& n) {
     const Vec3f local = frame.ToLocal(d), normal = frame.ToLocal(n);

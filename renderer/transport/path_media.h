@@ -225,8 +225,7 @@ std::optional<SubsurfaceExit> SampleSubsurface(const Scene& scene, Sampler& samp
                                                const SurfaceInteraction& hit, const Bsdf& bsdf,
                                                const SubsurfaceProfile& profile, float time);
 
-// Returns how light leaves at such a point: into the outside by Fresnel's law, as if it came from
-// everywhere. Its wo is hit.ns.
+// Returns how light leaves there: by Fresnel's law, as if it came from everywhere. wo is hit.ns.
 Bsdf ExitBsdf(const SubsurfaceExit& exit, float eta);
 
 }  // namespace lull

@@ -38,8 +38,7 @@ struct NoRecorder {
     static void End(const Path&) {}
 };
 
-// Represents where a path scatters: on a surface, or in a medium. Directions point away from there,
-// unit, world.
+// Where a path scatters: on a surface, or in a medium. Directions point away, unit, world.
 
 // Returns whether both directions leave a surface of normal n on the same side.
 inline bool IsSameSide(const Vec3f& n, const Vec3f& a, const Vec3f& b) {
@@ -112,8 +111,7 @@ struct MediumVertex {
     bool IsSameSide(const Vec3f&, const Vec3f&) const { return true; }
 };
 
-// Constants of a path and, in `media`, the medium about its next ray: a
-// policy (path_media.h).
+// Constants of a path and, in `media`, that of its next ray: a policy (path_media.h).
 template <typename Media>
 struct PathContext {
     const Scene& scene;

@@ -104,8 +104,7 @@ namespace {
 
 enum class MediumEvent { Passes, Scatters, Ends };
 
-// Adds what the medium about a path emits. By itself, as the sums of other scenes are then rounded
-// alike with and without a recorder.
+// Adds what the medium about a path emits; apart, so that a recorder changes no rounding.
 template <typename Recorder>
 [[gnu::noinline]] void AddEmission(int index, const Rgb& emitted, Recorder& recorder, Path* path) {
     path->L += path->beta * emitted;
@@ -192,8 +191,7 @@ template <typename Media, typename Recorder>
         context.media.Leave(v, path->ray.d);
         return true;
     }
-    // Works on copies, as all functions that are not inlined here: anything it has a pointer to
-    // would lie in memory all along.
+    // Works on copies, as all functions not inlined here: what they point to would lie in memory.
     PathContext<Media> contextBelow = context;
     Path below = *path;
     const bool goesOn = ScatterBelow(&contextBelow, v, recorder, &below);
@@ -203,8 +201,7 @@ template <typename Media, typename Recorder>
 }
 
 // Follows a path along `ray`, the camera's, and returns its radiance. Compiled for each kind of
-// Media and Recorder, so that features which a scene does not have and nobody asks for cost
-// nothing.
+// Media and Recorder, so that what a scene does not have costs nothing.
 template <typename Media, typename Recorder>
 [[gnu::noinline]] Rgb Trace(PathContext<Media> context, const Ray& ray, Recorder& recorder) {
     const Scene& scene = context.scene;

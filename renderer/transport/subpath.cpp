@@ -6,8 +6,7 @@
 namespace lull {
 namespace {
 
-// Returns the index of refraction beyond the surface that the specular lobe has which takes wo to
-// wi; 1 if it does not refract.
+// Returns the index beyond the surface of the specular lobe from wo to wi; 1 without refraction.
 float IndexBetween(const Bsdf& bsdf, const Vec3f& wo, const Vec3f& wi) {
     constexpr float kStraight = 1 - 1e-6f;
     float index = 1;

@@ -1,5 +1,4 @@
-// Serialises the state of a criterion, or other data, to bytes and back, in the layout of this
-// machine.
+// Serialises the state of a criterion, or other data, to bytes of this machine and back.
 #pragma once
 
 #include <cstddef>

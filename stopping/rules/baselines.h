@@ -64,8 +64,7 @@ Rule LuxTileRule(double threshold);
 
 // Stops blocks by the noise that an observer can see in their lightness.
 
-// Returns the root of the mean of squares: the RMS of a block, from the RMS of sub-blocks that are
-// equally large. At least one value.
+// Returns the root mean square of one value or more: a block's RMS, from sub-blocks' of equal size.
 double PooledRms(std::span<const float> subBlocks);
 
 // Returns the RMS over the block of its noise in lightness, masked by texture: the pooled

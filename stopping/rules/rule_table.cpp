@@ -15,8 +15,7 @@ namespace lull {
 
 namespace {
 
-// In the order of RuleEntry: name, argument, standard, when it stops, what it compares, whether it
-// takes caution, its reader.
+// In the order of RuleEntry.
 constexpr RuleEntry kRules[] = {
     {"learned", "[:NAME|:MODEL.h5]", nullptr,
      "when a network finds no visible noise at three consecutive checks", RuleTrend::Probability,

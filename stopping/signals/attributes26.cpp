@@ -122,8 +122,7 @@ void Median(const PaddedImage& image, std::span<double> filtered) {
         }
 }
 
-// `squares` is the square of `image`; `mean` and `variance` are memory to use, of the size of
-// `filtered`.
+// `squares` is image^2; `mean` and `variance` are memory to use, of the size of `filtered`.
 void Wiener(const PaddedImage& image, const PaddedImage& squares, int size, PaddedImage* rows,
             std::span<double> mean, std::span<double> variance, std::span<double> filtered) {
     Smooth(image, MeanTaps(size), rows, mean);

@@ -62,8 +62,7 @@ class SumTable {
     std::vector<double> sums;
 };
 
-// Calls use(i, x0, x1, y0, y1) for each pixel i with the square window around it, clipped at the
-// borders of the block.
+// Calls use(i, x0, x1, y0, y1) for each pixel i with the window around it, clipped by the block.
 template <typename Use>
 void ForWindows(int width, int height, int radius, const Use& use) {
     size_t i = 0;
@@ -78,8 +77,7 @@ void ForWindows(int width, int height, int radius, const Use& use) {
 std::vector<float> Texture(const std::vector<float>& lightness, const std::vector<float>& weights,
                            int width, int height) {
     const SumTable counts(width, height, [&](size_t i) { return double(weights[i]); });
-    // Subtract some value of the block: the variance is then exactly zero where all are equal, and
-    // loses less to rounding elsewhere.
+    // Subtract some value of the block: variances are then exactly 0 where all are equal.
     const float origin = lightness[0];
     std::vector<double> smooth(lightness.size());
     const SumTable plain(width, height,

@@ -124,8 +124,7 @@ namespace {
 
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
-// Writes RGB rows of 8 or 16 bits. Errors of the sink are kept, as no exception may pass through
-// libpng.
+// Writes RGB rows of 8 or 16 bits. Errors of the sink are kept: none may pass through libpng.
 class PngWriter {
   public:
     PngWriter(const std::string& path, ByteSink sink)

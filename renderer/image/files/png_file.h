@@ -27,8 +27,7 @@ struct PngError {
 }
 inline void OnPngWarning(png_structp, png_const_charp) {}
 
-// Calls `call`, which calls libpng; returns false if that gives up. As it is then left midway,
-// `call` must own nothing.
+// Returns false if libpng, called by `call`, gives up: left midway then, `call` must own nothing.
 template <typename Call>
 bool TryPng(png_structp png, const Call& call) {
     if (setjmp(png_jmpbuf(png))) return false;

@@ -23,8 +23,7 @@ struct GltfArray {
 
 // Reads an accessor of any type of component, with its sparse values in place; integers that are
 // normalised, or all with `normalizes`, become 0 to 1 or -1 to 1. Throws Error where it has fewer
-// than `least` or more than `most` components, or reaches beyond its buffer. Numbers may be not
-// finite.
+// than `least` or more than `most` components, or reaches beyond its buffer.
 GltfArray ReadNumbers(const GltfDocument&, int accessor, int least, int most,
                       bool normalizes = false);
 // Reads the same. Throws Error where a number is not finite, too.

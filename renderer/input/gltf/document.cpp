@@ -90,8 +90,7 @@ std::string ProblemOf(const std::string& extension) {
 }
 
 // Warns of extensions that objects have and `listed` lacks: some exporters do not list all that
-// they write. Throws Error where one that counts is no object, which the library drops. The depth
-// of the value has been bounded.
+// they write. Throws Error where one that counts is no object, which the library drops.
 void CheckUnlisted(const std::string& file, const std::string& path, const nlohmann::json& value,
                    const std::vector<std::string>& listed, Warnings& warnings) {
     if (value.is_object() && value.contains("extensions") && value.at("extensions").is_object())
@@ -156,8 +155,7 @@ std::vector<Bytes> TakeBuffers(const std::filesystem::path& folder, std::string_
     return buffers;
 }
 
-// Gives the data URIs of images a media type that the library knows: it takes others for names of
-// files, or loses their data.
+// Gives data URIs of images a media type that the library knows: it misreads or loses others.
 void UnifyImages(nlohmann::json* root) {
     if (!root->contains("images")) return;
     for (nlohmann::json& image : root->at("images")) {

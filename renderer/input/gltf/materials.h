@@ -23,15 +23,13 @@ struct GltfTextureUse {
     std::string path;  // the JSON pointer of the use
 };
 
-// Read a use, from the core specification's texture slots or from an extension's: `owner` is the
-// object that may have a member `name`.
+// Read a use, from the core specification's slots or an extension's: `owner` may have a `name`.
 GltfTextureUse ReadTextureUse(const tinygltf::TextureInfo&, const std::string& path);
 GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo&, const std::string& path);
 GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
                               const std::string& path);
 
-// The part of an image that a texture reads: its colours, sRGB-encoded or not, or one channel as it
-// is.
+// What a texture reads of an image: its colours, sRGB-encoded or not, or one channel as it is.
 enum class GltfTexels { EncodedColor, LinearColor, Red, Green, Alpha };
 
 // Adds textures and embedded images to a description, each once.
@@ -40,8 +38,7 @@ class GltfTextures {
     GltfTextures(const GltfDocument& document, Description* description)
         : document(document), description(description) {}
 
-    // Returns the texture; nothing if the use names none, or, with a counted warning, one without
-    // an image.
+    // Returns the texture; nothing if the use names none, or, with a warning, one without image.
     std::optional<TextureRef> Add(const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
     // Returns which of TEXCOORD_0 and 1 the textures use that were added since the last call.
     std::array<bool, 2> TakeUvSets() { return std::exchange(uvSets, {}); }

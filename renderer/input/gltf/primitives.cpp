@@ -14,8 +14,7 @@
 namespace lull {
 namespace {
 
-// Adds the morph targets of an attribute, each by its weight (3.7.2.2). A tangent's sign, or an
-// alpha, that a target lacks stays.
+// Adds morph targets of an attribute by weight (3.7.2.2). Signs and alphas that they lack stay.
 void AddTargets(const GltfDocument& document, const FileLoc& loc,
                 const tinygltf::Primitive& primitive, const std::string& name,
                 const std::vector<double>& weights, GltfArray* array) {
@@ -40,8 +39,7 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
     }
 }
 
-// Reads an attribute of `least` to `most` components, one a vertex, and morphs it; nothing where it
-// is absent.
+// Reads an attribute of `least` to `most` components a vertex, and morphs it; nothing where absent.
 GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
                         const tinygltf::Primitive& primitive, const std::string& name, int least,
                         int most, const std::vector<double>& weights, size_t vertexCount,
@@ -265,8 +263,7 @@ uint32_t CopyVertex(uint32_t from, GltfTriangles* t) {
 
 using TangentSums = std::unordered_map<Corner, Vec3f, HashCorner>;
 
-// Sums up the tangents of the triangles around each corner. `mirrored` tells the side of each
-// triangle.
+// Sums up the tangents of the triangles around each corner. `mirrored` tells the triangles' sides.
 TangentSums SumTangents(const GltfTriangles& t, int uvSet, std::vector<bool>* mirrored) {
     TangentSums sums;
     for (size_t i = 0; i < mirrored->size(); ++i) {
@@ -287,8 +284,7 @@ TangentSums SumTangents(const GltfTriangles& t, int uvSet, std::vector<bool>* mi
     return sums;
 }
 
-// Gives each vertex the side of the first triangle that has it, and a copy to the others. Returns
-// the sides.
+// Gives each vertex the side of its first triangle, and a copy to the others. Returns the sides.
 std::vector<bool> SplitSides(const std::vector<bool>& mirrored, GltfTriangles* t) {
     constexpr uint32_t kNone = ~0u;
     std::vector<std::array<uint32_t, 2>> copies(t->VertexCount(), {kNone, kNone});

@@ -34,8 +34,7 @@ void ForEachObject(json* owner, const char* name, const F& f) {
 bool IsZero(const json* value) { return value && value->is_number() && value->get<double>() == 0; }
 
 // Returns what a member of an object stands for that is as good as absent: null; numbers of which
-// one is null, as JSON writes NaN; -1 for no index; an empty text; [] for no members. Null: it is
-// none.
+// one is null, as JSON writes NaN; -1 for no index; an empty text; []. Null: it is none.
 const char* NothingIn(const std::string& name, const json& value) {
     constexpr const char* kIndices[] = {
         "bufferView", "camera", "index",   "indices", "inverseBindMatrices",

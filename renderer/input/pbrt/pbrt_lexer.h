@@ -24,8 +24,7 @@ struct Token {
 std::string Describe(const Token& token);
 
 // Reads tokens from a stack of files: where an included file ends, the including one continues.
-// Every function throws Error for invalid tokens: unterminated strings, stray control
-// characters.
+// Every function throws Error for invalid tokens.
 class PbrtLexer {
   public:
     explicit PbrtLexer(const std::string& file);

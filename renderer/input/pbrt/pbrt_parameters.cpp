@@ -13,8 +13,7 @@
 namespace lull {
 namespace {
 
-// Bounds the parameters of a directive: each is compared with all others, and real ones have a
-// few dozen at most.
+// Bounds the parameters of a directive, each compared with all others; real ones have dozens.
 constexpr size_t kMostParameters = 1000;
 
 enum class Encoding { Plain, Rgb, Xyz, Blackbody, Sampled };

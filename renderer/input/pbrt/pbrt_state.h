@@ -88,8 +88,7 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context,
                           const Mat3f& rgbFromColorSpace, Warnings& warnings);
 
 // Make the matrices of the directives, in pbrt-v3's conventions; angles in degrees. LookAt maps
-// world to camera space (left-handed, looking along +z). Throw Error at `loc` if there is no such
-// transform.
+// world to camera space (left-handed, looking along +z). Throw Error at `loc` if there is none.
 Mat4d TranslateMatrix(double x, double y, double z);
 Mat4d ScaleMatrix(double x, double y, double z, const FileLoc& loc);
 Mat4d RotateMatrix(double degrees, const Eigen::Vector3d& axis, const FileLoc& loc);

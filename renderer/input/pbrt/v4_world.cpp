@@ -45,8 +45,7 @@ void CopyImage(V4Reader* in, bool isSpectrum) {
     if (!isSpectrum) in->write.String("channel", "mean or alpha");
 }
 
-// Multiplies a texture by another. The factor of an image is multiplied with its texels, before
-// they are inverted.
+// Multiplies a texture by another. An image's factor is that of its texels, before inversion.
 Entity TranslateScale(V4Reader& in, bool isSpectrum, const std::string& owner) {
     const TextureRef* texture = in.given.GetTexture("tex");
     const int index = !texture ? -1 : isSpectrum ? texture->spectrumIndex : texture->floatIndex;

@@ -1,5 +1,4 @@
-// `lull study`: observers mark visible noise, and `--collect` computes human thresholds from their
-// answers.
+// `lull study`: observers mark visible noise, of which `--collect` computes human thresholds.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -237,8 +236,7 @@ void SayCertainty(const CollectedViewpoint& viewpoint) {
             viewpoint.name, fewest, fewest == 1 ? "" : "s", kEnoughAnswers);
 }
 
-// Returns the files of single answers with their contents; with more than one viewpoint each has
-// its own.
+// Returns the files of single answers with their contents; each of several viewpoints has its own.
 std::map<std::string, std::string> SingleAnswers(const Collected& collected,
                                                  const std::string& base) {
     std::map<std::string, std::string> files;

@@ -206,8 +206,7 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     app.footer(kFooter);
 }
 
-// Completes defaults that depend on other options. Throws CLI::ValidationError for contradictory
-// options.
+// Completes defaults that depend on other options. Throws CLI::ValidationError.
 void CompleteTrainOptions(TrainOptions* o) {
     if (o->plan.datasets.empty() && o->isPreset) {  // which then lists its values
         o->listsValues = true;

@@ -278,8 +278,7 @@ ComparedImage TakeImage(const MonitoredRender& render, const std::vector<Monitor
         return voter < 0 ? RuleStop() : render.histories[size_t(voter)].stops[index];
     };
 
-    // Find the sample count of each block, in a pair that of the later; images that were not kept
-    // are rendered again.
+    // Find the samples of each block, of a pair's later; images not kept are rendered again.
     std::vector<int> again(blocks.size(), 0);
     for (size_t i = 0; i < blocks.size(); ++i) {
         const BlockResult& whole = render.result.blocks[i];

@@ -51,8 +51,7 @@ struct Comparison {
     PixelRect Local(size_t block) const;
 };
 
-// Returns the pixels of a part of a picture of that width, R, G, B, row by row, as a BlockView has
-// them.
+// Returns the pixels of a part of a picture of that width, R, G, B, row by row.
 template <typename Value>
 std::vector<Value> CutPixels(const std::vector<Value>& rgb, int width, const PixelRect& rect) {
     std::vector<Value> pixels;
@@ -73,8 +72,7 @@ Comparison BeginComparison(const PixelRect& region, const ScheduleOptions&);
 // differ in size.
 void Measure(Comparison*);
 
-// Returns the number of blocks with a visible difference above kVisibilityThreshold. The image must
-// have figures.
+// Returns how many blocks have a visible difference above kVisibilityThreshold; needs figures.
 int CountVisibleBlocks(const ComparedImage&);
 
 // Sum of the costs of the blocks.
@@ -124,8 +122,7 @@ struct EstimateError {
 };
 EstimateError CompareEstimates(const ComparedImage& image, const ComparedImage& atCap);
 
-// One render of a rule's image by itself, to measure the cost and savings of the rule on a number
-// of threads.
+// One render of a rule's image by itself, to measure the rule's cost and savings on some threads.
 struct Verification {
     int threads = 0;
     double wallSeconds = 0;  // of the render
@@ -134,12 +131,10 @@ struct Verification {
     bool samePixels = false;
 };
 
-// Returns the cost of a render of a rule alone, whose result is `film`, and whether its image is
-// the one that TakeImage() gave.
+// Returns the cost of a render of a rule alone, to `film`, and whether TakeImage() gave the same.
 Verification VerificationOf(const RenderResult&, const Film& film, const ComparedImage& taken);
 
-// Measures error against effort: for fixed samples per pixel, and for stopping rules over a range
-// of their settings.
+// Measures error against effort: of fixed sample counts, and of rules over a range of settings.
 
 // One point of a curve.
 struct CurvePoint {
@@ -154,8 +149,7 @@ struct CurvePoint {
 // pass to the cap, each about 1.5 times the last, all ends of passes.
 std::vector<int> FixedLadder(int passLength, int cap);
 
-// Returns the rules that are measured, as texts: "fixed:N" for the ladder, and each rule with one
-// setting over a range of it.
+// Returns the measured rules: "fixed:N" for the ladder, and rules with one setting over its range.
 std::vector<std::string> CurveRules(int passLength, int cap);
 
 // Returns a point for each rule: for the first of them, whose images the comparison begins with, by

@@ -165,8 +165,7 @@ Seams MeasureSeams(std::span<const float> noise, int width, std::span<const Pixe
 
 namespace {
 
-// Returns the luma less half of its range: variances are differences of large numbers, which
-// lose the less the smaller these are.
+// Returns the luma less half of its range, as variances are differences of squares.
 std::vector<float> CentredLuma(std::span<const uint8_t> srgb) {
     std::vector<float> luma;
     luma.reserve(srgb.size() / 3);
@@ -290,8 +289,7 @@ std::vector<float> FilterByContrast(const std::vector<float>& plane, int width, 
     return result;
 }
 
-// Returns L*a*b* of linear RGB, with a* and b* scaled by L* / 100, as colours differ less in the
-// dark (Hunt).
+// Returns L*a*b* of linear RGB, a* and b* times L* / 100: colours differ less in the dark (Hunt).
 Triple HuntLab(const Triple& rgb) {
     Triple l = Apply(kXyzFromRgb, rgb);
     for (int c = 0; c < 3; ++c) l[c] = LightnessAt(l[c] / White()[c]).lightness;

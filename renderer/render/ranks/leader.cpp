@@ -290,8 +290,7 @@ class Leader {
         executor.ledger.SetSamples(samplesGathered);
     }
 
-    // Waits until all others have said a word. Who cancels a render may do so because one of them
-    // has died, so that it is asked then.
+    // Waits until all others have said a word, or the render is cancelled, as if one has died.
     void Await(const std::set<int>& heard) {
         const auto isAwaited = [&](int other) {
             return !channel.HasGivenUp(other) && !heard.contains(other);

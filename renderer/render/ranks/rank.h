@@ -71,8 +71,7 @@ struct PartMessage {
 
 inline constexpr const char* kDamagedMessage = "a message of a rank is damaged";
 
-// Returns a message of the word and these values. Vectors are read by StateReader::GetVector();
-// functions append bytes themselves.
+// Returns a message of the word and these values; functions append bytes themselves.
 template <typename... Values>
 std::vector<std::byte> Pack(RankWord word, const Values&... values) {
     StateWriter writer;
@@ -90,13 +89,11 @@ std::vector<std::byte> Pack(RankWord word, const Values&... values) {
 std::vector<std::byte> PackSplats(int plane, const SplatPlane&);
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&);
 
-// Read the number of a block, below `blocks`, and sums of these tiles into the film. Throw
-// std::runtime_error for other bytes.
+// Read the number of a block, below `blocks`, and sums of tiles. Throw std::runtime_error.
 int GetBlock(StateReader&, size_t blocks);
 void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*);
 
-// Returns the means of tiles, pixel by pixel, then the half means if they are wanted; nothing where
-// the sums are to be sent.
+// Returns the means of tiles, then the half means if wanted; nothing where sums are to be sent.
 std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed, const Film&);
 // Puts them where they are in a view of `block`. Throws std::runtime_error if the sizes differ.
 void PutMeans(const std::vector<float>& values, const std::vector<PixelRect>& tiles,
@@ -183,8 +180,7 @@ class RankSpeeds {
   public:
     explicit RankSpeeds(int ranks) : efforts(size_t(ranks)) {}
 
-    // `seconds` are those that the rank's threads took for their tiles, as clocks have it, divided
-    // by the number of its threads.
+    // `seconds` are those that the rank's threads took for their tiles, by the number of threads.
     void Add(int rank, int64_t samples, double seconds);
     void Forget();
 
@@ -201,8 +197,7 @@ class RankSpeeds {
 };
 
 // Returns how many times as fast all ranks together would be if the tiles were dealt out by their
-// speeds rather than by `deal`, which goes at the pace of the rank that has most to do for its
-// speed. At least 1.
+// speeds rather than by `deal`, which goes at the pace of the slowest. At least 1.
 double GainOfDealing(const std::vector<double>& speeds, const std::vector<int>& deal);
 
 // Has an executor, whose tasks are done by the threads of the arena, and a channel, by which the
@@ -231,7 +226,6 @@ class Rank {
 };
 
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
-// There is no display.
 RenderResult LeadRanks(const RenderOptions&, tbb::task_arena*);
 RenderResult FollowRanks(const RenderOptions&, tbb::task_arena*);
 

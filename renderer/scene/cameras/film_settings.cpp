@@ -71,8 +71,7 @@ AxisFunction MakeAxisFunction(const Entity& entity) {
     if (entity.name == "triangle")
         return [](float x, float r) { return std::max(0.f, r - std::abs(x)); };
     if (entity.name == "sinc") {
-        // As in pbrt-v3 the window has its own width, tau, and not the radius: beyond tau its
-        // lobes come back.
+        // As in pbrt-v3 the window has its own width, tau: beyond it lobes come back.
         const float tau = params.GetFloat("tau", 3);
         if (!(tau > 0)) throw Error(entity.loc, "the sinc filter's \"tau\" has to be positive");
         return [=](float x, float) { return Sinc(x) * Sinc(x / tau); };

@@ -36,8 +36,7 @@ bool MeetSphere(double radius, double center, const Vector3d& origin, const Vect
     return true;
 }
 
-// Refracts d, which it makes unit; `eta` is the index here over that beyond. False where all light
-// is reflected.
+// Refracts d, made unit; `eta` is the index here over that beyond. False where all is reflected.
 bool Refract(double eta, const Vector3d& n, Vector3d* d) {
     d->normalize();
     const double cosine = -n.dot(*d);

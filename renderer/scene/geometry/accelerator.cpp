@@ -89,8 +89,7 @@ bool IsBehindSingleSided(const ShapeUser& user, const RTCRay& ray, const RTCHit&
     return (ray.id & kCameraRay) && IsFromBehind(user.shapes->shapes[user.shape], ray, hit);
 }
 
-// A filter of Embree, which rejects hits. Like the callbacks it is called with one ray at a time,
-// as rays are traced.
+// A filter of Embree, which rejects hits. It is called with one ray at a time.
 template <auto Rejects>
 void FilterBy(const RTCFilterFunctionNArguments* args) {
     if (Rejects(*static_cast<const ShapeUser*>(args->geometryUserPtr),

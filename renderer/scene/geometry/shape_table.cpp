@@ -107,8 +107,7 @@ void ShapeTable::LimitReach(std::span<const FileLoc> placesOfInstances) {
     }
 }
 
-// Gives an instance the motion that the description has for it, or the place where it is all the
-// time that the shutter is open.
+// Gives an instance its motion in the description, or the place where it is all the time.
 void ShapeTable::AddMotion(const Description& description, const InstanceEntity& entity,
                            const Shutter& shutter, Instance* instance, Warnings& warnings) {
     const auto& [startTime, endTime] = description.transformTimes;

@@ -26,8 +26,7 @@ int NeighbourOf(int cell, int n, Wrap wrap) {
     return wrap == Wrap::Repeat ? (beside + n) % n : std::clamp(beside, 0, n - 1);
 }
 
-// A square soft box: where it hangs, in degrees, to the right of the camera and above the horizon,
-// half its width, and how bright it is.
+// A square soft box: degrees to the right of the camera and above the horizon, half its width.
 struct SoftBox {
     float azimuth, elevation, halfWidth, radiance;
 };
@@ -91,8 +90,7 @@ int Blacken(const Rgb& L, Image* image) {
     return count;
 }
 
-// Returns the direction, unit, of a point of the square, and the sine of its colatitude; 1 of equal
-// areas.
+// Returns the unit direction of a point of the square, and its colatitude's sine; 1 of equal areas.
 Vec3f DirectionOf(MapProjection projection, const Vec2f& st, float* sine) {
     *sine = 1;
     if (projection == MapProjection::EqualArea) return DirectionOfEqualAreaSquare(st);
@@ -362,8 +360,7 @@ float InfiniteLight::Stretch(const Vec3f& w) const {
     return stretch / (length * length * length);
 }
 
-// Used only by the choice of lights by power; the mean over the map is the topmost mip level of
-// pbrt-v3.
+// For the choice of lights by power; the map's mean is the topmost mip level of pbrt-v3.
 Rgb InfiniteLight::Power() const {
     return kPi * Sqr(worldRadius) * (map ? map->MeanTexel() : constant);
 }

@@ -44,8 +44,7 @@ class LightEmission {
     // Chooses a light with u and light that leaves it. Returns nothing where none does.
     std::optional<EmittedRay> Sample(float u, const Vec2f& origin, const Vec2f& direction) const;
 
-    // Returns the densities with which light `index` is found to shine along w, from a point of
-    // normal n.
+    // Returns the densities of light `index` shining along w, from a point of normal n.
     EmissionDensity Density(int index, const Vec3f& n, const Vec3f& w) const;
 
     // Returns whether any light shines.

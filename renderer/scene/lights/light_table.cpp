@@ -89,8 +89,7 @@ void CheckReach(const Light& light, const LightEntity& entity, float reach) {
 // An area light that shines into a cone, as a spot light does, from the origin of its shape.
 constexpr const char* kAreaSpot = "spot-squared";
 
-// Returns false, with a warning, where another kind of light is to be left out; throws Error where
-// it is not.
+// Returns false, with a warning, where another kind is to be left out; else throws Error.
 bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
     if (entity.name == "diffuse" || entity.name == "area" || entity.name == kAreaSpot) return true;
     warnings.Substitute(entity.loc,
@@ -101,8 +100,7 @@ bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
 }
 
 // Reads the cone of a spot, "spread", degrees across the cone about each normal that the light
-// leaves into, or "clearcoat", the weight of a coat above. Returns null where the radiance is the
-// same to all sides.
+// leaves into, or "clearcoat", the weight of a coat above. Returns null without either.
 std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
                                                    const Mat4d& worldFromShape) {
     if (entity.name == kAreaSpot)
@@ -184,8 +182,7 @@ std::vector<float> WeightsOf(const std::vector<Light>& lights, bool byPower) {
 
 // Reads the textures of a mesh's emission: "emission", multiplying L, looked up with the second
 // texture coordinates where "emissionuv" is 1, and the alpha textures of the mesh. Returns null
-// where neither is. What an alpha cuts out shines in pbrt-v3; with an alpha of 0 all over it is a
-// hidden light.
+// where neither is. What an alpha cuts out shines in pbrt-v3; an alpha of 0 is a hidden light.
 std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const Shape& shape,
                                                    const TextureTable& textures, bool asPbrtV3) {
     const SpectrumTexture emission = textures.GetSpectrum(entity, "emission", Rgb::Ones());

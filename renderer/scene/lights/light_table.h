@@ -17,8 +17,7 @@ class LightTable {
     // Shape::firstLight it sets; `shapes` and `textures` must outlive the table and stay where they
     // are. Lights are chosen as the integrator's "lightsamplestrategy" says: "uniform", "power",
     // "spatial" (by tables, or by a hierarchy where there are many lights, unless `asPbrtV3`) or,
-    // which pbrt-v3 does not know, "bvh" (by a hierarchy). Throws Error with file and line for
-    // unknown kinds.
+    // which pbrt-v3 does not know, "bvh" (by a hierarchy). Throws Error for unknown kinds.
     LightTable(const Description&, ShapeTable& shapes, const TextureTable& textures, bool asPbrtV3,
                Warnings&);
 

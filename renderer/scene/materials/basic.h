@@ -166,8 +166,7 @@ struct Hair {
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
-// Materials of pbrt-v4 that are layered: a diffuse base or a conductor under a dielectric coat, and
-// thin sheets of glass.
+// Layered materials of pbrt-v4: a diffuse base or a conductor under a dielectric coat; thin glass.
 
 // Parameters: "reflectance", "eta" and "thickness" of the coat, "uroughness", "vroughness".
 struct CoatedDiffuse {

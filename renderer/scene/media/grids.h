@@ -19,15 +19,13 @@ struct Grid {
     T operator()(const Vec3f& p) const;
 };
 
-// Does the same for coefficients of absorption and scattering by channel. One that is not given is
-// the same everywhere.
+// Does so for absorption and scattering by channel, the same everywhere where not given.
 struct RgbDensity {
     std::optional<Grid<Rgb>> sigmaA = {}, sigmaS = {};
     float otherwise = 1;
 };
 
-// Density of pbrt-v4's clouds: noise that is thinner higher up, from 0 to 1, in the box of the
-// medium's own space from p0 on.
+// Density of pbrt-v4's clouds: noise from 0 to 1, thinner higher up, in the box from p0 on.
 struct CloudDensity {
     Vec3f p0, diagonal;
     float density, wispiness, frequency;

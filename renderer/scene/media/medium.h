@@ -75,8 +75,7 @@ struct MediumEmission {
     Rgb operator()(const Vec3f& p) const;
 };
 
-// Represents a medium whose density is given by a grid or a formula in the unit cube of its own
-// space; outside there is nothing.
+// A medium whose density is a grid or a formula in the unit cube of its own space, 0 outside.
 struct GridMedium {
     float sigmaT;  // greatest extinction per unit of length in the world where the density is 1
     Rgb albedo;    // scattering over that

@@ -133,8 +133,7 @@ GridMedium MakeGrid(const Rgb& sigmaA, const Rgb& sigmaS, float g) {
 // black body of peak 1 for its spectrum, both without normalisation by the integral of y.
 constexpr float kIntegralOfY = 106.856895f;
 
-// Returns nothing for temperatures that emit nothing. `coldest` and `hottest` are values of the
-// grid.
+// Returns nothing for temperatures without emission. `coldest` and `hottest` are of the grid.
 template <typename Field>
 std::optional<Temperatures> ReadTemperatures(const MediumEntity& entity, Field field, float coldest,
                                              float hottest) {

@@ -51,8 +51,7 @@ class MediumStack {
 };
 
 struct MediumTable {
-    // The media on both sides of a shape; if they are the same, the ray stays in its own medium
-    // (pbrt-v3).
+    // The media on both sides of a shape; if they are the same, the ray stays in its own (pbrt-v3).
     struct Sides {
         int inside = kVacuum, outside = kVacuum;
     };

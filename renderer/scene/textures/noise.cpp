@@ -66,8 +66,7 @@ float Fade(float fraction) {
     return t * t * (3 - 2 * t);
 }
 
-// pbrt-v3's spline has nine control colours and six segments, but only the first five colours
-// are ever used (see Evaluate).
+// Of pbrt-v3's nine control colours only the first five are ever used (see Evaluate).
 constexpr float kColors[5][3] = {
     {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f},
     {0.50f, 0.50f, 0.50f}, {0.60f, 0.59f, 0.58f},
@@ -134,9 +133,8 @@ Rgb Evaluate(const Marble& marble, const TextureTable&, const TextureContext& c)
     float t = (0.5f + 0.5f * std::sin(angle)) * kSegments;
     if (!(t >= 0)) t = 0;  // NaN of an infinite coordinate
 
-    // pbrt-v3 limits the segment to the first two instead of to the last, so that t runs up to 5
-    // on the second and the cubic is extrapolated: to 40 and more. Materials made for pbrt-v3
-    // show it, so it is kept.
+    // pbrt-v3 limits the segment to the first two instead of to the last, so that t runs up to 5 on
+    // the second and the cubic is extrapolated: to 40 and more. Materials made for pbrt-v3 show it.
     const int first = std::min(1, int(t));
     t -= float(first);
 

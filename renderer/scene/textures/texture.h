@@ -38,8 +38,7 @@ struct SpectrumTextureNode;
 class TextureTable {
   public:
     // Makes every texture of the description; warns of parameters without effect. Constant 1
-    // substitutes an unsupported kind, pbrt-v3's grey an unreadable image. Errors are kept in the
-    // warnings.
+    // substitutes an unsupported kind, pbrt-v3's grey an unreadable image.
     TextureTable(const Description&, Warnings&);
     TextureTable();  // empty
     ~TextureTable();

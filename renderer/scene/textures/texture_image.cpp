@@ -51,8 +51,7 @@ std::optional<Rgb> FindUniform(const Texels<T, Count>& texels,
     return Rgb(value(0), value(Count > 1 ? 1 : 0), value(Count > 1 ? 2 : 0));
 }
 
-// Sets values that are not finite to 0, as one would darken all that are filtered with it. Returns
-// how many.
+// Sets values that are not finite to 0, as filters would spread them. Returns how many.
 size_t ReplaceNonFinite(TextureImage* image) {
     size_t count = 0;
     std::visit(

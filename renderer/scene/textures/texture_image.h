@@ -48,8 +48,7 @@ enum class TextureChannels { Rgb, Luminance, Red, Green, Blue, Alpha, MeanOrAlph
 // The exponent that says that texels are sRGB-encoded.
 inline constexpr float kSrgb = 0;
 
-// Makes a TextureImage of an image as it was read, whose texels are to be raised to the power of
-// `gamma`, or kSrgb.
+// Makes a TextureImage of an image as read, whose texels are to be raised to `gamma`, or kSrgb.
 TextureImage MakeTextureImage(const Image& image, float gamma, TextureChannels channels);
 
 // Shares images between textures.
@@ -85,8 +84,7 @@ struct TextureInput {
     Warnings& warnings;
 };
 
-// The result of a maker: a new texture of its kind, or the handle of an equivalent texture or
-// constant.
+// The result of a maker: a new texture, or the handle of an equivalent texture or constant.
 template <typename T, typename Kind>
 using Made = std::variant<TextureHandle<T>, Kind>;
 

@@ -60,8 +60,7 @@ Signals RecordedSignals(const Rule& rule, const BlockRecording& recording, int i
 
 namespace {
 
-// Adds rivals; the settings of those that go on for longer than recordings are chosen on extended
-// recordings as well.
+// Adds rivals; settings of those that outlast recordings are chosen on extended ones as well.
 void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBlock> extended,
                const RulesToEvaluate& wanted, std::vector<EvaluatedRule>* rules) {
     const auto run = [&](std::span<const LabelledBlock> on) {
@@ -236,8 +235,7 @@ std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
     return costs;
 }
 
-// Returns the setting of the least mean cost over all viewpoints but `left` (-1: none is left out),
-// the first among equals.
+// Returns the first setting of the least mean cost over all viewpoints but `left` (-1: none).
 double Best(const std::vector<std::vector<double>>& costs, std::span<const double> settings,
             int left) {
     std::vector<double> sums(settings.size(), 0);
@@ -309,8 +307,7 @@ constexpr int kStep = 20;  // spp between constants
 
 int SppOf(size_t constant) { return kStep * int(constant + 1); }
 
-// Returns the viewpoint as it is where all of its blocks stop at one spp; without verdicts if
-// `brief`.
+// Returns the viewpoint where all of its blocks stop at one spp; without verdicts if `brief`.
 ViewpointOutcome StoppedAt(const ViewpointOutcome& viewpoint, int spp, int grid, bool brief) {
     ViewpointOutcome result{.name = viewpoint.name, .setting = fmt::format("{}", spp)};
     for (const BlockOutcome& block : viewpoint.blocks)

@@ -46,10 +46,9 @@ std::optional<double> RankCorrelation(std::span<const double> a, std::span<const
 
 // Measures how well numbers tell two classes apart.
 
-// Returns the area under the curve of the receiver operating characteristic: the probability that
-// a sample with the label 1 has a higher score than one with 0; equal scores count one half. 0.5
-// if there are no two classes. Throws std::invalid_argument if the lengths differ or a score is
-// NaN.
+// Returns the area under the curve of the receiver operating characteristic: the probability that a
+// sample with the label 1 has a higher score than one with 0; equal scores count one half. 0.5 if
+// there are no two classes. Throws std::invalid_argument if lengths differ or for NaN.
 double AreaUnderRoc(std::span<const float> scores, std::span<const char> labels);
 
 // Verdict of a rule on a block at some spp.
@@ -130,8 +129,7 @@ struct Scores {
     // those where both differ, and of the means of the viewpoints.
     std::optional<double> rankWithin = {}, rankBetween = {};
     // Of all verdicts together, against noise seen below the human threshold; nothing where all
-    // verdicts are on one side of it. The accuracy is the mean of both classes' accuracies, which
-    // balances them.
+    // verdicts are on one side of it. The accuracy is the mean of both classes'.
     std::optional<double> auc, accuracy;
 };
 Scores Score(std::span<const ViewpointOutcome> viewpoints, const ScoreOptions& options);

@@ -25,8 +25,7 @@ RuleOutcome MakeOutcome(const BlockRecording& recording, int spp) {
     return {.stop = end, .open = end < kMostShownSpp};
 }
 
-// Returns whether a verdict is due: at every second pass, so that they are evenly spaced; at every
-// record where these come at any spp.
+// Verdicts are due at every second pass, evenly; at every record where these come at any spp.
 bool HasVerdict(const LabelledBlock& block, int spp) {
     return block.passSpp == 0 || (spp - block.passSpp) % (2 * block.passSpp) == 0;
 }
@@ -71,8 +70,7 @@ void CheckLookedAt(std::span<const Decision> decisions, const LabelledBlock& blo
         "multiples of 20 or 40 spp, or at most 1.4 times the spp of the one before");
 }
 
-// Returns PeakOverLimit() of record i. Older recordings have no peak noise, but root mean squares,
-// which give a lower bound.
+// Returns PeakOverLimit() of record i; of older recordings a lower bound by root mean squares.
 double PeakIn(const BlockRecording& recording, int i, const Rule& rule) {
     if (rule.peak.most <= 0 || !HasHalves(recording)) return 0;
     const auto values = [&](const char* channel) { return recording.Values(i, channel); };

@@ -72,8 +72,7 @@ std::vector<ThresholdsRow> ThresholdsOf(const Collected& collected);
 
 // Writes the answers of observers as CSV tables.
 
-// Returns a CSV with a line of column names: a row for each block. Thresholds are in spp; unknown
-// fields are empty.
+// Returns a CSV with a head line and a row for each block: thresholds in spp; unknown ones empty.
 std::string DetailsCsv(const Collected& collected);
 
 // Returns a CSV with a line of column names and a row for each file of answers: whether it

@@ -1,5 +1,4 @@
-// The weights of a network that is being trained, and how its loss changes with them
-// (back-propagation through time).
+// The weights of a network in training, and its loss's gradient (back-propagation through time).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +15,7 @@
 
 namespace lull {
 
-// Makes random numbers that depend only on a seed and a purpose, so that an interrupted training
-// continues with the same ones.
+// Makes random numbers by seed and purpose alone: an interrupted training continues with the same.
 class CounterRandom {
   public:
     // Begins the sequence of a seed and a purpose, given as numbers.
@@ -55,8 +53,7 @@ using MatrixOf = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <typename Scalar>
 using VectorOf = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-// The same as LstmLayer, with the paper's activations: sigmoid, and hard sigmoid for the
-// gates.
+// An LstmLayer with the paper's activations: sigmoid, and hard sigmoid for the gates.
 template <typename Scalar>
 struct LstmWeights {
     MatrixOf<Scalar> kernel, recurrent;

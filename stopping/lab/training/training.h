@@ -23,8 +23,7 @@ struct TrainingOptions {
     uint64_t seed = 0;
     // Lets each viewpoint count the same, however many blocks of it there are.
     bool balanceViewpoints = false;
-    // Weights noisy and noiseless samples as the paper does. Without, all count the same, as all
-    // spp do in the critical error.
+    // Weights noisy and noiseless samples as the paper does. Without, all count the same.
     bool balanceClasses = true;
 };
 

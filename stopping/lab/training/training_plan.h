@@ -22,8 +22,7 @@ struct TrainingPreset {
     TrainingOptions training = {};
 };
 
-// Returns the presets, the default first: "entropy", for the model that ships as the default, and
-// "paper", for Buisine et al. 2021.
+// Returns the presets: "entropy", of the default model, and "paper", of Buisine et al. 2021.
 std::span<const TrainingPreset> TrainingPresets();
 
 struct TrainingPlan {

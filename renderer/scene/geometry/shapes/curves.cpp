@@ -59,8 +59,7 @@ Ray IntoShape(const Curves& curves, const Ray& ray) {
     return {local.o.cast<float>(), local.d.cast<float>(), ray.tMax};
 }
 
-// Looks for the ray in the plane across it: x roughly along the curve, z along the ray, both from
-// the ray's origin.
+// Looks for the ray in the plane across it: x roughly along the curve, z along the ray.
 class Search {
   public:
     Search(const Curves& curves, uint32_t primitive, const Ray& ray)
@@ -90,8 +89,7 @@ class Search {
     std::optional<ShapeHit> nearest;
 
   private:
-    // Returns whether the box around the part is where the ray goes. The y range, which is the
-    // smallest, comes first.
+    // Returns whether the ray goes through the part's box; its y range, the smallest, comes first.
     bool CanHit(const ControlPoints& p, float u0, float u1) const {
         const float half = 0.5f * std::max(Lerp(u0, piece.width[0], piece.width[1]),
                                            Lerp(u1, piece.width[0], piece.width[1]));
@@ -166,8 +164,7 @@ class Search {
     float zMax;
 };
 
-// Returns the unit vector across the curve at v, where `along` is the tangent and `n` the normal of
-// a flat curve or a ribbon.
+// Returns the unit vector across the curve at v; `n` is the normal of a flat curve or a ribbon.
 Vec3f AcrossAt(CurveKind kind, const Vec3f& n, const Vec3f& along, float v) {
     Vec3f across = n.cross(along);
     if (const float length = across.norm(); length > 0) {

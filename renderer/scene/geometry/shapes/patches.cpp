@@ -68,8 +68,7 @@ Spline ReadSpline(const ShapeEntity& entity, const std::string& letter) {
     return s;
 }
 
-// Returns the span k of knots with knots[k] < t <= knots[k + 1], the first one that is not empty
-// where t is at the start.
+// Returns the k with knots[k] < t <= knots[k + 1], at the start the first that is not empty.
 int SpanOf(const Spline& s, double t) {
     int k = s.order - 1;
     while (k < s.count - 1 && (t > s.knots[k + 1] || s.knots[k] == s.knots[k + 1])) ++k;
@@ -77,8 +76,7 @@ int SpanOf(const Spline& s, double t) {
     return k;
 }
 
-// Evaluates the homogeneous curve of control points at(0), at(1), ... and its derivative by t, by
-// de Boor's recursion.
+// Evaluates the homogeneous curve of points at(0), ... and its derivative, by de Boor's recursion.
 template <typename At>
 void Evaluate(const Spline& s, double t, const At& at, Vector4d* value, Vector4d* derivative) {
     const int k = SpanOf(s, t), degree = s.order - 1;

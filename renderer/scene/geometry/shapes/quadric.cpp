@@ -8,8 +8,7 @@
 namespace lull {
 
 PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& error) {
-    // Propagate the point's own error; the arithmetic is double, so only the rounding of the
-    // result to float is added.
+    // Propagate the point's own error, to which double adds only the rounding to float.
     const Vec3f q = TransformPoint(m, p);
     const Vec3f propagated =
         (m.topLeftCorner<3, 3>().cwiseAbs() * error.cast<double>()).cast<float>();
@@ -102,8 +101,7 @@ Bounds3f Sphere::WorldBounds() const {
 
 std::optional<float> Intersect(const Sphere& sphere, const Ray& worldRay) {
     // Solve |o + t d|^2 = r^2 about the point of closest approach: the discriminant is formed from
-    // the distance there, which is stable for far origins (Haines et al. 2019, Ray Tracing Gems,
-    // chapter 7).
+    // the distance there, which is stable for far origins (Haines et al. 2019, Ray Tracing Gems 7).
     const ShapeRay ray(sphere.place, worldRay);
     const double a = ray.d.squaredNorm(), b = -ray.o.dot(ray.d);
     const double r = sphere.radius;
@@ -141,8 +139,7 @@ std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const
         return SeenFrom(from,
                         SampleAt(sphere.place, p, Gamma(5) * p.cwiseAbs(), p, 1 / sphere.Area()));
     }
-    // Sample the cone that the sphere subtends (pbrt 3rd ed., 14.2.2, in 1 - cos, which keeps its
-    // digits for small cones).
+    // Sample the cone that the sphere subtends (pbrt 3rd ed., 14.2.2), in 1 - cos for its digits.
     const Vec3f center = Center(sphere);
     const float distance = (center - from).norm();
     const Vec3f axis = (center - from) / distance;

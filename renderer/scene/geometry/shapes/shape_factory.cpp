@@ -103,8 +103,7 @@ void ReadExtraAttributes(const ShapeEntity& entity, size_t vertexCount, Mesh* me
     }
 }
 
-// Carries the mesh to its place and drops triangles without area, which no ray can hit and no
-// light can shine from.
+// Carries the mesh to its place and drops triangles without area.
 Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     const Mat4d& m = entity.worldFromObject;
     const Mat4d inverse = m.inverse();
