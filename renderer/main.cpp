@@ -64,7 +64,6 @@ size_t Distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-// Returns the name that a word may have been meant to be; "" where none is near.
 std::string NearestName(const std::string& word, const std::vector<std::string>& names) {
     const auto nearest =
         std::ranges::min_element(names, {}, [&](const auto& name) { return Distance(word, name); });
@@ -87,14 +86,12 @@ std::string ProblemOfRemoved(std::span<const char* const> words) {
     return "";
 }
 
-// Names that other programs have for options.
 constexpr std::pair<const char*, const char*> kElsewhere[] = {{"--samples", "--spp"},
                                                               {"--res", "--resolution"},
                                                               {"--size", "--resolution"},
                                                               {"--tile", "--block"},
                                                               {"--noise-threshold", "--caution"}};
 
-// Returns which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());

@@ -60,7 +60,6 @@ std::string OneLine(const std::string& text, size_t most) {
 
 namespace {
 
-// Returns a phrase with "..." for all that it quotes; an apostrophe within a word does not.
 std::string WithoutQuotes(const std::string& phrase) {
     std::string text;
     for (size_t i = 0; i < phrase.size(); ++i) {

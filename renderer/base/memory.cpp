@@ -18,7 +18,6 @@ namespace {
 
 constexpr int64_t kUnknown = std::numeric_limits<int64_t>::max();
 
-// Reads one number from a file of the system; kUnknown if there is none, as in "max".
 int64_t NumberIn(const char* path) {
     std::ifstream in(path);
     int64_t number;

@@ -1,7 +1,5 @@
 #include "renderer/base/sampler.h"
 
-#include "renderer/base/hash.h"
-
 namespace lull {
 namespace {
 

@@ -46,7 +46,6 @@ float SampleCosine(const FourierTable& table, const SplineWeights& o, float u) {
     return SampleSpline(table.mu, value, cdf, u);
 }
 
-// Samples the azimuth from a cosine series with coefficients a[0, order).
 double SampleAzimuth(std::span<const float> a, float u) {
     const bool flip = u >= 0.5f;
     const double target = double(flip ? 2 - 2 * u : 2 * u) * a[0] * std::numbers::pi;

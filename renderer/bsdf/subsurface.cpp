@@ -63,7 +63,6 @@ void Integrate(std::span<const float> x, std::span<const float> f, std::span<flo
     }
 }
 
-// Interpolates the table's profile, without its factor 2 pi r, at the row's weights.
 float ValueAt(const DiffusionTable& table, const SplineWeights& row, float radius) {
     const auto column = WeightsAt(table.radius, radius);
     if (!column) return 0;

@@ -43,7 +43,6 @@ Examples:
 
 Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
-// Returns whether a channel is one that the denoised picture does without or has anew.
 bool IsReplaced(const std::string& name) {
     return name == "R" || name == "G" || name == "B" || name == "error" ||
            name.starts_with("half") || name.starts_with("noisy.") || name.starts_with("variance.");
@@ -65,7 +64,6 @@ std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool
     return mean;
 }
 
-// Throws where the halves do not determine the noise.
 void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture& picture) {
     if (!options.half.empty()) {
         const std::string dependence = DependenceOf(picture.colour);
@@ -93,7 +91,6 @@ void WriteShown(const std::string& png, const PixelRect& shown, const PixelRect&
     WritePng(png, MeansOf(picture), picture.width, picture.height);
 }
 
-// Returns the image and the one of --half, which then has the same window, to denoise.
 NoisyPicture ReadHalves(const Options& options, ExrImage* exr) {
     if (options.half.empty()) {
         CheckColours(options.input, *exr);

@@ -125,7 +125,6 @@ FilmOptions FilmOf(const PreparedRender& p) {
             .layers = layers};
 }
 
-// Returns grades in words, with semicolons between them.
 std::string NamesOf(const std::vector<Grade>& grades) {
     std::string text;
     for (const Grade& grade : grades) {
@@ -170,7 +169,6 @@ std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
     return outputs;
 }
 
-// Returns the groups of these names, none without any, as MakeLightGroups() does.
 LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description& description,
                               const Scene& scene) {
     if (names.empty()) return {};
@@ -214,7 +212,6 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
 
 namespace {
 
-// Returns the first line of a text that another has not, for a message.
 std::string FirstDifference(const std::string& text, const std::string& other) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)

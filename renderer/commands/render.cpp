@@ -30,7 +30,6 @@ CriterionMaker MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& gr
     };
 }
 
-// Returns the maker of criteria by the caution of each block.
 CriterionMaker MakeCautiousCriteria(const PreparedRender& p) {
     if (p.cautions.empty()) return MakeGradedCriteria(p.rule, p.grades);
     std::map<double, CriterionMaker> makers;
@@ -135,7 +134,6 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
     MessagesOf(p.settings).Warn(fmt::format("no preview: {}", e.what()));
 }
 
-// Renders, and shows pictures on the way where they are asked for.
 RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     if (p->clock) p->ranks->SetClock(p->clock);
     if (p->denoiser && p->display)
@@ -154,7 +152,6 @@ struct DenoiserResults {
     std::vector<ExrChannel> halves;  // what can be denoised later
 };
 
-// Makes the requested images, and frees their inputs.
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
     const RenderSettings& settings = p.settings;
@@ -260,7 +257,6 @@ ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     return kDone;
 }
 
-// Renders one image, unless it is a frame that is finished.
 ExitCode RunImage(const RenderRequest& request, MpiJob* ranks, const std::string& note = "") {
     const std::unique_ptr<PreparedRender> p = Prepare(request, ranks);
     const CheckpointOptions& checkpoint = request.render.checkpoint;

@@ -44,7 +44,6 @@ void ShareAmongRanks(MpiJob* ranks, SessionOptions* options) {
     };
 }
 
-// Returns a word as one has to type it.
 std::string ForShell(const std::string& word) {
     const auto isPlain = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+=./:,@%", c);

@@ -67,7 +67,6 @@ std::string SharesOf(const std::vector<double>& shares) {
     return text + "\n";
 }
 
-// Returns the blocks at the cap, their rule's value there, and a sufficient cap.
 std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t kShown = 8;
     const std::vector<CappedBlock> capped = FindCapped(result);

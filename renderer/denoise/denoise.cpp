@@ -64,7 +64,6 @@ void ForgetVariance(const Halves& rest, size_t pixel, Planes* ofMean) {
     ofMean->values[pixel] = std::min(ofMean->values[pixel], Sqr(difference) / 4);
 }
 
-// Removes the emission of small lamps from the colours, with its share of their variance.
 void TakeEmission(NoisyPicture* picture) {
     Halves &colour = picture->colour, &emission = picture->emission;
     MakeSane(&emission);

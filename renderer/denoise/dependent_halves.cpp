@@ -44,7 +44,6 @@ Planes HighPassed(const Planes& image) {
     return result;
 }
 
-// Sums over a tile, of both halves (a, b) and of half their difference squared.
 struct TileSums {
     double aa = 0, bb = 0, ab = 0, ad = 0;
     double abBeside = 0, ddBeside = 0;  // products with the pixels to the right and below
@@ -98,7 +97,6 @@ bool IsOneColour(const Planes& image) {
     return true;
 }
 
-// Compares values bit by bit, after Sane().
 bool AreSame(const Planes& a, const Planes& b) {
     for (size_t i = 0; i < a.values.size(); ++i)
         if (Sane(a.values[i]) != Sane(b.values[i])) return false;

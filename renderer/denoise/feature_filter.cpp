@@ -188,7 +188,6 @@ struct CandidateRows {
             });
         });
     }
-    // Returns a crop, which begins at an even pixel, of the best of all scales.
     Halves Choose(const Level& level, const ImageTile& crop) const {
         const Halves noisy = Crop(level.noisy, crop);
         const Planes variance = Crop(level.variance, crop);

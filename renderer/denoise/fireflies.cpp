@@ -34,7 +34,6 @@ Around LuminancesAround(const Planes& image) {
     return around;
 }
 
-// A pixel of a half whose colour is to be scaled down.
 struct Bright {
     Planes Halves::*half;
     size_t pixel;
@@ -103,7 +102,6 @@ struct Band {
         const int y = int(pixel / size_t(width));
         return y >= around.y0 && y < around.y1;
     }
-    // Returns the place of a pixel of the image in `around`.
     size_t Local(size_t pixel, int width) const {
         return pixel - size_t(around.y0) * size_t(width);
     }

@@ -8,7 +8,6 @@ namespace lull {
 
 namespace {
 
-// Calls use(y0, y1) for some rows after the other, those of a large image on all threads.
 template <typename Use>
 void ForEachRows(const Planes& image, const Use& use) {
     constexpr int kRows = 32;

@@ -67,7 +67,6 @@ std::vector<Kernel> AllKernels() {
     return kernels;
 }
 
-// Residual of the mean of both halves in lightness, its variance, and sums over boxes.
 struct Residual {
     enum Channel {
         kValue,
@@ -107,7 +106,6 @@ void BlurChannel(Residual::Channel channel, Planes* image) {
     std::copy_n(blurred.values.data(), image->Area(), image->Plane(channel));
 }
 
-// Returns some rows of a picture with a margin, of an image whose first row is row `first` of it.
 Cutout WithMargin(const Planes& image, int first, int y0, int y1) {
     Cutout cutout(ImageTile{0, y0, image.width, y1}.Grown(kKernelReach), image.count);
     const int begin = std::max(first, y0 - kKernelReach);
@@ -143,7 +141,6 @@ struct Found {
     float mean, share, weight;
 };
 
-// The squared sum over a kernel, by the variance that it has if it is noise, and that sum.
 struct KernelSum {
     Lanes value, squared;
 };

@@ -32,7 +32,6 @@ Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const floa
     return MissingDetail(crossed, ratio);
 }
 
-// The picture of a block, prepared for comparisons with pictures that differ by its error.
 struct ShownBlock {
     Planes picture;
     std::vector<float> slope;  // of lightness by luminance
@@ -131,7 +130,6 @@ constexpr double kIndependent = 0.25;
 constexpr double kPattern = 1.5;
 constexpr int kSmallestSide = 8;  // pixels; coarser bands have too few values to tell
 
-// Takes the finest band out of an image, which is reduced.
 Plane TakeBand(Plane* image) {
     Plane coarse = Reduce(*image), band = Expand(coarse, image->width, image->height);
     for (size_t i = 0; i < band.values.size(); ++i)

@@ -46,7 +46,6 @@ struct OutputFile {
     }
 };
 
-// The end of the links of `path`: the place to write to, and its status.
 struct Target {
     fs::path path;
     fs::file_status status;
@@ -121,7 +120,6 @@ void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* 
     FailWithErrno(path);
 }
 
-// Calls write(bytes, done), which returns the number of bytes written, until all are.
 template <typename Write>
 void WriteAll(const std::string& path, std::span<const std::byte> bytes, const Write& write) {
     for (size_t done = 0; done < bytes.size();) {

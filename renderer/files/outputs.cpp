@@ -85,7 +85,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Makes a folder of a new name; "" where that cannot be done.
 std::string MakeNewFolder() {
     std::error_code error;
     const fs::path parent = fs::temp_directory_path(error);

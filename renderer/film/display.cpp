@@ -115,14 +115,12 @@ struct Display::State {
         return ended && Clock::now() >= deadline;
     }
 
-    // Returns whether the end has come.
     bool Rest(Seconds time) {
         std::unique_lock lock(mutex);
         changed.wait_for(lock, time, [&] { return bool(ended); });
         return ended;
     }
 
-    // Tells the thread to end by then, and waits for it so long.
     void End(Seconds time) {
         std::unique_lock lock(mutex);
         if (ended) return;

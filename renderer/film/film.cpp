@@ -11,7 +11,6 @@ namespace lull {
 
 namespace {
 
-// Returns the mean of samples that add up to `sum`; black, where there are none.
 Rgb MeanOf(const std::array<double, 3>& sum, uint32_t count) {
     if (count == 0) return {0, 0, 0};
     return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};

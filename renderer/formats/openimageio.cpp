@@ -55,7 +55,6 @@ void HideAlpha(std::vector<char>* webp) {
     }
 }
 
-// An image of 4 channels, read from bytes.
 std::vector<uint8_t> ReadColors(std::vector<char> bytes, int width, int height) {
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &memory;
@@ -155,7 +154,6 @@ bool LacksBitsPerSample(std::string_view tiff) {
     return true;
 }
 
-// Returns rows from the top, of texels as they are stored.
 std::vector<float> Upright(const std::vector<float>& stored, int width, int height, int channels,
                            const RadianceHeader& order) {
     const int outWidth = order.turns ? height : width, outHeight = order.turns ? width : height;

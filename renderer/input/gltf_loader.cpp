@@ -20,7 +20,6 @@ namespace {
 // Blender's: enough for glass behind glass; roulette ends dim paths long before.
 constexpr int kMaxDepth = 12;
 
-// A mesh in one of its poses; those that are equal have the same shapes.
 struct PosedMesh {
     int mesh, skin = -1;          // -1: none
     std::vector<double> weights;  // of its morph targets; empty: none
@@ -121,7 +120,6 @@ bool AnyJointMoves(const GltfDocument& document, const std::vector<GltfNode>& no
     });
 }
 
-// Lists where meshes stand, without those that have been flattened to nothing.
 std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& document,
                                                            const std::vector<GltfNode>& nodes,
                                                            Warnings& warnings) {
@@ -153,7 +151,6 @@ std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& d
     return placements;
 }
 
-// Returns the name of the node or, if it has none, of the mesh; can be empty.
 std::string NameOf(const GltfDocument& document, const Placement& placement) {
     const tinygltf::Node& node = document.model.nodes[size_t(placement.node)];
     return node.name.empty() ? document.model.meshes[size_t(node.mesh)].name : node.name;

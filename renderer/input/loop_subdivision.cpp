@@ -125,7 +125,6 @@ float Beta(int valence) { return valence == 3 ? 3.f / 16 : 3.f / (8 * valence); 
 // Returns the weight of a neighbour in the limit of repeated subdivision (Hoppe et al. 1994).
 float LimitWeight(int valence) { return 1 / (valence + 3 / (8 * Beta(valence))); }
 
-// Appends a vertex to `p` on each edge. Returns its index for each half-edge.
 std::vector<int> AddMiddles(const HalfEdgeMesh& old, std::vector<Vec3f>* p) {
     std::vector<int> middle(old.origin.size());
     for (int h = 0; h < old.Edges(); ++h) {

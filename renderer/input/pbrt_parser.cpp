@@ -99,7 +99,6 @@ bool CanContinueAfter(const Token& token) {
     return text.find("begin") == text.npos && text.find("end") == text.npos;
 }
 
-// Returns false where the rest cannot be cut into tokens.
 bool SkipToDirective(PbrtLexer* lexer) {
     try {
         while (lexer->Peek().kind != TokenKind::End && !FindDirective(lexer->Peek())) lexer->Take();
@@ -109,7 +108,6 @@ bool SkipToDirective(PbrtLexer* lexer) {
     }
 }
 
-// Reads directives until the end, or an error after which none can be judged.
 void ReadDirectives(PbrtBuilder* builder, Warnings& warnings) {
     PbrtLexer& lexer = builder->lexer;
     Token token;
@@ -237,7 +235,6 @@ std::optional<PbrtVersion> VersionAt(const Token& token, const Token& next, bool
     return {};
 }
 
-// Returns the version of the first sign; nothing where there is none.
 std::optional<PbrtVersion> FindSign(const std::filesystem::path& directory, PbrtLexer& lexer,
                                     bool* hasBegun, bool* hasEnded, Token* last) {
     Token& token = *last;

@@ -79,7 +79,6 @@ SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
     return slots;
 }
 
-// Points at where the values of a slot go: one for each vertex, `stride` floats apart.
 struct Column {
     float* values;
     size_t stride;
@@ -91,7 +90,6 @@ Column ColumnOf(MeshData* mesh, int slot) {
     return {mesh->uvs.data()->data() + (slot - kU), 2};
 }
 
-// Returns the least bytes that a row of the element can take; a list may be empty.
 size_t LeastRowBytes(const PlyElement& element, PlyFormat format) {
     size_t bytes = 0;
     for (const PlyProperty& property : element.properties)
@@ -261,7 +259,6 @@ void ReadStrips(const PlyElement& element, PlyCursor& cursor, MeshData* mesh) {
                 cursor.SkipProperty(property);
 }
 
-// Returns the uvs of the corners, one entry a triangle, where faces have lists of them.
 WedgeUvs ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh,
                    Warnings& warnings) {
     if (std::ranges::count_if(element.properties, IsIndices) != 1)

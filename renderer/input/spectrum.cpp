@@ -107,7 +107,6 @@ namespace {
 
 bool IsSeparator(char c) { return std::isspace(static_cast<unsigned char>(c)) || c == ','; }
 
-// What stands between the numbers of a line.
 struct Separators {
     bool haveCommas = false, haveBlanks = false;  // alone
 

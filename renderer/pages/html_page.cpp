@@ -22,7 +22,6 @@ std::string Uri(std::span<const Rgb> pixels, int width, int height) {
 // Returns how many squares of `scale` pixels a side there are along `size` pixels, the last less.
 int Shrunk(int size, int scale) { return (size + scale - 1) / scale; }
 
-// Returns the means of such squares, row by row, of values with so many channels a pixel.
 std::vector<float> Shrink(std::span<const float> values, int width, int height, int channels,
                           int scale) {
     std::vector<float> means;

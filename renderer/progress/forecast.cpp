@@ -47,7 +47,6 @@ double Bounded(const StopTrend& trend, double slope) {
     return trend.IsOfOdds() ? std::clamp(slope, -40.0, -0.2) : std::clamp(slope, -2.0, -0.1);
 }
 
-// Returns the level above which a number says no more.
 double CertainLevel(std::span<const StopTrend> trends) {
     double highest = 0;
     for (const StopTrend& trend : trends)
@@ -55,7 +54,6 @@ double CertainLevel(std::span<const StopTrend> trends) {
     return highest > 0 ? kCertain * highest : std::numeric_limits<double>::infinity();
 }
 
-// Returns the median of the slopes that the blocks show; 0 if there is none.
 double UsualSlope(std::span<const StopTrend> trends, double certain) {
     std::vector<double> slopes;
     bool isPower = false, saturates = false;

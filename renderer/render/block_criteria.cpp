@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kSmallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() takes
 
-// Returns the end of the pass that pixels of a block have samples of, beyond its spp; 0: none have.
 int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film) {
     options.inSteps = true;
     const int most = MostSamples(block.pixels, film);

@@ -14,7 +14,6 @@ namespace lull {
 
 namespace {
 
-// Returns the variance of the mean luminance, from the sum of the samples' squares; finite.
 float VarianceOfMean(double squares, double mean, double count) {
     const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
     return float(std::min(variance, double(std::numeric_limits<float>::max())));
@@ -58,7 +57,6 @@ std::optional<Rgb> NeighbourMean(const Light& light, const PixelRect& rect, cons
     return count > 0 ? std::optional<Rgb>(sum / float(count)) : std::nullopt;
 }
 
-// How sums over both halves of a pixel's samples become means.
 struct Split {
     bool isSplit;  // otherwise there are too few samples, and both have the mean of all
     double inA, inB;

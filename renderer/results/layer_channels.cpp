@@ -16,7 +16,6 @@ namespace lull {
 
 namespace {
 
-// Calls visit(i, p) for every pixel p, the i-th row by row.
 template <typename Visit>
 void ForEachPixel(const PixelRect& region, const Visit& visit) {
     size_t i = 0;
@@ -31,7 +30,6 @@ ExrChannel MakeChannel(const std::string& name, const PixelRect& region, const V
     return channel;
 }
 
-// Names the numbers that occur, as JSON.
 std::string NamesOf(const FirstHitLayer& hits, uint32_t NearestHit::*number,
                     const PixelRect& region, const std::function<std::string(uint32_t)>& name) {
     std::set<uint32_t> numbers;
@@ -51,7 +49,6 @@ double Noise(double squares, double mean, double count) {
     return std::min(noise, double(std::numeric_limits<float>::max()));
 }
 
-// Returns the means of a group's samples, or its first look where there are none.
 std::vector<float> MeansOf(const LightGroupLayer& layer, int group, const Film& film) {
     std::vector<float> rgb(size_t(film.Region().Area()) * 3);
     ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {

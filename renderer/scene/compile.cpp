@@ -51,7 +51,6 @@ void ReadView(const Description& description, const CompileOptions& options, Sce
     scene->isRightAlone = stereo.alone == Eye::Right;
 }
 
-// Returns whether a material is none, so that shadow rays of volpath pass through its surfaces.
 bool HasInterfaces(const Description& description) {
     return std::ranges::any_of(description.materials, [](const MaterialEntity& m) {
         return m.name.empty() || m.name == "none";
@@ -65,7 +64,6 @@ void ReadMedia(const Description& description, Scene* scene, Warnings& warnings)
                           (!scene->media.media.empty() || HasInterfaces(description));
 }
 
-// Returns why subpaths from lights cannot be traced; null: they can.
 const char* WhyNotBdpt(const Description& description, const CompileOptions& options,
                        const Scene& scene) {
     if (options.lightsAsPbrtV3) return "pbrt-v3's estimator is for paths from the camera";
@@ -217,7 +215,6 @@ constexpr double kLeastFilled = 0.75;
 using Vec3d = Eigen::Vector3d;
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-// Returns the mesh's triangles with the first vertex at each place.
 Triangles Welded(const Mesh& mesh) {
     std::map<std::array<float, 3>, uint32_t> first;
     const auto weld = [&](uint32_t i) {

@@ -223,7 +223,6 @@ void Schedule::Decide(int i, bool stop, double noise) {
     for (const int follower : progress[i].followers) CatchUp(follower);
 }
 
-// Returns whether the block waits for the pass of the other eye's.
 bool Schedule::IsAhead(int block) const {
     const int partner = blocks[block].partner;
     return partner >= 0 && blocks[partner].spp < blocks[block].spp;

@@ -10,7 +10,6 @@
 namespace lull {
 namespace {
 
-// Returns the camera's ray as a segment, where `length` is that of its direction.
 Segment SegmentFromCamera(const BdptContext& context, const Ray& ray, float length) {
     Segment segment;
     segment.ray = ray;
@@ -70,7 +69,6 @@ template <typename Recorder>
     return true;
 }
 
-// Follows the camera's ray, and returns its radiance. `connected` receives that of connections.
 template <typename Recorder>
 [[gnu::noinline]] Rgb Follow(const BdptContext& context, const SampleStart& start,
                              Recorder& recorder, Rgb* connected) {
@@ -116,7 +114,6 @@ template <typename Recorder>
         recorder.ReachSurface(path, found, hit);
         if (isLast && !recorder.Wanted() && !(needs & kLetsThrough)) break;
 
-        // Make the BSDF, and go straight on through a pane, which is no vertex.
         SubpathVertex v(scene, hit, segment.beta, arrival);
         recorder.MeetSurface(path, found, v.hit, v.bsdf);
         if ((needs & kLetsThrough) && PassesPane(context, isLast, &v, &segment, &path, recorder)) {
@@ -125,7 +122,6 @@ template <typename Recorder>
         }
         if (isLast) break;
 
-        // Sample the light that arrives directly from lights, and connect to a subpath from one.
         if (v.Connects() && scene.lights.Count() > 0) {
             choice = scene.lights.Choice(v.hit, v.bsdf, scene.lights.PlaceOf(v.hit.p));
             int chosen;
@@ -139,7 +135,6 @@ template <typename Recorder>
                 });
         }
 
-        // Sample the direction in which the subpath goes on, unless roulette ends it.
         if (!GoesOn(context, v, bounces, &segment, &path, recorder)) break;
     }
     recorder.End(path);

@@ -10,13 +10,11 @@
 namespace lull {
 namespace {
 
-// Follows a ray through interfaces and panes, and multiplies the transmittances of their media.
 class Beam {
   public:
     Beam(const PathContext<Media>& context, RayKind kind, const Ray& ray, const MediumStack& media)
         : ray(ray), media(media), context(context), kind(kind) {}
 
-    // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
     bool Advance() {
         const Scene& scene = context.scene;
         const bool isHit = scene.accelerator.Intersect(ray, &found, context.camera.time, kind);
@@ -37,7 +35,6 @@ class Beam {
         media = Media::Beyond(scene, found.shape, hit, ray.d, true, media);
         return true;
     }
-    // Goes through the surface. Returns false where no light does.
     bool GoThrough() {
         if (isPane) transmittance *= through;
         return (isInterface || isPane) && !IsBlack(transmittance);

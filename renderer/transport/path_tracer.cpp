@@ -221,7 +221,6 @@ template <typename Media, typename Recorder>
         const bool isHit = scene.accelerator.Intersect(path.ray, &found, time,
                                                        bounces == 0 ? kCameraRay : kOtherRay);
 
-        // Scatter in the medium before it, if that does.
         if constexpr (Media::kExist) {
             const MediumEvent event = FollowThroughMedium(context, isHit ? found.t : path.ray.tMax,
                                                           isLast, recorder, &path);
@@ -232,7 +231,6 @@ template <typename Media, typename Recorder>
             }
         }
 
-        // Add the light of the sky where there is no surface.
         if (!isHit) {
             path.L += path.beta * Emission(scene, estimator, path, nullptr, found, recorder);
             recorder.LeaveScene(path);
@@ -254,7 +252,6 @@ template <typename Media, typename Recorder>
         recorder.ReachSurface(path, found, hit);
         if (endsHere) break;
 
-        // Go on behind an interface between media.
         if (needs & kIsInterface) {
             if (!context.media.GoThrough(hit, found.shape, isLast, &path)) break;
             recorder.Scatter(path, true);
@@ -275,25 +272,21 @@ template <typename Media, typename Recorder>
         if (isLast) break;
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
 
-        // Sample the light that arrives directly from lights.
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0)
             path.L += path.beta * SampleDirectLight(context, v, recorder, &path);
 
-        // Sample the direction in which the path goes on, and leave the surface.
         bool isTransmission;
         if (!Scatter(v, sampler, &path, &isTransmission)) break;
         const bool goesBelow = (needs & kScattersBelow) && isTransmission;
         if (!LeaveSurface(context, v, goesBelow, recorder, &path)) break;
         recorder.Scatter(path, isTransmission);
 
-        // End dim paths by Russian roulette.
         if (!SurvivesRoulette(context, bounces, &path)) break;
     }
     recorder.End(path);
     return path.L;
 }
 
-// Chooses the loop that the options and the recorder need.
 template <typename Media>
 Rgb TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
               PathSample* sample) {

@@ -112,7 +112,6 @@ std::shared_ptr<const int64_t> Share(hid_t id, Close close, const std::string& w
             }};
 }
 
-// Keeps the library from printing an account of its errors, which are thrown.
 void BeQuiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 std::vector<int64_t> ShapeOf(hid_t space) {

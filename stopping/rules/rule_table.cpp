@@ -41,7 +41,6 @@ constexpr RuleEntry kRules[] = {
      RuleTrend::Samples, false, ReadThresholdsRule},
     {"fixed", ":N", nullptr, "at N spp", RuleTrend::Samples, false, ReadFixed}};
 
-// Joins texts as "a, b and c".
 std::string Joined(const std::vector<std::string>& texts) {
     std::string joined;
     for (size_t i = 0; i < texts.size(); ++i)

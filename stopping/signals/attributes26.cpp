@@ -41,7 +41,6 @@ PaddedImage Reflected(std::span<const double> image, int width, int height) {
     return padded;
 }
 
-// The weights of a pixel, of those beside it and of the next.
 struct Taps {
     double w0, w1, w2;
 
@@ -96,7 +95,6 @@ std::vector<std::pair<int, int>> MedianNetwork(int n) {
     return needed;
 }
 
-// Filters many pixels at once, each in a lane of its own.
 template <int Size>
 void Median(const PaddedImage& image, std::span<double> filtered) {
     static const std::vector<std::pair<int, int>> network = MedianNetwork(Size * Size);
@@ -150,7 +148,6 @@ void CheckImage(std::span<const double> lightness, int width, int height) {
         throw std::invalid_argument("attributes of a value that is not finite");
 }
 
-// Returns mean and standard deviation; 0 where they overflow.
 std::pair<double, double> Moments(std::span<const double> values) {
     double sum = 0, squares = 0;
     for (const double v : values) sum += v;

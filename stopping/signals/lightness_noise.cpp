@@ -50,7 +50,6 @@ class SumTable {
         }
     }
 
-    // Returns the sum over [x0, x1) x [y0, y1).
     double Sum(int x0, int x1, int y0, int y1) const {
         const double* top = &sums[size_t(y0) * stride];
         const double* bottom = &sums[size_t(y1) * stride];

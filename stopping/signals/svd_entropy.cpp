@@ -112,7 +112,6 @@ double Fall(const EntropyState& from, const EntropyState& to, std::span<const do
     return sum * sum;
 }
 
-// Returns the derivative of lightness at a luminance, but for a constant.
 double Slope(double luminance) { return std::pow(std::max(luminance, kLinearLuminance), -2 / 3.0); }
 
 }  // namespace

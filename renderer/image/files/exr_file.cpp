@@ -63,7 +63,6 @@ std::string ProblemOf(const Imf::Header& header) {
     return "";
 }
 
-// Returns chromaticities as text, "" for Rec. 709.
 std::string OtherPrimaries(const Imf::Chromaticities& given) {
     constexpr float kSlack = 0.005f;  // usual figures have two to four digits
     const Imf::Chromaticities usual;
@@ -163,7 +162,6 @@ struct ExrFile::Parts {
         });
     }
     const Imf::Header& Header() const { return file.header(part); }
-    // Returns the views, first that of the picture; none where they have no names.
     std::vector<std::string> Views() const {
         std::vector<std::string> views;
         if (Imf::hasMultiView(Header())) views = Imf::multiView(Header());
@@ -239,7 +237,6 @@ std::optional<std::array<float, 8>> ExrFile::Chromaticities() const {
                       c.blue.x, c.blue.y, c.white.x, c.white.y};
 }
 
-// Reads rows `first` to `last` of the data window, by their numbers in the file.
 void ExrFile::ReadRows(TexelType type, size_t count, int first, int last, char* texels) {
     Imath::Box2i window = parts->Header().dataWindow();
     window.min.y = first;

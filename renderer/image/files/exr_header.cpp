@@ -216,8 +216,6 @@ void CheckExrHeader(std::span<const std::byte> file) {
     bytes.Take(4);  // the signature
     constexpr uint32_t kHasManyParts = 0x1000;
     const bool hasMany = bytes.Integer() & kHasManyParts;
-    // A header for each part, of which the last of many is empty, and in each: name, type, size and
-    // value of attributes, and an empty name.
     bool isEmpty = false;
     do {
         isEmpty = true;

@@ -23,7 +23,6 @@ namespace {
 
 constexpr size_t kPngSignature = 8;
 
-// Owns libpng's state of a file, and the read position.
 struct Reading {
     std::span<const std::byte> bytes;  // that are left
     PngError error;
@@ -86,7 +85,6 @@ class PngFile final : public ImageFile {
   private:
     size_t Row() const { return size_t(shape.width) * size_t(shape.channels); }
 
-    // Reads rows of all channels, 8 or 16 bits each, one under the other.
     void ReadRows(png_bytep rows) {
         png_structp png = reading.png;
         const int height = shape.height;
@@ -208,7 +206,6 @@ class PngWriter {
     png_infop info;
 };
 
-// Returns the component as an integer of all bits of T.
 template <typename T>
 T EncodeSrgb(float linear) {
     constexpr float kMost = std::numeric_limits<T>::max();
@@ -223,7 +220,6 @@ T EncodeLinear(float value) {
     return T(kMost * std::clamp(value > 0 ? value : 0, 0.f, 1.f) + 0.5f);
 }
 
-// Returns the colours of R, G, B, A divided by alpha; transparent pixels are black.
 void DivideByAlpha(std::span<const float> rgba, std::span<float> rgb) {
     for (size_t i = 0; i < rgb.size(); ++i) {
         const float* pixel = &rgba[i / 3 * 4];
@@ -249,7 +245,6 @@ void EncodeRow(const PngFormat& format, std::span<float> linear, T* to) {
         for (size_t i = 3; i < linear.size(); i += 4) to[i] = EncodeLinear<T>(linear[i]);
 }
 
-// Writes linear RGB, or RGBA. Some rows are encoded at a time, on all threads.
 template <typename T>
 void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
                const PngFormat& format) {

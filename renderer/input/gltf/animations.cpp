@@ -30,7 +30,6 @@ struct Keys {
     }
 };
 
-// Reads keys of `components` numbers each; 0: any number of scalars.
 Keys ReadKeys(const GltfDocument& document, const tinygltf::AnimationSampler& sampler,
               int components) {
     Keys keys{ReadFloats(document, sampler.input, 1, 1).values, {}, 0, sampler.interpolation};
@@ -218,7 +217,6 @@ Eigen::Matrix3d ForNormals(const Eigen::Matrix3d& m) {
     return m.determinant() < 0 ? Eigen::Matrix3d(-c) : c;
 }
 
-// Replaces a direction by its image at unit length, unless that has none.
 void Turn(const Eigen::Matrix3d& m, float* direction) {
     Eigen::Map<Vec3f> d(direction);
     const Eigen::Vector3d turned = m * d.cast<double>();

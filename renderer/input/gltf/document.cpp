@@ -54,7 +54,6 @@ uint32_t LittleEndian(const char* bytes) {
 
 bool IsBinary(std::string_view bytes) { return bytes.starts_with("glTF"); }
 
-// Returns the JSON of a file; of a .glb that is its first chunk.
 std::string_view JsonOf(const std::string& file, std::string_view bytes) {
     if (!IsBinary(bytes)) return bytes;
     if (bytes.size() < kGlbHeader + kChunkHeader)
@@ -74,7 +73,6 @@ std::string_view JsonOf(const std::string& file, std::string_view bytes) {
     return bytes.substr(kGlbHeader + kChunkHeader, length);
 }
 
-// Returns the data of a .glb behind its JSON of `jsonBytes`; empty: there are none.
 std::string_view DataOf(const std::string& file, std::string_view bytes, size_t jsonBytes) {
     if (!IsBinary(bytes)) return {};
     const std::string_view rest = bytes.substr(kGlbHeader + kChunkHeader + jsonBytes);
@@ -196,7 +194,6 @@ bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int
     return true;
 }
 
-// Writes names with their numbers: 0 "red", 1 "blue"; "none" where there are none.
 std::string NumberedNames(const std::vector<std::string>& names) {
     std::string list;
     for (size_t i = 0; i < names.size(); ++i)

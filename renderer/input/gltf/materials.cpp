@@ -15,7 +15,6 @@ Rgb ColorOf(const std::vector<double>& values, const Rgb& otherwise) {
     return Eigen::Array3d(values[0], values[1], values[2]).cast<float>();
 }
 
-// Returns an extension of a material, an empty object where it has none.
 const tinygltf::Value& Extension(const tinygltf::Material& material, const std::string& name) {
     static const tinygltf::Value none{tinygltf::Value::Object()};
     const auto found = material.extensions.find(name);

@@ -233,7 +233,6 @@ void AddSphere(const tinygltf::Light& source, const Rgb& intensity, double radiu
     description->shapes.push_back(std::move(sphere));
 }
 
-// Returns a number of our own, 0 for none.
 double OwnNumber(const tinygltf::Light& light, const std::string& name) {
     const tinygltf::Value* value = OwnValue(light.extras, name);
     return value ? value->GetNumberAsDouble() : 0;
@@ -245,7 +244,6 @@ double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
     return *radius;
 }
 
-// Returns the name of an image of the light's directions; empty: it shines evenly.
 std::string ProfileOf(const tinygltf::Light& light, const FileLoc& loc) {
     const tinygltf::Value* profile = OwnValue(light.extras, "profile");
     if (!profile) return "";

@@ -70,7 +70,6 @@ std::vector<float> WithAlpha(GltfArray colors) {
     return values;
 }
 
-// Turns strips and fans into triangles (3.7.2.1); the order of their corners tells the front side.
 std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
     if (mode == TINYGLTF_MODE_TRIANGLES || v.size() < 3) {
         v.resize(v.size() / 3 * 3);
@@ -87,7 +86,6 @@ std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
     return triangles;
 }
 
-// Returns whether all tangents have a direction, and one that is not the normal's.
 bool AreTangential(const GltfTriangles& t) {
     for (size_t i = 0; 4 * i < t.tangents.size(); ++i) {
         const Eigen::Map<const Vec3f> tangent(&t.tangents[4 * i]), normal(&t.normals[3 * i]);

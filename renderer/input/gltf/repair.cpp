@@ -76,7 +76,6 @@ void EraseNothings(const std::string& file, const std::string& path, json* value
     }
 }
 
-// Returns an index, which may be written as 4.0.
 std::optional<size_t> IndexOf(const json& value) {
     if (!value.is_number()) return {};
     const auto n = value.get<double>();
@@ -84,7 +83,6 @@ std::optional<size_t> IndexOf(const json& value) {
     return size_t(n);
 }
 
-// Collects the numbers that members of this name have or hold, at any depth.
 void Collect(const json& value, const std::string& name, std::set<size_t>* numbers,
              bool isWithin = false) {
     for (const auto& [key, member] : value.items()) {
@@ -162,7 +160,6 @@ class Repair {
         const json* positions = attributes ? Member(attributes, "POSITION") : nullptr;
         return positions && IsEmpty(*positions);
     }
-    // Leaves out members that are accessors without elements.
     void LeaveOutEmpty(json* owner, const FileLoc& loc) {
         if (!owner || !owner->is_object()) return;
         for (auto it = owner->begin(); it != owner->end();)

@@ -51,7 +51,6 @@ Description PbrtBuilder::Finish() {
     return std::move(description);
 }
 
-// Reports a name that nothing defines, unless an error before may be the reason.
 void PbrtBuilder::SubstituteName(const std::string& problem, const std::string& substitute) {
     if (!hasFailed) warnings.Substitute(loc, problem, substitute);
 }
@@ -82,7 +81,6 @@ void PbrtBuilder::CloseImports() {
     }
 }
 
-// Reports a name that is defined once more, which pbrt-v4 refuses.
 void PbrtBuilder::NameAgain(const char* what, const std::string& name) {
     if (IsV4())
         throw Error(loc, "{} \"{}\" is there already; pbrt-v4 takes each name once", what,
@@ -262,7 +260,6 @@ void PbrtBuilder::ReverseOrientation() { state.reverseOrientation = !state.rever
 
 namespace {
 
-// Returns whether a curve makes one shape with that before it.
 bool IsStrandOf(const ShapeEntity& last, const ShapeEntity& next) {
     const auto same = [&](const auto& read) {
         return read(last.parameters) == read(next.parameters);

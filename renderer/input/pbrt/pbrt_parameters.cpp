@@ -61,7 +61,6 @@ struct Declaration {
     std::string name;
 };
 
-// Splits "type name", where blanks may stand before, between and after.
 Declaration ReadDeclaration(const Token& token, PbrtVersion version) {
     std::string_view rest = token.text;
     const auto takeWord = [&rest] {
@@ -85,7 +84,6 @@ Declaration ReadDeclaration(const Token& token, PbrtVersion version) {
     return {known, std::string(name)};
 }
 
-// Reads one value, or many in brackets, into `values`; take(T*) reads one if it is there.
 template <typename T, typename Take>
 void ReadValues(PbrtLexer& lexer, const Token& owner, const char* what, std::vector<T>* values,
                 const Take& take) {
@@ -133,7 +131,6 @@ std::vector<std::string> ReadStrings(PbrtLexer& lexer, const Token& owner) {
     return values;
 }
 
-// Reads booleans, quoted as pbrt-v3 writes them, or bare as pbrt-v4 does.
 std::vector<int> ReadBools(PbrtLexer& lexer, const Token& owner, PbrtVersion version,
                            Warnings& warnings) {
     std::vector<int> values;
@@ -176,7 +173,6 @@ void Append(const Rgb& rgb, std::vector<float>* values) {
     values->insert(values->end(), {rgb.x(), rgb.y(), rgb.z()});
 }
 
-// Reads a file of a spectrum, for which pbrt-v3 takes black if it is not there.
 Rgb SpectrumOfFile(const std::string& path, const FileLoc& loc, Warnings& warnings) {
     if (ReasonNotToRead(path).empty()) return LoadSpectrum(path, loc, &warnings);
     try {
@@ -200,7 +196,6 @@ std::vector<float> ReadSpectrumFiles(PbrtLexer& lexer, const Token& owner,
     return values;
 }
 
-// Turns the numbers of a spectrum parameter into RGB triplets.
 std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding, const Token& owner,
                                    Warnings& warnings) {
     std::vector<float> values;
@@ -224,7 +219,6 @@ std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding, 
     return values;
 }
 
-// Turns triplets of pbrt-v4's colour space into linear sRGB.
 std::vector<float> ConvertRgb(std::vector<float> values, const Mat3f& rgbFromColorSpace,
                               const Token& owner) {
     for (size_t i = 0; i + 2 < values.size(); i += 3) {

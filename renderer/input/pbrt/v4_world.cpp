@@ -17,7 +17,6 @@ void CopyMapping(V4Reader* in) {
     in->Copy(ParameterType::Vector3, {"v1", "v2"});
 }
 
-// Copies a texture parameter of the texture's own type.
 void CopyOperand(V4Reader* in, const char* name, bool isSpectrum, float otherwise,
                  const char* to = nullptr) {
     if (!to) to = name;
@@ -206,7 +205,6 @@ Entity TranslatePatches(V4Reader& in) {
     return in.Finish("trianglemesh", "Shape \"bilinearmesh\"");
 }
 
-// Reads the opacity, which is by chance.
 void CopyAlpha(V4Reader* in) {
     const float alpha = in->given.GetFloat("alpha", 1);
     if (const TextureRef* texture = in->given.GetTexture("alpha"))

@@ -28,7 +28,6 @@ constexpr const char* kOptionsOfPictures[] = {
     "--images",  "--human",   "--stop",   "--caution", "--quality", "--block",
     "--viewing", "--threads", "--output", "--report",  "--quiet",   "--json-progress"};
 
-// Returns the results; `rendered` are the images that come from the scene, if there is one.
 std::vector<NamedFile> OutputsOf(const CompareOptions& options,
                                  const std::vector<std::string>& rendered) {
     std::vector<NamedFile> outputs = {{"-o", options.output + ".compare.json"},
@@ -125,7 +124,6 @@ void AddCurveRules(Compared* compared) {
         compared->rules.push_back(MakeRule(text, compared->render.ReadRule("--curves", text)));
 }
 
-// Checks all that can be wrong before the work begins.
 std::unique_ptr<Compared> Prepare(const CompareOptions& given, MpiJob* ranks) {
     auto compared = std::make_unique<Compared>(given, ranks);
     const CompareOptions& options = compared->options;
@@ -255,7 +253,6 @@ void WriteResults(const RenderResult& result, Compared* compared) {
     WriteComparison(options, report, WriteImages(*compared));
 }
 
-// The ranks share the render that all images come from; the first does the rest.
 ExitCode CompareRenders(CompareOptions options, MpiJob* ranks) {
     RenderSettings& settings = options.render;
     SetWording(settings, ranks);

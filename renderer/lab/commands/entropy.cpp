@@ -70,7 +70,6 @@ struct Source {
     int spp = 0;  // 0: not known
 };
 
-// Returns the pictures in the order of their spp; those without are first, as they were given.
 std::vector<Source> SourcesOf(const Options& options) {
     std::vector<Source> sources;
     for (const std::string& file : options.pictures)

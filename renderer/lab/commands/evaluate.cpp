@@ -203,7 +203,6 @@ std::vector<EvaluatedRule> EvaluateRecordings(const Options& options) {
                              .grid = options.scoring.grid});
 }
 
-// Reads the recordings of the one viewpoint that answers are to.
 ViewpointRecording ReadViewpoint(const Options& options) {
     std::vector<ViewpointRecording> viewpoints = ReadViewpoints(options);
     for (const std::string& name : options.without)

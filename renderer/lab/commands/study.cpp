@@ -225,7 +225,6 @@ void Tell(const Collected& collected) {
                           observer.answers.observer, observer.doubts);
 }
 
-// Prints how far the thresholds of a viewpoint can be relied on.
 void SayCertainty(const CollectedViewpoint& viewpoint) {
     PrintToStderr("lull: {}: {} observer{}\n", viewpoint.name, viewpoint.observers,
                   viewpoint.observers == 1 ? "" : "s");

@@ -41,7 +41,6 @@ std::string RankText(std::optional<double> correlation) {
     return correlation ? fmt::format("{:.2f}", *correlation) : "-";
 }
 
-// Prints a table whose first column is the rule or the viewpoint.
 void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first,
                const std::vector<Row>& rows, const ScoreOptions& options) {
     size_t width = label.size(), settingWidth = std::string("setting").size();

@@ -66,7 +66,6 @@ Examples:
 
 Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
-// Adds an option whose text is parsed by a function that throws std::invalid_argument.
 template <typename T>
 void AddNames(CLI::App& app, const std::string& names, T (*parse)(const std::string&), T* value,
               const std::string& help, const std::string& standard) {
@@ -232,7 +231,6 @@ void CompleteTrainOptions(TrainOptions* o) {
     plan.settings.voteSpacing = plan.settings.n;
 }
 
-// Returns the values of a plan as options, one a line.
 std::string ValuesText(TrainingPlan plan) {
     CLI::App app;
     AddSettings(app, &plan.settings);
@@ -259,7 +257,6 @@ class TrainingPrinter {
   public:
     explicit TrainingPrinter(ProgressStyle style) : style(style) {}
 
-    // Begins a training, said to be about `about` (which may be empty), that stands at `progress`.
     void Begin(const std::string& about, const TrainingProgress& progress) {
         name = about;
         start = std::chrono::steady_clock::now();

@@ -71,7 +71,6 @@ void MoveTo(const PixelRect& window, ComparedFile* file) {
     file->region = window;
 }
 
-// Joins the views of a pair, as lull renders them. Throws Error for other views.
 void JoinViews(const std::string& path, ExrImage* exr) {
     const bool isLeftFirst = exr->views[0] == "left";
     const std::string other = isLeftFirst ? "right" : "left";
@@ -96,7 +95,6 @@ void JoinViews(const std::string& path, ExrImage* exr) {
 
 bool IsPlaced(const ComparedFile& file) { return !file.image.isDisplay; }
 
-// Moves images to the window of the picture if they have data of different regions.
 void UseOneWindow(std::vector<ComparedFile>* files) {
     const auto first = std::ranges::find_if(*files, IsPlaced);
     const auto isElsewhere = [&](const ComparedFile& file) {

@@ -26,7 +26,6 @@ std::vector<float> LightnessErrorMap(const RgbImage& image, const RgbImage& refe
     return error;
 }
 
-// Copies a block's rows into an image; `channels` values a pixel.
 void Paste(std::span<const float> block, const PixelRect& rect, int channels, int imageWidth,
            std::vector<float>* image) {
     const size_t row = size_t(rect.Width()) * channels;
@@ -46,7 +45,6 @@ Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
     return {.mean = view.mean, .noise = ComputeLightnessNoise(block).noise};
 }
 
-// Renders blocks from their first sample to `spp` each, and leaves out those where it is 0.
 void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Film* film) {
     RenderState state;
     RenderOptions options;
@@ -69,7 +67,6 @@ void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Fi
     Render(options);
 }
 
-// Makes an image of the right size, black, with the noise known.
 ComparedImage EmptyImage(const PixelRect& region, const std::string& name,
                          const std::string& rule) {
     ComparedImage image;
@@ -90,7 +87,6 @@ void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelR
         Paste(snapshot.noise, local, 1, region.Width(), &image->noise);
 }
 
-// Denoises the image of the samples that its blocks took.
 void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blocks,
                     ComparedImage* image) {
     const PixelRect& region = render.options.film->Region();
@@ -148,7 +144,6 @@ Comparison BeginComparison(const PixelRect& region, const ScheduleOptions& sched
 
 namespace {
 
-// Compares an image with the reference; of a pair, each eye's by itself.
 std::vector<ErrorMaps> CompareEyes(const Comparison& comparison, const RgbImage& image) {
     const RgbImage& reference = comparison.images.back().image;
     if (comparison.eyeWidth == 0) return {CompareImages(image, reference, comparison.display)};

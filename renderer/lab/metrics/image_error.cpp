@@ -136,7 +136,6 @@ struct Jumps {
     double Mean() const { return count > 0 ? sum / count : 0; }
 };
 
-// Adds the border between two blocks of which the second is to the right of the first or below.
 void AddBorder(const PixelRect& a, const PixelRect& b, Jumps* jumps) {
     const auto deepEnough = [](int sideA, int sideB) { return std::min(sideA, sideB) >= kDepth; };
     if (a.max.x() == b.min.x() && a.min.y() == b.min.y() && deepEnough(a.Width(), b.Width()))
@@ -230,7 +229,6 @@ Triple Apply(const double (&m)[3][3], const Triple& v) {
     return result;
 }
 
-// White, divided by which X, Y and Z are relative.
 const Triple& White() {
     static const Triple white = Apply(kXyzFromRgb, {1, 1, 1});
     return white;
@@ -331,7 +329,6 @@ struct Features {
     std::vector<float> edges, points;
 };
 
-// Scales positive values to a sum of 1, and negative ones to a sum of -1.
 void BalanceSigns(std::vector<double>& kernel) {
     double positive = 0, negative = 0;
     for (const double k : kernel) (k > 0 ? positive : negative) += k;

@@ -156,7 +156,6 @@ class Leader {
             executor.nextCheckpoint = Seconds() + options.checkpoints.interval;
     }
 
-    // Deals out the tiles by `deal`, with all pixels here and nobody at work.
     void Deal(const std::vector<BlockResult>& blocks) {
         const std::vector<int> before = schedule.Share().deal;
         schedule.Restart(StartsOf(blocks, options), {0, std::exchange(deal, {})});
@@ -183,7 +182,6 @@ class Leader {
         Deal(blocks);
     }
 
-    // Returns whether pixels lack samples of passes that were decided on.
     bool IsBehind(const Block& block) const {
         for (int y = block.pixels.min.y(); y < block.pixels.max.y(); ++y)
             for (int x = block.pixels.min.x(); x < block.pixels.max.x(); ++x)
@@ -242,7 +240,6 @@ class Leader {
 
     int NextSpp(int spp) const { return PassEndAfter(spp, schedule.Unlocked().Options()); }
 
-    // Returns the spp from which the pass that ends at `spp` > 0 began.
     int PassStart(int spp) const {
         int start = 0;
         for (int end = 0; (end = NextSpp(start)) < spp;) start = end;
@@ -274,7 +271,6 @@ class Leader {
         }
     }
 
-    // Brings everything to rest, and all pixels here.
     void Gather(bool undo) {
         quiet.clear();  // now: a rank that is idle answers before Exchange() returns
         collected.clear();
@@ -305,7 +301,6 @@ class Leader {
         }
     }
 
-    // Gives up who has given no sign of life for too long.
     void WatchOthers() {
         const double least = options.rankPatience / 12;
         double patience = executor.IsCancelled() ? least : options.rankPatience;

@@ -227,7 +227,6 @@ void RankChannel::Wait() {
 
 namespace {
 
-// Copies a row-major tile to its place in a row-major block.
 const float* PutTile(const float* from, const PixelRect& tile, const PixelRect& block, float* to) {
     for (int y = tile.min.y(); y < tile.max.y(); ++y, from += 3 * tile.Width())
         std::copy_n(from, 3 * tile.Width(),

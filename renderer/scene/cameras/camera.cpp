@@ -189,7 +189,6 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     return LensSystem(settings, threads);
 }
 
-// Sets the plane, or the angles, that the image is seen through, and the thin lens.
 void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     const Parameters& params = entity.parameters;
     const std::array<float, 4> screen = ReadScreen(entity, resolution);

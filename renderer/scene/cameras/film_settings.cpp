@@ -53,7 +53,6 @@ float Mitchell(float x, float b, float c) {
 
 float Sinc(float x) { return std::abs(x) < 1e-5f ? 1 : std::sin(kPi * x) / (kPi * x); }
 
-// The filter's function of x along an axis, and of the radius of that axis.
 using AxisFunction = std::function<float(float, float)>;
 
 AxisFunction MakeAxisFunction(const Entity& entity) {

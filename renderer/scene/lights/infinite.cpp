@@ -20,7 +20,6 @@ constexpr float kTolerance = 0.02f;
 // sampled, which shading normals cause, need it.
 constexpr float kLeast = 0.1f;
 
-// Returns the texel beside that of a cell, on the side of the cell, of n in a ring or a row.
 int NeighbourOf(int cell, int n, Wrap wrap) {
     const int beside = cell / 2 + (cell % 2 == 0 ? -1 : 1);
     return wrap == Wrap::Repeat ? (beside + n) % n : std::clamp(beside, 0, n - 1);
@@ -58,7 +57,6 @@ float RadianceOf(const SoftBox& box, const Vec3f& w) {
     return box.radiance * SmoothStep((1 - std::max(x, y)) / kEdge);
 }
 
-// Returns latitude-longitude coordinates of a unit vector of light space, each in [0, 1].
 Vec2f CoordinatesOf(const Vec3f& w) {
     const float phi = std::atan2(w.y(), w.x());
     return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),

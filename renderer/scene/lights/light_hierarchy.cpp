@@ -29,7 +29,6 @@ float CosOfSum(float cosA, float cosB) {
     return cosA * cosB - SafeSqrt(1 - Sqr(cosA)) * SafeSqrt(1 - Sqr(cosB));
 }
 
-// Widens the normals of `sum`, which has its axis, by those of a light.
 void Widen(const LightBounds& light, LightBounds* sum) {
     const float cosAxes = std::clamp(sum->axis.dot(light.axis), -1.f, 1.f);
     sum->cosNormals = std::min(
@@ -73,7 +72,6 @@ struct LightHierarchy::Builder {
     std::span<const LightBounds> lights;
     LightHierarchy& tree;
 
-    // Describes where to cut: between buckets along an axis.
     struct Cut {
         int axis = -1;
         int bucket = 0;  // the first one behind the cut
@@ -155,7 +153,6 @@ struct LightHierarchy::Builder {
         return best;
     }
 
-    // Returns how many of the lights come first, and brings them there.
     size_t Divide(std::span<uint32_t> range, int depth) const {
         if (range.size() > 2 && depth < kDeep) {
             const Cut cut = FindCut(range);

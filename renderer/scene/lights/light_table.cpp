@@ -28,7 +28,6 @@ Light Make(const LightReader& in) {
     return L::Make(in);
 }
 
-// Makes a parallel light, or one with an "angle" across, degrees.
 Light MakeDistant(const LightReader& in) {
     const DistantLight parallel = DistantLight::Make(in);
     const float angle = in.entity.parameters.GetFloat("angle", 0);
@@ -72,7 +71,6 @@ std::optional<Light> MakeLight(const LightReader& in) {
     return light;
 }
 
-// Refuses lights to whose place no ray is traced.
 void CheckReach(const Light& light, const LightEntity& entity, float reach) {
     std::visit(
         [&]<typename L>(const L& l) {
@@ -161,7 +159,6 @@ std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
     return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
 }
 
-// Returns how lights are chosen, as the integrator has it.
 std::string StrategyOf(const Entity& integrator, Warnings& warnings) {
     const std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
     for (const char* known : {"uniform", "power", "spatial", "bvh"})

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "renderer/base/hash.h"
 #include "renderer/base/math.h"
 #include "renderer/base/variant.h"
 #include "renderer/input/spectrum.h"
@@ -14,6 +13,7 @@
 #include "renderer/scene/materials/material_inputs.h"
 #include "renderer/scene/materials/metallic_roughness.h"
 #include "renderer/scene/materials/subsurface.h"
+#include "stopping/base/hash.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
@@ -161,7 +161,6 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
     return m;
 }
 
-// Makes the material of an entity; a matte one substitutes unsupported ones.
 Material MakeMaterial(const MaterialReader& in) {
     const MaterialEntity& entity = in.entity;
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name

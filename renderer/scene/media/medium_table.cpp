@@ -13,7 +13,6 @@
 namespace lull {
 namespace {
 
-// Returns the ray with a unit direction, and the factor from its t to the other's.
 std::pair<Ray, float> Normalised(const Ray& ray) {
     const float length = ray.d.norm();
     return {{ray.o, ray.d / length, ray.tMax * length}, 1 / length};

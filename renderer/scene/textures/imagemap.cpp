@@ -74,7 +74,6 @@ Wrap GetWrap(const TextureInput& input, const char* parameter) {
     return Wrap::Repeat;
 }
 
-// Reads which channels the texture is made of.
 TextureChannels GetChannels(const TextureInput& input, bool isFloat) {
     if (!isFloat) return TextureChannels::Rgb;
     const std::string channel = input.entity.parameters.GetString("channel", "");

@@ -54,7 +54,6 @@ float Ramp(int x, int y, int z, float dx, float dy, float dz) {
 // Eases t so that first and second derivatives vanish at lattice points (Perlin 2002, eq. 1b).
 float Ease(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
-// Returns how many octaves samples of that distance resolve.
 float ResolvedOctaves(float spacing2, int octaves) {
     return spacing2 > 0 ? std::clamp(-1 - 0.5f * std::log2(spacing2), 0.f, float(octaves))
                         : float(octaves);

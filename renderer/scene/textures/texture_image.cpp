@@ -22,7 +22,6 @@ bool AllGrey(const std::vector<T>& texels, int channels) {
     return true;
 }
 
-// Maps every pixel of an image, its rows in reverse order; `convert` reads a pixel and writes one.
 template <typename Out, int Count, typename T, typename Convert>
 Texels<Out, Count> Flip(const Image& image, const std::vector<T>& texels, const Convert& convert) {
     Texels<Out, Count> out;
@@ -66,7 +65,6 @@ size_t ReplaceNonFinite(TextureImage* image) {
     return count;
 }
 
-// Returns a grey image of one channel, white where there is none such.
 Image ExtractChannel(const Image& image, TextureChannels wanted) {
     const bool hasColor = image.channels >= 3, hasAlpha = image.channels % 2 == 0;
     const bool wantsAlpha =
@@ -106,7 +104,6 @@ bool HasAlpha(const Image& image) {
         image.texels);
 }
 
-// Returns the mean of the linearised colours, in one channel.
 template <typename Linear>
 Image MeanOf(const Image& image, const Linear& linear) {
     std::vector<float> means;

@@ -78,7 +78,6 @@ void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBl
 
 std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
-// Returns the threshold of a rule's number; 0 where a recording has no such numbers.
 double ThresholdOf(const std::string& rule, const RuleContext& context) {
     const RecordedRule* entry = FindRecordedRule(rule);
     return entry && entry->replay == Replay::Decides ? ParseRule(rule, context).threshold : 0;
@@ -110,7 +109,6 @@ void MarkSeen(const std::map<std::string, std::vector<int>>& trainedOn, Evaluate
     }
 }
 
-// Returns the blocks that the model of a rule was trained on; none of other rules.
 std::map<std::string, std::vector<int>> TrainingBlocksOf(const std::string& rule,
                                                          const RuleContext& context) {
     const RuleEntry* entry = FindRule(rule);
@@ -186,7 +184,6 @@ std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> block
 
 namespace {
 
-// Returns the rules with one threshold that can be run on the recorded data of the blocks.
 std::vector<const RecordedRule*> RivalRules(std::span<const LabelledBlock> blocks) {
     const bool haveHalves = std::ranges::all_of(
         blocks, [](const LabelledBlock& block) { return HasHalves(*block.recording); });
@@ -216,7 +213,6 @@ std::vector<double> SettingsOf(const RecordedRule& rule) {
 // Runs a setting over block number `index`; without verdicts if `brief`.
 using Run = std::function<RuleOutcome(size_t index, double setting, bool brief)>;
 
-// Returns costs[viewpoint][setting]. `begins` says where viewpoints begin in the blocks.
 std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
                                        std::span<const size_t> begins,
                                        std::span<const double> settings, const Run& run,
@@ -325,7 +321,6 @@ std::vector<double> CostsOf(const ViewpointOutcome& viewpoint, ChooseBy chooseBy
     return costs;
 }
 
-// Returns the spp of the least sum of costs, the first among equals.
 int BestOf(const std::vector<double>& costs) {
     return SppOf(size_t(std::ranges::min_element(costs) - costs.begin()));
 }

@@ -56,7 +56,6 @@ void AddMeans(const ViewpointOutcome& viewpoint, const ScoreOptions& options, Sc
             CriticalError(viewpoint.blocks, options.margins[i], options.grid);
 }
 
-// Returns the critical errors of the blocks, by viewpoint.
 std::vector<std::vector<double>> ErrorsOfBlocks(std::span<const ViewpointOutcome> viewpoints,
                                                 double margin, int grid) {
     std::vector<std::vector<double>> errors;

@@ -30,7 +30,6 @@ bool HasVerdict(const LabelledBlock& block, int spp) {
     return block.passSpp == 0 || (spp - block.passSpp) % (2 * block.passSpp) == 0;
 }
 
-// Adds the verdicts of a rule of which only the stop is known: noisy before it.
 void AddVerdictsOfStop(const LabelledBlock& block, RuleOutcome* outcome) {
     for (const int spp : block.recording->spp)
         if (HasVerdict(block, spp))
@@ -39,7 +38,6 @@ void AddVerdictsOfStop(const LabelledBlock& block, RuleOutcome* outcome) {
                                          .noisy = outcome->open || outcome->stop > spp});
 }
 
-// Adds the verdicts of a rule from its numbers, one for each record.
 void AddVerdicts(const LabelledBlock& block, std::span<const double> numbers, double threshold,
                  RuleOutcome* outcome) {
     const std::vector<int>& spp = block.recording->spp;
@@ -89,7 +87,6 @@ std::vector<double> NumbersOf(std::span<const Decision> decisions) {
     return numbers;
 }
 
-// Returns the end of the pass, or the record where these come at any spp, that reaches `spp`.
 int PassReaching(int spp, const LabelledBlock& block) {
     if (block.passSpp > 0) return (spp + block.passSpp - 1) / block.passSpp * block.passSpp;
     const std::vector<int>& recorded = block.recording->spp;
@@ -249,7 +246,6 @@ bool HasOpen(const EvaluatedRule& rule) {
     return false;
 }
 
-// Marks the stops that lie beyond the ends of recordings. Outcomes are in the order of the blocks.
 void MarkOpen(std::span<const LabelledBlock> blocks, EvaluatedRule* rule) {
     size_t next = 0;
     for (ViewpointOutcome& viewpoint : rule->viewpoints)

@@ -47,7 +47,6 @@ struct Fit {
     float At(int spp) const { return float(law.Out(level + slope * law.Abscissa(spp))); }
 };
 
-// Fits a law to one number of the records from `first` on.
 Fit FitLaw(const BlockRecording& recording, size_t first, size_t number, const Law& law) {
     const auto valueOf = [&](size_t i) {
         return law.In(recording.values[i * size_t(kRecordLength) + number]);
@@ -89,7 +88,6 @@ std::vector<Fit> FitAll(const BlockRecording& recording) {
     return fits;
 }
 
-// Sets the stops of `cycles` beyond the last pass that was recorded, up to `end`.
 void ExtendCycles(int last, int passSpp, int end, BlockRecording* recording) {
     double product = 0;  // T^2 n
     for (size_t i = 0; i < kCyclesThresholds.size(); ++i) {

@@ -41,13 +41,11 @@ Vec3f RibbonNormal(const std::array<Vec3f, 2>& n, float u) {
     return (std::sin((1 - u) * angle) * n[0] + std::sin(u * angle) * n[1]) / std::sin(angle);
 }
 
-// Returns the width that the ray sees at u; n is null for curves that face it.
 float SeenWidth(const CurvePiece& piece, const Vec3f* n, const Vec3f& direction, float u) {
     const float width = Lerp(u, piece.width[0], piece.width[1]);
     return n ? width * std::abs(n->dot(direction)) : width;
 }
 
-// Returns the range of u of a primitive within its piece.
 std::array<float, 2> RangeOf(const Curves& curves, uint32_t primitive) {
     const uint32_t parts = 1u << curves.splitDepth, part = primitive & (parts - 1);
     return {float(part) / float(parts), float(part + 1) / float(parts)};
@@ -130,7 +128,6 @@ class Search {
             if (CanHit(halves[i], u[i], u[i + 1])) Descend(halves[i], u[i], u[i + 1], depth - 1);
     }
 
-    // Meets a part that is straight.
     void MeetStraight(const ControlPoints& p, float u0, float u1) {
         // Leave out points beyond the perpendiculars at the ends.
         const auto beyond = [](const Vec3f& end, const Vec3f& next) {

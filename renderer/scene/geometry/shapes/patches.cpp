@@ -28,7 +28,6 @@ int ReadCount(const ShapeEntity& entity, const char* name, int least) {
     return n;
 }
 
-// One direction of a B-spline: order, knots and the range that is shown.
 struct Spline {
     int count, order;
     std::vector<double> knots;

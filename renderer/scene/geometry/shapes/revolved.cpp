@@ -23,7 +23,6 @@ double HeightToV(const Revolved& shape, double z) {
     return (z - shape.start.z()) / (shape.end.z() - shape.start.z());
 }
 
-// Returns the point of the curve at height z, and its derivatives by v.
 struct CurvePoint {
     Vector3d p, dp, d2p;
 };
@@ -60,7 +59,6 @@ Revolved Finished(Revolved shape) {
     return shape;
 }
 
-// Returns how far the surface gets from the axis, squared.
 double LargestRadius2(const Revolved& shape) {
     if (shape.isOnSurface)
         return std::max(shape.start.head<2>().squaredNorm(), shape.end.head<2>().squaredNorm());
@@ -69,7 +67,6 @@ double LargestRadius2(const Revolved& shape) {
         {Radius2(shape, shape.zMin), Radius2(shape, middle), Radius2(shape, shape.zMax)});
 }
 
-// Turns a line from `start` to `end`, of different heights.
 Revolved TurnedLine(const Vector3d& start, const Vector3d& end, float phiMax) {
     Revolved shape;
     shape.start = start;

@@ -21,7 +21,6 @@ std::vector<Vector> VectorsOf(std::span<const float> values) {
     return vectors;
 }
 
-// Gathers indices three by three, with each checked.
 std::vector<std::array<uint32_t, 3>> TrianglesOf(const ShapeEntity& entity, size_t vertexCount) {
     const auto indices = entity.parameters.GetInts("indices");
     if (indices.empty() || indices.size() % 3 != 0)
@@ -71,7 +70,6 @@ MeshData TriangleMesh(const ShapeEntity& entity, Warnings& warnings) {
     return data;
 }
 
-// Gathers values four by four, one a vertex; none where their number is wrong.
 std::vector<std::array<float, 4>> FoursOf(const ShapeEntity& entity, const char* name,
                                           size_t vertexCount) {
     const auto values = entity.parameters.GetFloats(ParameterType::Float, name);
@@ -240,7 +238,6 @@ struct ShapeReader {
     Warnings& warnings;
 };
 
-// Makes a mesh of which textures may cut parts out.
 Shape MakeCutOutMesh(const ShapeReader& in, MeshData data) {
     return {.geometry = PlaceMesh(std::move(data), in.entity, in.warnings),
             .alpha = ReadAlpha(in.textures, in.entity, "alpha"),
