@@ -41,7 +41,6 @@ class Error : public std::runtime_error {
     explicit Error(const std::string& message) : std::runtime_error(message) {}
     Error(const FileLoc& loc, const std::string& message)
         : std::runtime_error(loc.Prefix() + message), loc(loc) {}
-    // Formats the message.
     template <typename First, typename... Others>
     Error(fmt::format_string<First, Others...> format, First&& first, Others&&... others)
         : Error(fmt::format(format, std::forward<First>(first), std::forward<Others>(others)...)) {}
@@ -110,7 +109,6 @@ class Warnings {
     // are; they are kept no longer. Does nothing where there is none.
     void ThrowErrors();
 
-    // Returns how often each kind occurred.
     std::map<std::string, int> Counts() const;
     int Total() const;
 
@@ -148,7 +146,6 @@ void PrintTo(std::FILE* stream, fmt::format_string<Args...> format, Args&&... ar
     }
 }
 
-// Prints to stderr.
 template <typename... Args>
 void PrintToStderr(fmt::format_string<Args...> format, Args&&... args) {
     PrintTo(stderr, format, std::forward<Args>(args)...);

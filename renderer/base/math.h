@@ -80,7 +80,6 @@ inline bool IsFinite(const Rgb& c) {
     return std::isfinite(c.x()) && std::isfinite(c.y()) && std::isfinite(c.z());
 }
 
-// Returns v turned to the side of `reference`.
 inline Vec3f FaceForward(const Vec3f& v, const Vec3f& reference) {
     return v.dot(reference) < 0 ? Vec3f(-v) : v;
 }
@@ -196,7 +195,6 @@ struct RgbImage {
 
 // Converts between linear RGB, luminance and display values.
 
-// Returns the luminance Y of linear sRGB.
 inline float Luminance(const Rgb& c) { return Luminance(c.x(), c.y(), c.z()); }
 
 // Maps linear [0, 1] to the sRGB transfer curve (IEC 61966-2-1).
@@ -204,7 +202,6 @@ inline float SrgbFromLinear(float v) {
     return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }
 
-// Inverts SrgbFromLinear.
 inline float LinearFromSrgb(float v) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }

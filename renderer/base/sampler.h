@@ -64,7 +64,6 @@ class Sampler {
         const uint32_t i = NextPair();
         return {xs[i], ys[i]};
     }
-    // Makes the next kPairs pairs of dimensions.
     void MakePairs();
 
     static constexpr uint32_t kPairs = 8;

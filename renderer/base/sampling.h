@@ -112,9 +112,7 @@ class Distribution1D {
     explicit Distribution1D(std::span<const float> values);
 
     int Count() const { return int(cdf.size()) - 1; }
-    // Returns the mean of the values.
     float Integral() const { return integral; }
-    // Returns the probability of choosing element i.
     float Pmf(int i) const { return cdf[i + 1] - cdf[i]; }
     // Returns the density at x in [0, 1).
     float Pdf(float x) const { return Pmf(std::clamp(int(x * Count()), 0, Count() - 1)) * Count(); }

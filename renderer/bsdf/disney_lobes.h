@@ -33,7 +33,6 @@ struct DisneyDiffuse {
         const Vec3f h = wo + wi;
         const float h2 = h.squaredNorm();
         if (!(h2 > kMinHalf2)) return 0;
-        // wi . h / |h| is half of |h|.
         const float cosD = 0.5f * std::sqrt(h2);
         if (part == Part::Sheen) return SchlickWeight(cosD);
         if (part == Part::RetroReflection || part == Part::Whole) {

@@ -209,7 +209,6 @@ template <typename F>
     return Visit<1>(lobe, f);
 }
 
-// Returns whether a lobe favours the mirror direction.
 template <typename L>
 constexpr bool IsMirrorLike() {
     constexpr bool isDiffuse = std::is_same_v<L, LambertianReflection> ||

@@ -89,7 +89,6 @@ void PrepareStreams();
 
 // Flushes stdout. Throws Error where it, or anything before, could not be.
 void FinishResults();
-// Returns whether something that was printed to stdout is lost.
 bool HasLostResults();
 
 // Prints a message as a line of its own on stderr, after the program's name.
@@ -227,7 +226,6 @@ std::string ProblemOfNumber(std::string_view text, T least, T most) {
                     : fmt::format("'{}' is not in the range from {} to {}", quoted, least, most);
 }
 
-// Checks that a value is a number from `least` to `most`.
 template <typename T>
 CLI::Validator Between(T least, T most) {
     return CLI::Validator(
@@ -241,7 +239,6 @@ inline CLI::Validator AboveZero() {
         .description("POSITIVE");
 }
 
-// Checks that a value is a whole number of up to 64 bits.
 inline CLI::Validator WholeNumber() {
     return Between<uint64_t>(0, std::numeric_limits<uint64_t>::max()).description("NONNEGATIVE");
 }

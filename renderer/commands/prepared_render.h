@@ -38,7 +38,6 @@ struct PreparedRender : RenderJob {
 // Reads scene and rule, and names the files. Throws Error or UsageError for all that can be wrong.
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks);
 
-// Returns the grades for the denoiser.
 std::vector<Grading> GradingsOf(const std::vector<Grade>&);
 
 // Frames of `lull render --frames --resume` whose files are there.

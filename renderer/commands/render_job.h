@@ -29,7 +29,6 @@ class RenderJob {
     RenderJob(const RenderJob&) = delete;
     RenderJob& operator=(const RenderJob&) = delete;
 
-    // Returns whether this is the first rank.
     bool Leads() const;
     // There, throws Error where a result or the checkpoint would replace another or an input, or
     // could not be written now. Takes the checkpoint for this process alone.
@@ -37,7 +36,6 @@ class RenderJob {
     // There, takes the results, of which `output` is one, for this process alone. Throws Error if
     // another process has them.
     void LockResults(const std::string& output);
-    // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();
     // Warns where blocks are denoised from samples whose halves depend on each other.
     void CheckSampler() const;

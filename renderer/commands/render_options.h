@@ -45,13 +45,11 @@ struct RenderRequest {
     int frameNumber = 0;    // in the sequence, from 1; 0: there is none
     bool sameSeed = false;  // for all frames; else frame n has the seed of the settings plus n
 
-    // Returns the rule of --stop, --spp and --denoise.
     std::string Rule() const;
     // Returns how pictures are graded when noise is judged; none: they are not.
     std::vector<Grade> Grades() const;
     // Returns the clock in words, for headers; empty where there is none.
     std::string ClockText() const;
-    // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
     // Returns the layers, with no light groups yet.
     LayerOptions WantedLayers() const {

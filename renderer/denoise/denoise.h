@@ -34,7 +34,6 @@ Planes FilterFeatures(int width, int height, const FeatureReader&,
 // Filters noisy colours: fits in windows of some pixels, the choice among them, and the same at
 // half of the size for wider structure (denoise.h).
 
-// The effort of denoising.
 enum class Effort {
     Full,
     Quick  // a little worse, in 60 % of the time: for a look at how far a render is

@@ -37,7 +37,6 @@ struct DenoisedImage {
 // bits for any number of threads.
 DenoisedImage RunDenoiser(NoisyPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
-// A picture as the sum of the light of groups of lights.
 struct GroupedPicture {
     int groups = 1;   // > 0
     Planes features;  // as in NoisyPicture

@@ -46,7 +46,6 @@ struct LightnessError {
 // Measures a block of at least 10 pixels a side.
 LightnessError MeasureLightnessError(const EstimatedError&, const PixelRect&);
 
-// Returns the part of a picture that a tile within it covers.
 DenoisedPicture Crop(const DenoisedPicture&, const ImageTile&);
 
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,

@@ -10,7 +10,6 @@
 
 namespace lull {
 
-// Where a viewer listens.
 struct DisplayAddress {
     std::string host, port;
 };

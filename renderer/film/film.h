@@ -55,12 +55,10 @@ class FilmTile;
 class Film {
   public:
     explicit Film(const PixelRect& region, const FilmOptions& options = {});
-    // Returns the size of such a film in bytes.
     static int64_t Bytes(const PixelRect& region, const FilmOptions&);
 
     const PixelRect& Region() const { return sums.Region(); }
     bool HasHalf() const { return halfSums.has_value(); }
-    // Forgets the sums of the half.
     void DropHalf() { halfSums.reset(); }
 
     // Returns a pixel; its `rejected` is 0, as those are counted by tile.
@@ -121,7 +119,6 @@ class Film {
     };
     using Sums = PixelPlane<std::array<double, 3>>;
 
-    // Calls visit(index, count) for every pixel, row by row.
     template <typename Visit>
     void ForEachPixel(Visit) const;
     Vec2i TileOf(const Vec2i& p) const {

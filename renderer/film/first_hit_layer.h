@@ -30,7 +30,6 @@ struct FeatureSums {
     bool operator==(const FeatureSums&) const = default;
 };
 
-// The same albedo and normal as AOVs.
 struct SurfaceSums {
     std::array<double, 3> albedo = {}, normal = {};
 

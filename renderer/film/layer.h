@@ -27,7 +27,6 @@ namespace lull {
 // Returns how many of the samples 0 .. count - 1 are in the half.
 uint32_t HalfCount(uint32_t count);
 
-// Returns the luminance of a sum of colours.
 inline double Luminance(const std::array<double, 3>& sum) {
     const auto& [r, g, b] = kLuminanceWeights;
     return r * sum[0] + g * sum[1] + b * sum[2];
@@ -79,7 +78,6 @@ class PixelPlane {
         for (int y = rect.min.y(); y < rect.max.y(); ++y)
             writer->PutAll(std::span(&At({rect.min.x(), y}), size_t(rect.Width())));
     }
-    // Returns how many bytes that takes.
     static int64_t Bytes(const PixelRect& rect) { return rect.Area() * int64_t(sizeof(Pixel)); }
     // Restores the data of Put(). Throws std::runtime_error at their early end.
     void Get(const PixelRect& rect, StateReader* reader) {
@@ -177,7 +175,6 @@ class SplatPlane : public PixelPlane<SplatPixel> {
 
 // The AOVs that denoisers and compositors read ("arbitrary output variables").
 
-// Which are wanted, and how.
 struct AovSet {
     bool albedo = false, normal = false, depth = false, position = false, object = false,
          material = false, noise = false, alpha = false, cryptomatte = false;
@@ -196,7 +193,6 @@ std::string NameOf(const AovSet&);
 // Returns the same in words, with throughSpecular, for headers.
 std::string TextOf(const AovSet&);
 
-// Returns the names of all, with a separator between them.
 std::string AllAovs(const char* separator);
 
 // Reads such names, in any order. Throws Error naming the first unknown one.

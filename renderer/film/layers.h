@@ -121,7 +121,6 @@ class LightGroupLayer {
 
 class Layers {
   public:
-    // No layers.
     Layers() = default;
     Layers(const PixelRect& region, const LayerOptions& wanted) : options(wanted) {
         const auto make = [&]<typename Kind>(std::optional<Kind>& kind) {

@@ -37,7 +37,6 @@ struct Image {
     int channels = 0;  // 1: grey; 2: grey, alpha; 3: RGB; 4: RGB, unassociated alpha
     std::variant<std::vector<uint8_t>, std::vector<Half>, std::vector<float>> texels;
 
-    // Returns the memory that the texels take.
     size_t Bytes() const {
         return std::visit([](const auto& t) { return t.size() * sizeof(t[0]); }, texels);
     }

@@ -94,7 +94,6 @@ struct ExrChannel {
 // A matrix is in pbrt's convention: applied to column vectors, stored row by row.
 using ExrAttribute = std::variant<std::string, int, float, Mat4d>;
 
-// The contents of an EXR file.
 struct ExrImage {
     int width = 0, height = 0;     // of the data window
     Vec2i origin = Vec2i::Zero();  // of the data window, within the display window

@@ -17,7 +17,6 @@ inline constexpr int kCieFirst = 360, kCieLast = 830;  // nm, in steps of 1
 inline constexpr int kCieRows = kCieLast - kCieFirst + 1;
 extern const std::array<float, kCieRows> kCieX, kCieY, kCieZ;
 
-// Returns the linear sRGB of CIE XYZ.
 Rgb RgbFromXyz(double x, double y, double z);
 
 // Returns the RGB of a spectrum given as pairs (wavelength in nm, value), in any order, linear

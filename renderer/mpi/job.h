@@ -56,7 +56,6 @@ class MpiJob {
     // Has warnings and errors put into the lines that wording(kind, message) returns.
     using Wording = std::function<std::string(const std::string& kind, const std::string& message)>;
     void SetWording(Wording given) { wording = std::move(given); }
-    // Prints a warning, whatever the rank.
     void Warn(const std::string& message) const;
     // Prints errors, one for each line, once for all ranks, and ends them all if others would wait
     // for this one.

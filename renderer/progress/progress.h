@@ -69,7 +69,6 @@ enum class ProgressStyle {
     Json    // one object per line
 };
 
-// Returns the style of reports on stderr.
 ProgressStyle StyleOfReports(bool json, bool quiet);
 
 // Prints a report by its style: over the last one, or as a line of its own. `text` fits on a line.

@@ -22,7 +22,6 @@ namespace lull {
 // A schedule that threads share, with the state of its passes: a clock that can end them, earlier
 // values of their pixels, and a viewer that shows where blocks have stopped.
 
-// Decision on a block after a pass.
 struct BlockAnswer {
     bool stop = false;
     double noise = kUnknownNoise;
@@ -74,7 +73,6 @@ class LiveSchedule {
     const Schedule& Unlocked() const { return schedule; }
     const Block& BlockAt(int i) const { return schedule.Blocks()[size_t(i)]; }
     const RankTiles& Share() const { return share; }
-    // Returns the tiles of a block that a rank has.
     std::vector<PixelRect> TilesOfRank(int block, int rank) const;
 
   private:
@@ -101,7 +99,6 @@ class LiveSchedule {
 
 // Asks the criteria of blocks after each pass.
 
-// The decision on a block after a pass.
 struct BlockCheck {
     BlockAnswer answer;
     Decision decision;  // of the criterion, which may not have checked the block
@@ -152,7 +149,6 @@ class TaskSet {
     TaskSet(std::function<void()> doTile, std::function<void(std::exception_ptr)> take)
         : doTile(std::move(doTile)), take(std::move(take)) {}
 
-    // Spawns tasks of tiles, from within the arena.
     void Spawn(int count) {
         open += count;
         tileTask.order.Leave();
@@ -168,16 +164,13 @@ class TaskSet {
         workTask.order.Leave();
         arena->enqueue(group.defer(std::ref(workTask)));
     }
-    // Waits until there is no task any more.
     void Wait() {
         group.wait();
         tileTask.order.Enter();
     }
-    // Returns whether there is none now.
     bool IsIdle() const { return open == 0; }
 
   private:
-    // The work of all tasks of tiles.
     struct TileTask {
         TaskSet* set;
         TaskOrder order = {};
@@ -187,7 +180,6 @@ class TaskSet {
             order.Leave();
         }
     };
-    // Does the oldest of `works`.
     struct WorkTask {
         TaskSet* set;
         TaskOrder order = {};
@@ -306,12 +298,10 @@ class Executor {
     Executor(const RenderOptions&, std::span<const BlockStart> starts, RankTiles = {},
              RankHooks = {});
 
-    // Renders all, with checkpoints, for a process that is alone.
     RenderResult Run();
 
     // Asks the criterion and returns how many tiles have become ready.
     int DecideBlock(int block);
-    // Spawns the tiles that are ready.
     void SpawnReady() { tasks.Spawn(schedule.ReadyTiles()); }
     // With no task at work: begins a round of light paths, none of which are traced. Calls
     // `writeCheckpoint` before a round that the cap cuts short, after which none is written: with a

@@ -33,7 +33,6 @@ NoisyPicture ReducedPictureOf(const Film&, const PixelRect& region, int halvings
 NoisyPicture TakePicture(Film*, const PixelRect&);
 GroupedPicture TakeGroups(Film*, const PixelRect&);
 
-// Returns the colours alone.
 Halves ColoursOf(const Film&, const PixelRect&);
 
 // Return the unfiltered features of both halves, and the variance of the mean luminance.

@@ -12,7 +12,6 @@
 
 namespace lull {
 
-// A decision of a criterion on a block.
 struct BlockDecision {
     int spp;
     Decision decision;

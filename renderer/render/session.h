@@ -89,7 +89,6 @@ class Session {
     // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
     Film& GetFilm() { return film; }
-    // Returns how it is rendered, and what.
     const RenderOptions& Options() const { return options.render; }
 
   private:

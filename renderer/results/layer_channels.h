@@ -55,7 +55,6 @@ LayerChannels ChannelsOf(const MatteLayer&, const FinishedFilm&);
 //                    "lightGroups"
 LayerChannels ChannelsOf(const LightGroupLayer&, const FinishedFilm&);
 
-// Returns those of all layers.
 LayerChannels ChannelsOf(const FinishedFilm&);
 
 // Removes the light of samples that hit nothing, of which `background` is the sum, from the colour

@@ -39,7 +39,6 @@ void WriteSppMap(const std::string& file, const Provenance&, const RenderResult&
 // Writes a thresholds file (stopping/rules/thresholds.h) with the row of a scene's file.
 void WriteThresholdsOf(const std::string& file, const std::string& scene, std::vector<int> spp);
 
-// Returns the thresholds that repeat a render.
 std::vector<int> ThresholdsOf(const Provenance&, const RenderResult&);
 
 // JSON that reports have in common; for those .cpp files that write reports.

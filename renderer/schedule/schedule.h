@@ -43,7 +43,6 @@ int PassEndAfter(int spp, const ScheduleOptions&);
 // Returns whether a pass, or the first as a whole, ends at `spp`.
 bool IsPassEnd(int spp, const ScheduleOptions&);
 
-// Returns how a film is cut by the schedule.
 inline TileGrid GridOf(const ScheduleOptions& options) {
     return {options.blockSize, options.tileSize, options.eyeWidth};
 }
@@ -165,7 +164,6 @@ class Schedule {
     int StoppedBlocks() const { return stoppedBlocks; }
     int BlocksAtCap() const { return blocksAtCap; }  // of those, not stopped by a vote
     int MedianSpp() const;
-    // Returns the samples left until every live block is at the cap.
     int64_t SamplesToCap() const;
 
   private:

@@ -38,7 +38,6 @@ class GroupRadiance {
 
     // Clear() and Scale() are not inlined: samples without groups would have to pass by them.
     void Clear();
-    // Adds the radiance of light `index` of the scene.
     void Add(int index, const Rgb& radiance) { radiances[ofLight[size_t(index)]] += radiance; }
     // Multiplies all by `factor`. What is not finite then is black.
     void Scale(float factor);
@@ -69,7 +68,6 @@ struct BdptShares {
     float connections = 1;  // subpaths from lights to connect to, in (0, 1]
 };
 
-// How paths are traced.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
 

@@ -75,7 +75,6 @@ struct Vacuum {
             return ray && !context.scene.accelerator.Occluded(*ray, time);
     }
 
-    // Returns whether a ray in direction wi leaves the scene.
     static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
                             LightHit* lightHit) {
         const Ray ray = v.hit.SpawnRay(wi);

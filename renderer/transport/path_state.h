@@ -71,7 +71,6 @@ struct SurfaceVertex {
     std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet set) const {
         return bsdf.Sample(hit.wo, u, set);
     }
-    // Returns the factor of f.
     float Cosine(const Vec3f& wi) const { return std::abs(wi.dot(hit.ns)); }
 
     // Returns the point where a ray of direction d, of any length, starts.
@@ -122,7 +121,6 @@ struct PathContext {
     Media media;
 };
 
-// Carries the state of a path from one vertex to the next.
 struct Path {
     Ray ray;
     Rgb L = Rgb::Zero();     // radiance found so far

@@ -99,7 +99,6 @@ std::string FileChecksum(const std::string& path);
 // Returns the seal of the content of a file, to be appended to it: a mark, and the CRC-32 of all
 // bytes before it, which any flipped bit changes. HDF5 ignores bytes after the end of its files.
 std::string SealOf(std::span<const std::byte> content);
-// Appends it.
 void Seal(std::vector<std::byte>* content);
 
 // Throws std::runtime_error, which does not name the file, if it cannot be read or has changed.

@@ -68,7 +68,6 @@ class StateReader {
         GetAll(std::span(values));
         return values;
     }
-    // Returns how many bytes are left.
     size_t Left() const { return rest.size(); }
     // Checks that nothing is left.
     void Finish() const {

@@ -32,7 +32,6 @@ inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
 inline bool IsNoise(Feature feature) { return feature == Feature::VisibleDrop; }
 // Returns whether this feature is normalised over a window, as the paper's are.
 inline bool IsNormalized(Feature feature) { return !IsNoise(feature); }
-// Returns whether there is a value for each sub-block.
 inline bool HasSubBlocks(Feature feature) { return feature != Feature::Attributes26; }
 
 // How far apart the steps of a window are: n spp, or each at `ratio` times the spp of the

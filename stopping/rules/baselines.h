@@ -77,7 +77,6 @@ double VisibleNoise(const BlockView& view);
 // pixels hold most of it: hence the votes.
 Rule LightnessNoiseRule(double threshold);
 
-// The name of the rule.
 inline constexpr const char* kLightnessNoiseName = "lnoise";
 
 // Reads the threshold T, which the context's caution divides.

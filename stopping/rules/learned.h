@@ -28,7 +28,6 @@ Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp);
 // The model where none is named.
 inline constexpr const char* kDefaultModelName = "entropy";
 
-// Reads the name or the file of a model.
 Rule ReadLearned(const std::string& argument, const RuleContext& context);
 
 // Returns the file of the model that `learned:ARGUMENT` names: one that ends in .h5 or is there, or

@@ -68,7 +68,6 @@ class Criterion {
     virtual void Restore(std::span<const std::byte> state);
 };
 
-// Position of the block of a criterion.
 struct BlockInfo {
     int index = 0;            // row-major place in the grid of blocks
     double areaFraction = 1;  // pixels of the block / pixels of the image, in (0, 1]
@@ -266,7 +265,6 @@ std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block = {})
 // Returns the maker of the criteria of all blocks of an image.
 CriterionMaker CriteriaOf(Rule rule);
 
-// Context of a rule, in addition to its text.
 struct RuleContext {
     int passSpp = 20;            // spp of a pass, also of the first; 0: any (see Checks)
     int blockCount = 0;          // blocks in the image; 0: not known

@@ -23,7 +23,6 @@ struct RuleEntry {
 
 std::span<const RuleEntry> RuleTable();
 
-// The rule where none is asked for.
 inline constexpr const char* kDefaultRule = "learned";
 
 // Reads a stopping rule, NAME[:ARGUMENT], and the files it names. Throws std::invalid_argument for

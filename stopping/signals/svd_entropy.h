@@ -25,7 +25,6 @@ namespace lull {
 
 // Remembers those states of a block that later ones are compared with.
 
-// Numbers of a block at some spp.
 template <typename Real>
 struct BlockState {
     int spp = 0;

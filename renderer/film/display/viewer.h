@@ -69,7 +69,6 @@ class Connection {
     // Sends all bytes. Returns false, and closes, if the connection is lost or giveUp() is true.
     bool Send(std::span<const std::byte> bytes, const std::function<bool()>& giveUp,
               std::string* why);
-    // Returns whether the server is still there.
     bool IsAlive();
     void Close();
 

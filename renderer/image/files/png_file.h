@@ -14,7 +14,6 @@ namespace lull {
 
 // Calls libpng, which leaves its functions by longjmp() if something is wrong.
 
-// The last error message of libpng.
 struct PngError {
     char message[128] = "";
 };
@@ -35,7 +34,6 @@ bool TryPng(png_structp png, const Call& call) {
     return true;
 }
 
-// Returns whether bytes begin like a PNG.
 bool IsPng(std::span<const std::byte> bytes);
 
 // Opens a PNG: less than 8 bits become 8, palettes RGB, and transparent colours an alpha channel. A

@@ -13,7 +13,6 @@ namespace lull {
 // are no valid ones (3.7.2.1): some exporters leave the property out.
 bool Normalizes(const tinygltf::Model&, const std::string& attribute);
 
-// Values of an accessor, `components` numbers each.
 struct GltfArray {
     int components = 0;
     std::vector<float> values;

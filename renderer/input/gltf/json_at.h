@@ -164,7 +164,6 @@ struct JsonAt {
             f(one);
         });
     }
-    // Calls f with the values of an object.
     template <typename F>
     void ForEachValue(const std::string& name, const F& f) const {
         if (!Has(name)) return;
@@ -176,7 +175,6 @@ struct JsonAt {
     bool HasExtension(const std::string& name) const {
         return Has("extensions") && Member("extensions").Has(name);
     }
-    // Calls f with an extension that the object has.
     template <typename F>
     void Extension(const std::string& name, const F& f) const {
         if (!Has("extensions")) return;

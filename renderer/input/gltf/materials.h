@@ -69,7 +69,6 @@ struct GltfMaterial {
 // Adds materials to a description, each once.
 class GltfMaterials {
   public:
-    // `solidGlass`: see GltfOptions.
     GltfMaterials(const GltfDocument& document, bool solidGlass, Description* description)
         : document(document),
           solidGlass(solidGlass),

@@ -36,7 +36,6 @@ class PbrtLexer {
     size_t Depth() const { return sources.size(); }
     // Begins again at the start of the first file.
     void Rewind();
-    // Returns the files that were read.
     std::vector<std::string> Files() const;
 
     Token Take();

@@ -42,7 +42,6 @@ class ScopedNames {
 // Which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
-// The kinds of entity of a scene.
 enum class EntityKind {
     Camera,
     Film,

@@ -113,7 +113,6 @@ class V4Reader {
     // Copies a texture, or writes the spectrum of a surface, if there is one.
     void CopySurface(const char* name, const char* to);
 
-    // Adds a spectrum texture of an image to the description.
     TextureRef AddImage(const std::string& file, bool isData) const;
 
     const FileLoc& Loc() const { return from.loc; }

@@ -16,7 +16,6 @@ namespace lull {
 // Adds --split paper:FILE, which sets `file`: the blocks that a model is trained on.
 void AddSplitOption(CLI::App& app, std::string* file, const std::string& help);
 
-// Adds an option that can be given again.
 CLI::Option* AddList(CLI::App& app, const std::string& name, std::vector<std::string>* list,
                      const std::string& help);
 
@@ -32,7 +31,6 @@ void AllowOnly(const CLI::App& app, std::span<const char* const> names, const st
 void AddImagesOptions(CLI::App& app, std::vector<std::string>* folders, int* blockSize);
 CLI::Option* AddBlockOption(CLI::App& app, int* blockSize);
 
-// Returns the pictures as files that are read.
 std::vector<NamedFile> InputsOf(const PictureFolder& folder);
 
 // Records pictures and tells every ten seconds how far it is, and at last how many there were.

@@ -19,7 +19,6 @@ struct BlockCost {
     bool isEstimated = false;  // from the block's seconds per sample, as not all of it was rendered
 };
 
-// An image and all that is measured of it.
 struct ComparedImage {
     std::string name;  // automatic, human, reference, or as the user calls it
     std::string rule;  // empty: not known
@@ -75,7 +74,6 @@ void Measure(Comparison*);
 // Returns how many blocks have a visible difference above kVisibilityThreshold; needs figures.
 int CountVisibleBlocks(const ComparedImage&);
 
-// Sum of the costs of the blocks.
 struct TotalCost {
     int64_t samples = 0;
     double seconds = 0, ruleSeconds = 0;
@@ -136,7 +134,6 @@ Verification VerificationOf(const RenderResult&, const Film& film, const Compare
 
 // Measures error against effort: of fixed sample counts, and of rules over a range of settings.
 
-// One point of a curve.
 struct CurvePoint {
     std::string rule, setting;  // "dammertz", "0.02"; "fixed", "64"
     double spp = 0;             // mean samples per pixel

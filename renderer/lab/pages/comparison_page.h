@@ -9,7 +9,6 @@
 
 namespace lull {
 
-// Contents of a report of a comparison.
 struct ComparisonReport {
     Comparison comparison;
     std::optional<Provenance> provenance;    // of the renders; none for images from files

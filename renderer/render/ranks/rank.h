@@ -53,7 +53,6 @@ enum class RankWord : uint8_t {
     Alive
 };
 
-// Decision on a block.
 struct AnswerMessage {
     int block;
     bool stop;
@@ -121,7 +120,6 @@ class RankChannel {
     // arrived, or waits a little if there is neither. Throws the exception of Fail().
     using Handler = std::function<void(int from, RankWord, StateReader&)>;
     void Exchange(const Handler& handle);
-    // Waits until all messages have left.
     void Flush() { peers.Flush(); }
 
     // Pings the ranks, and reports those that do not answer to `onSilence`.
@@ -139,7 +137,6 @@ class RankChannel {
   private:
     using Clock = std::chrono::steady_clock;
 
-    // State of another rank.
     struct Life {
         Clock::time_point heard = Clock::now();
         std::optional<Clock::time_point> asked;  // since it was heard

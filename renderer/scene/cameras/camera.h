@@ -117,7 +117,6 @@ double Farthest(const Camera&, const FilmSettings&);
 Mat4d WorldToCamera(const Camera&);
 std::optional<Mat4d> WorldToNdc(const Camera&, const FilmSettings&);
 
-// How a point is seen.
 struct CameraView {
     Vec2f film;           // pixels, of the whole image and beyond
     Vec3f lens;           // the point on the lens

@@ -87,7 +87,6 @@ struct LightProbes {
 float Contribution(const Light& light, const LightProbes& probes,
                    const LightProbes::Places& places);
 
-// Divides a box into voxels.
 struct VoxelGrid {
     // One voxel, in which every point lies.
     VoxelGrid() = default;

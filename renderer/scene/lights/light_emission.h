@@ -16,7 +16,6 @@ struct EmissionDensity {
     float onward = 0;
 };
 
-// Light that leaves a light.
 struct EmittedRay {
     int light;
     // Of lights at infinity the point is on a disk that faces the scene, outside of it.
@@ -47,9 +46,7 @@ class LightEmission {
     // Returns the densities of light `index` shining along w, from a point of normal n.
     EmissionDensity Density(int index, const Vec3f& n, const Vec3f& w) const;
 
-    // Returns whether any light shines.
     bool Any() const { return anyPower; }
-    // Returns the probability of choosing a light.
     float Pmf(int index) const { return anyPower ? choice.Pmf(index) : 0; }
 
   private:

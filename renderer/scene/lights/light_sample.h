@@ -27,7 +27,6 @@ struct LightSample {
     Vec3f p = Vec3f::Zero(), pError = Vec3f::Zero(), n = Vec3f::Zero();
 };
 
-// Light that a ray finds.
 struct Emitted {
     Rgb L;      // radiance
     float pdf;  // 1/sr, with which sampling the light finds the same direction

@@ -29,10 +29,8 @@ class LightTable {
     // Lists the lights that rays reach when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
 
-    // Returns whether lights are chosen by a hierarchy.
     bool HasHierarchy() const { return hierarchy != nullptr; }
 
-    // Returns whether a ray can hit any light at all.
     bool AnyVisible() const { return anyVisible; }
 
     // Samples light i as seen from `from`. Returns nothing if it gives no light there.
@@ -68,7 +66,6 @@ class LightTable {
 
   private:
     void AddLights(const Description&, const ShapeTable&, bool asPbrtV3, Warnings&);
-    // Adds a light for each primitive of an emitting shape.
     void AddAreaLights(const ShapeEntity&, const TextureTable&, bool asPbrtV3, Shape*, Warnings&);
     void ChooseByPlace(const Bounds3f& bounds);
     LightChoice ChoiceIn(size_t place) const {

@@ -40,7 +40,6 @@ struct EmissionMap {
     bool vertexColors = false;  // multiply it, too
     bool cutsOut = false;       // where the shape's alpha is 0, as rays see it
 
-    // Returns the factor of the radiance at a point of a triangle.
     Rgb At(uint32_t triangle, float b1, float b2) const {
         const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
         const Vec2f uv = secondUv ? mesh.Uv1(triangle, b1, b2) : mesh.Uv(triangle, b1, b2);

@@ -54,7 +54,6 @@ struct SparseGrid {
         return bricks[(size_t(brick.z()) * size.y() + brick.y()) * size.x() + brick.x()];
     }
     const Brick& At(const Vec3i& brick) const { return const_cast<SparseGrid*>(this)->At(brick); }
-    // Returns the value of a voxel.
     float Value(const Vec3i& voxel) const;
     float operator()(const Vec3f& p) const;
     // Finds Brick::most of all.

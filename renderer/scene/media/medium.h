@@ -18,7 +18,6 @@ struct MediumSample {
     Rgb emitted = Rgb::Zero();  // radiance of the medium itself that gets to the ray's origin
 };
 
-// Represents a medium that is the same everywhere.
 struct HomogeneousMedium {
     Rgb sigmaS, sigmaT;          // scattering and extinction, per unit of length
     float g;                     // of the phase function

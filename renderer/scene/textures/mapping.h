@@ -31,7 +31,6 @@ struct CylindricalMapping {
     Eigen::Matrix4f textureFromWorld;
 };
 
-// Projects the world-space point.
 struct PlanarMapping {
     Vec3f vs, vt;
     Vec2f offset;

@@ -63,7 +63,6 @@ class TextureTable {
     SurfaceNeeds Needs(const FloatTexture&) const;
     SurfaceNeeds Needs(const SpectrumTexture&) const;
 
-    // Returns the memory taken by images, in bytes.
     size_t Bytes() const { return imageBytes; }
 
   private:

@@ -60,7 +60,6 @@ class TextureImages {
     std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, float gamma,
                                             TextureChannels channels);
 
-    // Returns the memory taken by images.
     size_t Bytes() const;
 
   private:

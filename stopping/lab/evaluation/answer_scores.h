@@ -41,7 +41,6 @@ std::vector<SingleAnswer> ReadSingleAnswers(std::istream& in, const std::string&
 void CheckBlocks(std::span<const SingleAnswer> answers, int blockCount,
                  const std::string& fileName);
 
-// Which answers count.
 struct AnswersUsed {
     int answers = 0, blocks = 0;              // that count
     int tracks = 0;                           // adjustments, the answers in which count as one

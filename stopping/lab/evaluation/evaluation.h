@@ -51,14 +51,12 @@ std::optional<double> RankCorrelation(std::span<const double> a, std::span<const
 // there are no two classes. Throws std::invalid_argument if lengths differ or for NaN.
 double AreaUnderRoc(std::span<const float> scores, std::span<const char> labels);
 
-// Verdict of a rule on a block at some spp.
 struct BlockVerdict {
     int spp = 0;
     double score = 0;  // the larger, the noisier; comparable between blocks; may be infinite
     bool noisy = false;
 };
 
-// Stop and verdicts of a rule on a block.
 struct RuleOutcome {
     int stop = 0;  // spp; kMostShownSpp where it never stopped
     // Whether the recording ends below the cap and the rule had not stopped the block there: it

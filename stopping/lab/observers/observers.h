@@ -14,7 +14,6 @@ struct CollectOptions {
     std::string study = {};     // the id of the only study that is taken; empty: any
 };
 
-// Rejected answers, with the reason.
 struct RefusedAnswers {
     std::string file, reason;
 };

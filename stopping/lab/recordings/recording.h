@@ -66,7 +66,6 @@ inline constexpr int kRecordLength = [] {
     return length;
 }();
 
-// The history of one block.
 struct BlockRecording {
     std::vector<int> spp;       // of the records, increasing
     std::vector<float> values;  // kRecordLength for each of them, 0 in channels that are absent
@@ -112,7 +111,6 @@ class BlockRecorder final : public Criterion {
 
 // Reads and writes data sets: HDF5 files of recordings, a group a viewpoint, a group a block in it.
 
-// The recordings of one viewpoint.
 struct ViewpointRecording {
     std::string name;
     int blockCount = 0;  // in the whole image

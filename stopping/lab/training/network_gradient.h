@@ -30,7 +30,6 @@ class CounterRandom {
     double Uniform() { return double(Next() >> 11) * 0x1p-53; }
     // Returns an integer in [0, limit), limit > 0.
     uint64_t Below(uint64_t limit) { return uint64_t(Uniform() * double(limit)); }
-    // Returns a number from the standard normal distribution.
     double Normal() {
         const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
         return radius * std::cos(2 * std::numbers::pi * Uniform());
@@ -59,7 +58,6 @@ struct DenseWeights {
     VectorOf<Scalar> bias;
 };
 
-// The weights of a network, or a gradient with respect to them.
 template <typename Scalar>
 struct NetworkWeights {
     std::vector<LstmWeights<Scalar>> lstm;
@@ -86,7 +84,6 @@ struct NetworkWeights {
 // layer, a size is not in [1, 16384], or a layer of more than 2^28 weights.
 NetworkWeights<float> InitialWeights(int inputs, std::span<const int> units, uint64_t seed);
 
-// Returns weights of the same shape, all zero.
 template <typename Scalar>
 NetworkWeights<Scalar> ZerosLike(const NetworkWeights<Scalar>& weights) {
     NetworkWeights<Scalar> zeros = weights;
@@ -94,7 +91,6 @@ NetworkWeights<Scalar> ZerosLike(const NetworkWeights<Scalar>& weights) {
     return zeros;
 }
 
-// Returns the network that has these weights.
 Network MakeNetwork(const NetworkWeights<float>& weights);
 
 // Moves weights against their gradient, each with a step size of its own.

@@ -59,7 +59,6 @@ struct TrainingEvents {
     std::function<bool()> isCancelled;  // is asked before each step; true ends the training
 };
 
-// Result of a plan.
 struct TrainingResult {
     Network network;  // the last one
     // Outcomes of networks: "each viewpoint left out" and, of the last one, "blocks left out" or,
