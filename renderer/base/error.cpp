@@ -177,6 +177,11 @@ std::string ToUtf8(std::string_view text) {
     return utf8;
 }
 
+std::string LowerCase(std::string text) {
+    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
 std::string BeginningOf(const std::string& text, size_t most) {
     if (text.size() <= most) return text;
     while (most > 0 && IsWithinCharacter(text[most])) --most;

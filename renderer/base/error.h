@@ -164,6 +164,9 @@ size_t CharacterBytes(std::string_view text);
 // Returns the text with U+FFFD in place of NUL, and of each byte that belongs to no character.
 std::string ToUtf8(std::string_view text);
 
+// Returns the text with the letters of ASCII in lower case.
+std::string LowerCase(std::string text);
+
 // Returns the beginning of a text in UTF-8, of up to `most` bytes, without part of a character.
 std::string BeginningOf(const std::string& text, size_t most);
 

@@ -3,7 +3,6 @@
 // exponentials (Burley 2015).
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numeric>
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"

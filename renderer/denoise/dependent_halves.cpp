@@ -1,6 +1,5 @@
 #include "renderer/denoise/denoiser.h"
 
-#include <array>
 #include <cmath>
 
 #include "stopping/signals/lightness.h"

@@ -296,6 +296,10 @@ FileContents ReadFile(const std::string& path, const FileLoc& loc) {
     return contents;
 }
 
+std::string ExtensionOf(const std::string& file) {
+    return LowerCase(fs::path(file).extension().string());
+}
+
 std::string_view WithoutByteOrderMark(std::string_view text, const FileLoc& loc) {
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     if (const std::string_view wide = WideEncoding(text); !wide.empty())

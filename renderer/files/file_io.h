@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "renderer/base/error.h"
 #include "stopping/base/input_file.h"
@@ -59,6 +58,9 @@ struct FileContents {
 // Reads the regular file `path` in one go. Throws Error, beginning with `loc` (the place that names
 // the file), if it is missing, a directory, or cannot be read.
 FileContents ReadFile(const std::string& path, const FileLoc& loc = {});
+
+// Returns the extension of a file's name, such as ".png", in lower case.
+std::string ExtensionOf(const std::string& file);
 
 // Cleans texts of what editors and old programs put around them.
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "renderer/files/file_io.h"
 #include "renderer/input/gltf/cameras.h"
 #include "renderer/input/gltf/document.h"
 #include "renderer/input/gltf/materials.h"
@@ -236,8 +237,7 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
 }
 
 bool IsGltf(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = ExtensionOf(file);
     return extension == ".gltf" || extension == ".glb";
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -49,8 +48,7 @@ constexpr std::pair<const char*, const char*> kUvs[] = {{"u", "v"},
 
 std::string WithoutCase(std::string name) {
     std::erase(name, '_');
-    for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return name;
+    return LowerCase(name);
 }
 
 SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {

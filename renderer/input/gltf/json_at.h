@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"

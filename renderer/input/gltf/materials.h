@@ -7,7 +7,6 @@
 #include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "renderer/input/description.h"
 #include "renderer/input/gltf/document.h"

@@ -82,9 +82,7 @@ constexpr std::pair<std::string_view, const char*> kExtensions[] = {
 // Returns the format of a file, and the remedy, if its name or first bytes are of a known format or
 // not text at all; "" if it may be a pbrt scene.
 std::string ForeignFormat(std::string_view name, std::string_view bytes) {
-    std::string lower(name);
-    std::ranges::transform(lower, lower.begin(),
-                           [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string lower = LowerCase(std::string(name));
     for (const auto& [extension, what] : kExtensions)
         if (lower.ends_with(extension)) return what;
     for (const auto& [magic, what] : kFormats)

@@ -1,7 +1,6 @@
 // Keeps the state that a scene file changes: transforms, and names with scopes.
 #pragma once
 
-#include <array>
 #include <map>
 #include <memory>
 #include <optional>

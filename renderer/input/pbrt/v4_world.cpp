@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string_view>
-
 #include "renderer/input/pbrt/v4.h"
 #include "stopping/base/input_file.h"
 

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <set>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
+#include "renderer/files/file_io.h"
 #include "renderer/image/image_io.h"
 #include "renderer/results/channel_names.h"
 #include "renderer/results/denoised_image.h"
@@ -18,12 +18,6 @@
 namespace lull {
 
 namespace {
-
-std::string ExtensionOf(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::ranges::transform(extension, extension.begin(), [](char c) { return std::tolower(c); });
-    return extension;
-}
 
 bool IsTiff(const std::string& path) {
     const std::string extension = ExtensionOf(path);

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "renderer/base/clocks.h"
-#include "renderer/base/error.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
 #include "stopping/base/parallel.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
-
 #include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
 #include "renderer/image/image_io.h"

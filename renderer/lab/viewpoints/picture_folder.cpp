@@ -66,8 +66,7 @@ std::vector<int> PictureFolder::Spp() const {
 
 int SppInName(const std::string& name) {
     const std::string stem = std::filesystem::path(name).stem().string();
-    std::string lower = stem;
-    for (char& c : lower) c = char(std::tolower(uint8_t(c)));
+    const std::string lower = LowerCase(stem);
     if (const size_t at = lower.rfind("spp"); at != std::string::npos) {
         const auto isSeparator = [](char c) {
             return c == '-' || c == '_' || c == '.' || c == ' ';

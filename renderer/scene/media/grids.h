@@ -1,7 +1,6 @@
 // Fields of density, colour and temperature in the unit cube.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <variant>
 #include <vector>

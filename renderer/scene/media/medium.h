@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <variant>
-#include <vector>
 
 #include "renderer/base/math.h"
 #include "renderer/base/sampler.h"

@@ -1,7 +1,6 @@
 // Evaluates textures: functions from a point of a surface to a float or an RGB.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "renderer/base/math.h"
