@@ -118,28 +118,16 @@ void Film::Extract(const PixelRect& rect, bool withHalf, FilmView* view) const {
         }
 }
 
-template <typename Visit>
-void Film::ForEachPixel(Visit visit) const {
-    size_t i = 0;
-    for (const int row : rows)
-        for (const int column : columns) visit(i++, tiles.At({column, row}).count);
-}
-
 std::vector<float> Film::MeanImage() const {
     FilmView view;
     Extract(Region(), false, &view);
     return std::move(view.mean);
 }
 
-std::vector<float> Film::SppImage() const {
-    std::vector<float> image(sums.Pixels().size());
-    ForEachPixel([&](size_t i, uint32_t count) { image[i] = float(count); });
-    return image;
-}
-
 int64_t Film::SampleCount() const {
     int64_t n = 0;
-    ForEachPixel([&](size_t, uint32_t count) { n += count; });
+    for (const int row : rows)
+        for (const int column : columns) n += tiles.At({column, row}).count;
     return n;
 }
 

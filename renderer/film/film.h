@@ -75,9 +75,8 @@ class Film {
     // unless it is wanted. Throws std::logic_error if it is wanted and the film has no half.
     void Extract(const PixelRect& rect, bool withHalf, FilmView* view) const;
 
-    // Return the whole image (row-major RGB) and the samples each pixel had.
+    // Returns the whole image, row-major RGB.
     std::vector<float> MeanImage() const;
-    std::vector<float> SppImage() const;
     int64_t SampleCount() const;
     int64_t RejectedCount() const;
 
@@ -119,8 +118,6 @@ class Film {
     };
     using Sums = PixelPlane<std::array<double, 3>>;
 
-    template <typename Visit>
-    void ForEachPixel(Visit) const;
     Vec2i TileOf(const Vec2i& p) const {
         const Vec2i at = p - Region().min;
         return {columns[size_t(at.x())], rows[size_t(at.y())]};

@@ -213,6 +213,16 @@ std::vector<double> SettingsOf(const RecordedRule& rule) {
 // Runs a setting over block number `index`; without verdicts if `brief`.
 using Run = std::function<RuleOutcome(size_t index, double setting, bool brief)>;
 
+ViewpointOutcome OutcomeOf(std::span<const LabelledBlock> blocks, std::span<const size_t> begins,
+                           size_t v, double setting, const Run& run, bool brief) {
+    ViewpointOutcome viewpoint{.name = blocks[begins[v]].viewpoint, .setting = TextOf(setting)};
+    for (size_t i = begins[v]; i < begins[v + 1]; ++i)
+        viewpoint.blocks.push_back({.human = blocks[i].human,
+                                    .outcome = run(i, setting, brief),
+                                    .block = blocks[i].block});
+    return viewpoint;
+}
+
 std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
                                        std::span<const size_t> begins,
                                        std::span<const double> settings, const Run& run,
@@ -220,13 +230,8 @@ std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
     std::vector<std::vector<double>> costs;
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
         std::vector<double>& row = costs.emplace_back();
-        for (const double setting : settings) {
-            ViewpointOutcome viewpoint{.name = blocks[begins[v]].viewpoint};
-            for (size_t i = begins[v]; i < begins[v + 1]; ++i)
-                viewpoint.blocks.push_back(
-                    {.human = blocks[i].human, .outcome = run(i, setting, true)});
-            row.push_back(CostOf(viewpoint, chooseBy, grid));
-        }
+        for (const double setting : settings)
+            row.push_back(CostOf(OutcomeOf(blocks, begins, v, setting, run, true), chooseBy, grid));
     }
     return costs;
 }
@@ -246,15 +251,9 @@ EvaluatedRule EvaluateRival(const std::string& name, std::span<const LabelledBlo
                             const Run& run, ChooseBy chooseBy, int grid) {
     const auto costs = Costs(blocks, begins, settings, run, chooseBy, grid);
     EvaluatedRule rival{.name = name, .setting = TextOf(Best(costs, settings, -1))};
-    for (size_t v = 0; v + 1 < begins.size(); ++v) {
-        const double setting = Best(costs, settings, int(v));
-        ViewpointOutcome& viewpoint = rival.viewpoints.emplace_back(
-            ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = TextOf(setting)});
-        for (size_t i = begins[v]; i < begins[v + 1]; ++i)
-            viewpoint.blocks.push_back({.human = blocks[i].human,
-                                        .outcome = run(i, setting, false),
-                                        .block = blocks[i].block});
-    }
+    for (size_t v = 0; v + 1 < begins.size(); ++v)
+        rival.viewpoints.push_back(
+            OutcomeOf(blocks, begins, v, Best(costs, settings, int(v)), run, false));
     return rival;
 }
 
