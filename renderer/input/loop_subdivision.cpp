@@ -41,9 +41,8 @@ void FindTwins(HalfEdgeMesh* mesh, const FileLoc& loc) {
         while (end < keys.size() && keys[end].low == keys[i].low && keys[end].high == keys[i].high)
             ++end;
         const auto fail = [&](const char* what) {
-            throw Error(loc, "loopsubdiv: the edge between vertices " +
-                                 std::to_string(keys[i].low) + " and " +
-                                 std::to_string(keys[i].high) + what);
+            throw Error(loc, "loopsubdiv: the edge between vertices {} and {}{}", keys[i].low,
+                        keys[i].high, what);
         };
         if (end - i > 2) fail(" belongs to more than two faces");
         if (end - i == 2) {
@@ -68,12 +67,10 @@ HalfEdgeMesh MakeMesh(std::span<const float> p, std::span<const int> indices, co
     for (int h = 0; h < mesh.Edges(); ++h) {
         const int v = mesh.origin[h];
         if (v < 0 || size_t(v) >= mesh.p.size())
-            throw Error(loc, "loopsubdiv: index " + std::to_string(v) +
-                                 " is out of range, there are " + std::to_string(mesh.p.size()) +
-                                 " vertices");
+            throw Error(loc, "loopsubdiv: index {} is out of range, there are {} vertices", v,
+                        mesh.p.size());
         if (v == mesh.Target(h))
-            throw Error(loc, "loopsubdiv: face " + std::to_string(h / 3) + " repeats vertex " +
-                                 std::to_string(v));
+            throw Error(loc, "loopsubdiv: face {} repeats vertex {}", h / 3, v);
         mesh.leaving[v] = h;
     }
     FindTwins(&mesh, loc);

@@ -357,12 +357,10 @@ void CheckMesh(MeshData* mesh, const FileLoc& loc, Warnings& warnings) {
     for (size_t i = 0; i < mesh->triangles.size(); ++i)
         for (const uint32_t index : mesh->triangles[i]) {
             if (index >= mesh->positions.size())
-                throw Error(loc, "triangle " + std::to_string(i) + " refers to vertex " +
-                                     std::to_string(index) + ", but there are " +
-                                     std::to_string(mesh->positions.size()));
+                throw Error(loc, "triangle {} refers to vertex {}, but there are {}", i, index,
+                            mesh->positions.size());
             if (!mesh->positions[index].allFinite())
-                throw Error(loc,
-                            "vertex " + std::to_string(index) + " of the PLY file is not finite");
+                throw Error(loc, "vertex {} of the PLY file is not finite", index);
         }
     // The others are of no triangle; they must not widen the mesh.
     for (Vec3f& position : mesh->positions)

@@ -145,13 +145,11 @@ void PbrtBuilder::WorldBegin() {
 
 void PbrtBuilder::CheckScopes(const std::string& end) {
     if (!scopes.empty())
-        throw Error(loc, end + " where the " + ScopeName(int(scopes.back().kind)) +
-                             "Begin of line " + std::to_string(scopes.back().loc.line) +
-                             " is still open");
+        throw Error(loc, "{} where the {}Begin of line {} is still open", end,
+                    ScopeName(int(scopes.back().kind)), scopes.back().loc.line);
     if (currentObject >= 0)
-        throw Error(loc, end + " where the ObjectBegin of line " +
-                             std::to_string(description.objects[currentObject].loc.line) +
-                             " is still open");
+        throw Error(loc, "{} where the ObjectBegin of line {} is still open", end,
+                    description.objects[currentObject].loc.line);
 }
 
 void PbrtBuilder::EndWorld() {

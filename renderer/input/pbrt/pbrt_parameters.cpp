@@ -234,9 +234,8 @@ std::vector<float> ConvertRgb(std::vector<float> values, const Mat3f& rgbFromCol
 std::vector<float> ReadFloatsOf(const TypeName& type, PbrtLexer& lexer, const Token& owner) {
     std::vector<float> values = ReadFloats(lexer, owner);
     if (values.size() % type.multiple != 0)
-        throw Error(owner.loc, "parameter " + Describe(owner) + " has " +
-                                   std::to_string(values.size()) + " numbers, no multiple of " +
-                                   std::to_string(type.multiple));
+        throw Error(owner.loc, "parameter {} has {} numbers, no multiple of {}", Describe(owner),
+                    values.size(), type.multiple);
     return values;
 }
 
@@ -298,8 +297,7 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context,
                 parameter.values = ReadFloatsOf(type, lexer, owner);
         }
         if (parameters.All().size() == kMostParameters)
-            throw Error(owner.loc, "a directive has more than " + std::to_string(kMostParameters) +
-                                       " parameters");
+            throw Error(owner.loc, "a directive has more than {} parameters", kMostParameters);
         const bool isAgain = std::ranges::any_of(parameters.All(), [&](const Parameter& p) {
             return p.type == parameter.type && p.name == parameter.name;
         });

@@ -53,8 +53,7 @@ ExitCode CompareFiles(CompareOptions options) {
         throw Error(
             "compare: a scene is missing, or images: --reference and --automatic or --human");
     if (!options.human.empty() && !IsImageFile(options.human))
-        throw Error("--human " + options.human +
-                    ": thresholds need a scene; without one, an image");
+        throw Error("--human {}: thresholds need a scene; without one, an image", options.human);
     options.output = BeginningOfNames(options.output, "lull");
     CheckOutputs(OutputsOf(options, {}), InputsOf(options));
     const std::optional<FileLock> lock = LockOutput(options.output + ".compare.json");
