@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-
 #include "renderer/base/math.h"
 #include "renderer/files/file_io.h"
 #include "stopping/base/input_file.h"
