@@ -32,9 +32,8 @@ inline void Prefetch(const void* p) {
 }
 
 // Moves the memory of the process into pages of 2 MB where the system has them (Linux 6.1), so that
-// scattered reads need fewer address translations. Takes hardly any more memory: regions that are
-// not almost fully used stay in small pages. For programs, once a scene is loaded: a library should
-// not touch the memory of its host.
+// scattered reads need fewer address translations. Regions that are not almost fully used stay in
+// small pages. For programs alone, once a scene is loaded.
 void MoveIntoLargePages();
 
 // Zeros, which take memory only where they are written: page by page, or in pages of 2 MB if

@@ -74,9 +74,8 @@ class Bsdf {
     }
 
     // Returns f and the density with which Sample(wo, ., set) chooses wi; both 0 for specular
-    // lobes. Directions are world, unit, pointing away from the surface. As in pbrt-v3 the
-    // geometric normal decides between reflection and transmission, which keeps light from leaking.
-    // Both values are finite; where float cannot hold one, both are 0.
+    // lobes. Directions are world, unit, pointing away. As in pbrt-v3 the geometric normal decides
+    // between reflection and transmission. Where float cannot hold one value, both are 0.
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi, LobeSet set) const;
 
     // Makes Sample choose among LobeSet::All by the share of light that each lobe scatters to wo,

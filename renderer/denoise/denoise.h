@@ -2,8 +2,7 @@
 //
 // Colours are fitted to features (RegressTile()) twice: each half of the samples by weights from
 // the other half. Each filtered half is compared with the samples of the other, which measures blur
-// as well as residual noise. With more samples, weights become so selective that the result
-// converges to the mean of the samples.
+// as well as noise.
 #pragma once
 
 #include <functional>
@@ -76,10 +75,9 @@ inline constexpr int kChoiceReach = 11;  // pixels, from which a choice depends 
 // Returns for each half a mixture of the candidates, R, G, B; the last of them are the unfiltered
 // samples, `noisy`, with this variance of a pixel. The squared error of a candidate is that of the
 // other half, filtered, against the samples of this one, less the part explained by their noise:
-// unbiased, but noisy, so that it is averaged over some pixels, weighted by inverse noise. The
-// half that judges the result (visible_error.h) so has no part in the choice, which would
-// underestimate the error. The samples themselves are chosen only where all others are worse
-// beyond chance.
+// unbiased, but noisy, so that it is averaged. The half that judges the result (visible_error.h) so
+// has no part in the choice, which would underestimate the error. The samples themselves are chosen
+// only where all others are worse beyond chance.
 Halves ChooseCandidates(std::vector<Halves> candidates, const Halves& noisy,
                         const Planes& variance);
 
@@ -94,9 +92,8 @@ struct Firefly {
 // Scales down each pixel of a half (R, G, B) that is brighter than the same pixel of the other half
 // by more than `limit` times the standard deviation of such differences around, and brighter than
 // all of its neighbours are there, to that limit. The lesser half may be exceeded by as much more
-// as it is above the darkest neighbour: so a pixel bright in both halves, such as a glint, stays
-// unchanged. With more samples, the energy removed vanishes as their noise does. Values are finite
-// and not negative.
+// as it is above the darkest neighbour: so a pixel bright in both halves stays unchanged. Values
+// are finite and not negative.
 std::vector<Firefly> TakeFireflies(float limit, Halves*);
 
 // Adds them to a picture: each over the 81 x 81 pixels around, in proportion to their brightness
@@ -175,8 +172,7 @@ Planes WithCoarsePart(Planes fine, const Planes& coarse);
 // lines of 11 pixels and bars of 3 x 15 pixels around each pixel. A sum is structure where it is
 // more than 4.5 times as large as its standard deviation: by the variance of its pixels, by the
 // difference of the halves in them, or by that in the 7 x 7 pixels around each, whichever is
-// largest. So neither fireflies nor the gaps between them nor variances that are too small are
-// taken for structure.
+// largest.
 
 inline constexpr int kStructureReach = 10;  // pixels that decide on one, to each side
 

@@ -73,9 +73,8 @@ struct Estimate {
 };
 
 // Returns the samples' estimate. By Cauchy's inequality the square is at most mean(1 / w) mean(w
-// s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s).
-// Little is known of s itself, but much of its variances, which are correlated with it; noisier
-// sub-blocks get smaller weights, so that their uncertainty does not dominate.
+// s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s). By
+// variances, which go with s, noisier sub-blocks get smaller weights.
 Estimate FromSamples(std::span<const Squares> all) {
     const double n = double(all.size());
     double deviations = 0;

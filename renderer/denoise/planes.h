@@ -189,8 +189,7 @@ struct PatchOptions {
 
 // Measures, row by row of a tile and its border, the distance of the patches of two pixels: the
 // mean over patch and channels of (u - u')^2 / (v + v') - 1, which is 0 on average for patches that
-// differ by noise only. Where one of them has far more noise, v + v' is limited. Only the rows are
-// stored that the current one is compared with.
+// differ by noise only. Where one of them has far more noise, v + v' is limited.
 class PatchWeights {
   public:
     struct Offset {

@@ -72,9 +72,8 @@ std::shared_ptr<const ViewTransform> LoadView(const std::string& config, const s
 // half and float texels stay as they are, everything else becomes float (16-bit integers: 0 to 1).
 // Values are neither linearised nor multiplied by alpha. Of 4 or more channels the first 4 are read
 // if the last of these is alpha, else the first 3. An EXR's display window is the image, which is 0
-// outside the data window. Throws Error with the path and the reason: missing, unreadable,
-// truncated, larger than 2^16 a side, too short for its size, or a format whose module is not
-// installed.
+// outside the data window. Throws Error with the path and the reason, also for more than 2^16 a
+// side, or a format whose module is not installed.
 Image ReadImage(const std::string& path);
 
 // Reads an image from memory; `type` is the extension of its format, "png" or "jpg" for instance,

@@ -21,9 +21,8 @@ Rgb RgbFromXyz(double x, double y, double z);
 
 // Returns the RGB of a spectrum given as pairs (wavelength in nm, value), in any order, linear
 // between them and constant beyond: the integrals with the colour matching functions, scaled so
-// that a constant 1 has Y near 1. `warnings` receives one of spectra that no visible wavelength
-// has, such as those in micrometres. Throws Error at `loc` for no pairs, half a pair, and a result
-// beyond float's range.
+// that a constant 1 has Y near 1. Warns of spectra of no visible wavelength. Throws Error at `loc`
+// for no pairs, half a pair, and a result beyond float's range.
 Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc = {},
                    Warnings* warnings = nullptr);
 

@@ -70,8 +70,7 @@ class StopTrend {
 //
 // The error of a Monte Carlo estimate falls as a power of the samples, with the exponent -1/2 if
 // they are independent: in logarithms a line. It is fitted by the median of the slopes between any
-// two points (Theil 1950, Sen 1968), so that no single pass matters; where a block has shown little
-// of it, the slope of the other blocks counts for more.
+// two points (Theil 1950, Sen 1968), with the slope of other blocks where one has shown little.
 std::optional<std::vector<double>> PredictStops(std::span<const StopTrend> trends,
                                                 std::span<const Block> blocks, int cap);
 

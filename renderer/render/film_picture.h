@@ -17,8 +17,7 @@ inline constexpr uint32_t kLeastDenoisedSpp = 4;
 
 // Returns the pixels of a rectangle inside the film, which keeps its half and features. Where a
 // pixel has less than kLeastDenoisedSpp samples, one half of its colours is their mean, and the
-// other that of its neighbours; the denoiser's estimate of the error is too rough there to be used.
-// Where it has none, both are the film's first look.
+// other that of its neighbours. Where it has none, both are the film's first look.
 NoisyPicture PictureOf(const Film&, const PixelRect&);
 
 // The same for the light of groups, which keep what tells their noise. The picture reads the film,

@@ -43,8 +43,7 @@ struct LightHit {
 
 // Makes the ray from a surface point to a light's point; nothing where that is in shadow. Both ends
 // are moved off their surfaces; the factor keeps the light's own surface out (pbrt-v3's
-// ShadowEpsilon). Where that or rounding turns a grazing ray to the other side of the surface, it
-// would pass through: that is in shadow.
+// ShadowEpsilon). A grazing ray that this or rounding turns to the other side is in shadow.
 [[gnu::always_inline]] inline std::optional<Ray> ShadowRay(const SurfaceInteraction& hit,
                                                            const LightSample& light) {
     if (light.isAtInfinity) return hit.SpawnRay(light.wi);

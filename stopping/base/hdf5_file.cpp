@@ -43,8 +43,7 @@ void CheckHeap(std::span<const char> bytes) {
 
 // Throws std::runtime_error if an object in a global heap of the file, where texts of variable
 // length are kept, has no end: up to version 1.14 the library searches behind it for ever. Heaps
-// are found by their signature ("HDF5 File Format Specification", III.E), lengths have 8 bytes, as
-// writers have them by default.
+// are found by their signature ("HDF5 File Format Specification", III.E), lengths have 8 bytes.
 void CheckGlobalHeaps(std::FILE* file) {
     if (std::fseek(file, 0, SEEK_END) != 0) return;
     const long end = std::ftell(file);

@@ -27,10 +27,9 @@ Rule ReadLuxTile(const std::string& argument, const RuleContext& context);
 // Illumination, WSCG 2010). It estimates the error in square-root brightness. Reads both means.
 double DammertzError(const BlockView& view);
 
-// Stops a block when DammertzError() < threshold, > 0, or, `byArea`, that times
-// sqrt(block area / image area), as in the paper, whose recursive splitting so compares blocks of
-// different sizes. Our blocks are not split, and with that factor the same noise would be tolerated
-// more in a larger image.
+// Stops a block when DammertzError() < threshold, > 0, or, `byArea`, that times sqrt(block area /
+// image area), as in the paper, whose recursive splitting so compares blocks of different sizes.
+// Our blocks are not split: with it noise would be tolerated more in a larger image.
 Rule DammertzRule(double threshold, bool byArea = false);
 
 // Returns the error of a pixel as in Cycles' adaptive sampling: d / (0.0001 + g(s)), where g is
@@ -54,8 +53,7 @@ PixelErrors CyclesErrors(const BlockView& view);
 // means, clamp(x, 0, 1)^(1/2.2), as in LuxCore's tile test.
 //
 // LuxCore scales x by an exposure that it takes from the other tiles, in the order in which they
-// were finished. The scale here is 1: blocks stay independent, runs reproducible, and the image
-// is judged as it is displayed.
+// were finished. The scale here is 1: blocks stay independent, and runs reproducible.
 double LuxTileError(const BlockView& view);
 
 // Stops a block when LuxTileError() < threshold, from 32 spp on. LuxCore tests every second pass,

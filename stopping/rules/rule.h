@@ -53,8 +53,7 @@ class Criterion {
 
     // Adds the block after a pass and decides. To be called once after every pass, with increasing
     // spp, whatever Need() returns, and no more once it has answered stop. Throws
-    // std::invalid_argument if the spans that Need() asks for do not have the block's size, or if
-    // spp or the size contradict earlier calls.
+    // std::invalid_argument if spans, size or spp contradict Need() or earlier calls.
     virtual Decision Observe(const BlockView& view) = 0;
 
     // Returns the noise given to a network at the last check, if it has no other input: forecasts

@@ -114,10 +114,9 @@ void PoseChannel(double seconds, const tinygltf::Animation& animation,
 }
 
 // Gives all nodes that an animation moves the transforms and weights that it has at a time in
-// seconds, as if the file held these; before its first key and after its last one it stands still.
-// `wanted` is the name or the number, from 0, of an animation; empty: all together, with a warning
-// if some move the same, of which the first counts. Throws Error if there is none of that name, or
-// for keys that are wrong.
+// seconds; before its first key and after its last one it stands still. `wanted` is the name or the
+// number, from 0, of an animation; empty: all together, with a warning if some move the same, of
+// which the first counts. Throws Error if there is none of that name, or for keys that are wrong.
 void PoseAt(double seconds, const std::string& wanted, GltfDocument* document, Warnings& warnings) {
     std::map<std::pair<int, std::string>, size_t> posed;  // by which animation
     std::set<size_t> contradicting;

@@ -43,8 +43,7 @@ class PbrtLexer {
 
     // Take the next token if it is a number and return whether it was; T is float, double or int.
     // An int may be written as a float; *cut is set where that loses a fraction. Throw Error at a
-    // malformed number or one beyond the range of T. They never leave the current file, and copy
-    // nothing: most of a scene's text is numbers.
+    // malformed number or one beyond the range of T. They never leave the current file.
     bool TakeNumber(float* value);
     bool TakeNumber(double* value);
     bool TakeNumber(int* value, bool* cut);

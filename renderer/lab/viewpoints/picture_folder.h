@@ -85,10 +85,9 @@ struct PictureComparison {
 };
 
 // Shows the pictures, which come at the spp of the folder, to all rules; their context had the pass
-// of PassOfPictures(). Each block is taken from the picture at which the rule stopped it, or
-// the first that has as many spp as a rule that counts them says, or the last. Blocks too small for
-// a rule follow their neighbour. Reads a picture only where it is needed. Throws Error, also for a
-// rule that compares halves of the samples, which pictures do not have. Call Measure() for figures.
+// of PassOfPictures(). Each block is taken from the picture at which the rule stopped it, or the
+// first that has as many spp as a rule that counts them says, or the last. Blocks too small for a
+// rule follow their neighbour. Throws Error, also for a rule that compares halves of the samples.
 PictureComparison ComparePictures(const PictureFolder&, const ScheduleOptions&,
                                   std::vector<PictureRule> rules);
 

@@ -79,9 +79,8 @@ Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vec
                  const std::vector<Block>& blocks, const RenderIdentity&);
 
 // Renders all blocks to the cap, the study's last level, and fills in their pictures; records the
-// same samples for learning in `viewpoint`, unless that is null. Starts from nothing or from where
-// an interrupted render of the same study left film and state. The options have no rule. If it was
-// cancelled, the study is not complete. Throws as Render() does.
+// same samples for learning in `viewpoint`, unless that is null. Starts from film and state of an
+// interrupted render of the same study, if any. The options have no rule.
 RenderResult RenderStudy(RenderOptions, Study*, ViewpointRecording* viewpoint);
 
 }  // namespace lull

@@ -21,10 +21,9 @@ struct Texels {
     std::vector<T> values;  // rows from the bottom, channels interleaved
 };
 
-// An image ready for look-ups. The first row is the lowest, since texture space has (0, 0) at
-// the lower left. pbrt-v3 resamples images to powers of two first; here they keep their size and
-// the type of their texels: 8-bit ones are decoded by a table, halves by the processor. Only half
-// and float texels that have to be linearised are converted beforehand.
+// An image ready for look-ups. The first row is the lowest, since texture space has (0, 0) at the
+// lower left. pbrt-v3 resamples images to powers of two first; here they keep their size and the
+// type of their texels: 8-bit ones are decoded by a table, halves by the processor.
 struct TextureImage {
     int width = 0, height = 0;
     std::variant<Texels<uint8_t, 1>, Texels<uint8_t, 3>, Texels<Half, 1>, Texels<Half, 3>,

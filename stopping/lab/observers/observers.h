@@ -81,8 +81,7 @@ std::string ObserversCsv(const Collected& collected);
 
 // Returns the single answers of observers who count, as read by ReadSingleAnswers()
 // (evaluation/answer_scores.h) and `lull evaluate --answers`: for each adjustment, noise seen at
-// the levels that were left, and none at its end, with a number for the adjustment, as these
-// answers are steps on one path. Empty if there is none.
+// the levels that were left, and none at its end, with a number for the adjustment. May be empty.
 std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint);
 
 }  // namespace lull

@@ -61,8 +61,7 @@ std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& pat
 
 // Joins recordings, which must outlive the result, with the thresholds in the file `human`, less
 // the viewpoints in `without`; tells which have no thresholds. Throws std::runtime_error if no
-// block is left or they do not fit together, or for a name in `without` that is neither recorded
-// nor judged.
+// block is left, they do not fit, or for an unknown name in `without`.
 std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecording>& viewpoints,
                                               const std::string& human,
                                               const std::vector<std::string>& without,
