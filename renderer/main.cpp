@@ -21,7 +21,6 @@ namespace lull {
 
 namespace {
 
-// The subcommands that several ranks can share.
 constexpr std::array kSharedCommands = {"render", "compare", "record"};
 
 ExitCode Run(MpiJob* job, const Command& command) {
@@ -65,7 +64,6 @@ size_t Distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-// Returns the name that a word may have been meant to be; "" where none is near.
 std::string NearestName(const std::string& word, const std::vector<std::string>& names) {
     const auto nearest =
         std::ranges::min_element(names, {}, [&](const auto& name) { return Distance(word, name); });
@@ -74,8 +72,7 @@ std::string NearestName(const std::string& word, const std::vector<std::string>&
     return isNear ? *nearest : "";
 }
 
-// Returns what to use instead of a command or an option that there is no longer; "" where all
-// are known, or not known at all.
+// Returns what to use instead of a command or an option that was removed; "" where none was.
 std::string ProblemOfRemoved(std::span<const char* const> words) {
     for (const std::string_view word : words.subspan(1))
         for (const Removed& removed : kRemoved)
@@ -89,14 +86,12 @@ std::string ProblemOfRemoved(std::span<const char* const> words) {
     return "";
 }
 
-// Names that other programs have for options.
 constexpr std::pair<const char*, const char*> kElsewhere[] = {{"--samples", "--spp"},
                                                               {"--res", "--resolution"},
                                                               {"--size", "--resolution"},
                                                               {"--tile", "--block"},
                                                               {"--noise-threshold", "--caution"}};
 
-// Returns which command a word may have been meant to be; "" where it is one, or an option.
 std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
@@ -110,8 +105,7 @@ std::string ProblemOfCommand(const CLI::App& app, const std::string& word) {
     return fmt::format("{}; there are {}", start, fmt::join(names, ", "));
 }
 
-// Returns which option has a list with an empty entry, which the parser would drop; "" where none
-// has.
+// Returns which option has an empty entry in its list, which the parser would drop; "": none.
 std::string ProblemOfLists(const CLI::App& command, std::span<const char* const> words) {
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string word = words[i], name = word.substr(0, word.find('='));
@@ -126,8 +120,7 @@ std::string ProblemOfLists(const CLI::App& command, std::span<const char* const>
     return "";
 }
 
-// Returns why the words of a command cannot be read, and which option one may have been meant to
-// be.
+// Returns why the words of a command cannot be read, and which option may have been meant.
 std::string ProblemOfUsage(const CLI::App& app, const CLI::ParseError& error) {
     const auto given = app.get_subcommands();
     const CLI::App& command = given.empty() ? app : *given.front();

@@ -6,7 +6,6 @@
 
 namespace lull {
 
-// Returns the wall-clock time since `start`.
 inline double SecondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

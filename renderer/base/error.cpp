@@ -18,7 +18,6 @@ std::string FileLoc::Prefix() const {
 
 namespace {
 
-// Returns a line of UTF-8 with " ... " in place of its middle where it is longer than `most` bytes.
 std::string WithoutMiddle(const std::string& line, size_t most) {
     if (line.size() <= most) return line;
     size_t begin = line.size() - most / 2;
@@ -26,8 +25,7 @@ std::string WithoutMiddle(const std::string& line, size_t most) {
     return BeginningOf(line, most / 2) + " ... " + line.substr(begin);
 }
 
-// Returns the bytes of the character of UTF-8 that a text begins with; 0 if it is none, or a
-// control character.
+// Returns the bytes of a text's first character in UTF-8; 0 if it is none, or a control one.
 size_t PrintedBytes(std::string_view text) {
     const auto first = static_cast<unsigned char>(text[0]);
     const size_t bytes = CharacterBytes(text);
@@ -62,8 +60,6 @@ std::string OneLine(const std::string& text, size_t most) {
 
 namespace {
 
-// Returns a phrase with "..." in place of all that it quotes. An apostrophe within a word does not
-// quote.
 std::string WithoutQuotes(const std::string& phrase) {
     std::string text;
     for (size_t i = 0; i < phrase.size(); ++i) {
@@ -179,6 +175,11 @@ std::string ToUtf8(std::string_view text) {
         text.remove_prefix(std::max<size_t>(bytes, 1));
     }
     return utf8;
+}
+
+std::string LowerCase(std::string text) {
+    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return text;
 }
 
 std::string BeginningOf(const std::string& text, size_t most) {

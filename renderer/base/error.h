@@ -41,7 +41,6 @@ class Error : public std::runtime_error {
     explicit Error(const std::string& message) : std::runtime_error(message) {}
     Error(const FileLoc& loc, const std::string& message)
         : std::runtime_error(loc.Prefix() + message), loc(loc) {}
-    // Formats the message.
     template <typename First, typename... Others>
     Error(fmt::format_string<First, Others...> format, First&& first, Others&&... others)
         : Error(fmt::format(format, std::forward<First>(first), std::forward<Others>(others)...)) {}
@@ -64,9 +63,8 @@ class Errors : public Error {
 };
 
 // Collects the messages on a scene: warnings, and errors after which the rest of the scene can
-// still be checked. Of each kind of warning the first is passed on at once, and all are counted.
-// Kinds that differ only in quoted names are alike, and at most kMostAlike of them are passed
-// on. Thread-safe.
+// still be checked. Of each kind of warning the first is passed on at once, and all are counted. Of
+// kinds that differ only in quoted names kMostAlike at most are passed on. Thread-safe.
 class Warnings {
   public:
     using Sink = std::function<void(const std::string&)>;
@@ -111,7 +109,6 @@ class Warnings {
     // are; they are kept no longer. Does nothing where there is none.
     void ThrowErrors();
 
-    // Returns how often each kind occurred.
     std::map<std::string, int> Counts() const;
     int Total() const;
 
@@ -149,7 +146,6 @@ void PrintTo(std::FILE* stream, fmt::format_string<Args...> format, Args&&... ar
     }
 }
 
-// Prints to stderr.
 template <typename... Args>
 void PrintToStderr(fmt::format_string<Args...> format, Args&&... args) {
     PrintTo(stderr, format, std::forward<Args>(args)...);
@@ -167,6 +163,9 @@ size_t CharacterBytes(std::string_view text);
 
 // Returns the text with U+FFFD in place of NUL, and of each byte that belongs to no character.
 std::string ToUtf8(std::string_view text);
+
+// Returns the text with the letters of ASCII in lower case.
+std::string LowerCase(std::string text);
 
 // Returns the beginning of a text in UTF-8, of up to `most` bytes, without part of a character.
 std::string BeginningOf(const std::string& text, size_t most);

@@ -23,8 +23,7 @@ using Vec3f = Eigen::Vector3f;
 using Vec2i = Eigen::Vector2i;
 using Vec3i = Eigen::Vector3i;
 using Mat3f = Eigen::Matrix3f;
-// Transforms are composed in double, so that long chains of directives lose nothing, and applied
-// in float.
+// Composed in double, so that long chains of directives lose nothing, and applied in float.
 using Mat4d = Eigen::Matrix4d;
 // Represents linear RGB (sRGB primaries); Array, so that products and quotients are per channel.
 using Rgb = Eigen::Array3f;
@@ -81,7 +80,6 @@ inline bool IsFinite(const Rgb& c) {
     return std::isfinite(c.x()) && std::isfinite(c.y()) && std::isfinite(c.z());
 }
 
-// Returns v turned to the side of `reference`.
 inline Vec3f FaceForward(const Vec3f& v, const Vec3f& reference) {
     return v.dot(reference) < 0 ? Vec3f(-v) : v;
 }
@@ -163,8 +161,7 @@ inline std::optional<double> InRange(double x, double least, double most) {
     return std::clamp(x, least, most);
 }
 
-// Returns a field of view in degrees, in (0, 180]; for 180, which needs an infinite image plane,
-// 179.94. Nothing for all other numbers.
+// Returns degrees in (0, 180]; for 180, an infinite image plane, 179.94. Nothing for other numbers.
 inline std::optional<double> FieldOfView(double degrees) {
     constexpr double kWidest = 179.94;
     const auto inRange = InRange(degrees, 0, 180);
@@ -172,8 +169,7 @@ inline std::optional<double> FieldOfView(double degrees) {
     return *inRange < 180 ? *inRange : kWidest;
 }
 
-// Returns x, and 0 for what rounding a 0 could leave below it; nothing for negative numbers and
-// NaN.
+// Returns x, 0 for what rounding a 0 could leave below it; nothing for negative numbers, NaN.
 inline std::optional<double> NotNegative(double x) {
     if (!(x >= -kRounding)) return {};
     return std::max(x, 0.0);
@@ -199,7 +195,6 @@ struct RgbImage {
 
 // Converts between linear RGB, luminance and display values.
 
-// Returns the luminance Y of linear sRGB.
 inline float Luminance(const Rgb& c) { return Luminance(c.x(), c.y(), c.z()); }
 
 // Maps linear [0, 1] to the sRGB transfer curve (IEC 61966-2-1).
@@ -207,7 +202,6 @@ inline float SrgbFromLinear(float v) {
     return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }
 
-// Inverts SrgbFromLinear.
 inline float LinearFromSrgb(float v) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }

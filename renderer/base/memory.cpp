@@ -18,7 +18,6 @@ namespace {
 
 constexpr int64_t kUnknown = std::numeric_limits<int64_t>::max();
 
-// Reads one number from a file of the system; kUnknown if there is none, as in "max".
 int64_t NumberIn(const char* path) {
     std::ifstream in(path);
     int64_t number;
@@ -50,14 +49,12 @@ constexpr uintptr_t kLargePage = uintptr_t(1) << 21;
 
 uintptr_t RoundedUp(uintptr_t at) { return (at + kLargePage - 1) / kLargePage * kLargePage; }
 
-// A range of addresses that belongs to no file.
 struct AnonymousRange {
     uintptr_t begin, end;
     uintptr_t kibibytesInUse;
 };
 
-// Lists the anonymous memory of the process. Addresses that are only reserved, as sanitizers do by
-// the terabyte, are not in use.
+// Addresses that are only reserved, as sanitizers do by the terabyte, are not in use.
 std::vector<AnonymousRange> AnonymousRanges() {
     std::vector<AnonymousRange> ranges;
     std::ifstream in("/proc/self/smaps");
@@ -76,7 +73,6 @@ std::vector<AnonymousRange> AnonymousRanges() {
     return ranges;
 }
 
-// Returns whether nine tenths of a large page's addresses are in memory.
 bool IsNearlyAllInUse(uintptr_t at, std::vector<unsigned char>* pages) {
     if (mincore(reinterpret_cast<void*>(at), kLargePage, pages->data()) != 0) return false;
     const auto inUse =

@@ -15,13 +15,12 @@
 
 namespace lull {
 
-// Returns the number of bytes that can still be allocated: the memory available in the system,
-// within the limits of this process (ulimit -v) and of its group (containers). A very large number
-// if unknown.
+// Returns the number of bytes that can still be allocated: by the system, this process (ulimit -v)
+// and its group (containers). A very large number if unknown.
 int64_t AvailableMemory();
 
-// Throws Error if that is less than `bytes`: "<what> needs 27.0 GB of memory, 11.3 GB are
-// available; <remedy>".
+// Throws Error if `bytes` is more: "<what> needs 27.0 GB of memory, 11.3 GB are available;
+// <remedy>".
 void CheckMemory(int64_t bytes, const std::string& what, const std::string& remedy,
                  const FileLoc& loc = {});
 
@@ -33,9 +32,8 @@ inline void Prefetch(const void* p) {
 }
 
 // Moves the memory of the process into pages of 2 MB where the system has them (Linux 6.1), so that
-// scattered reads need fewer address translations. Takes hardly any more memory: regions that are
-// not almost fully used stay in small pages. For programs, once a scene is loaded: a library should
-// not touch the memory of its host.
+// scattered reads need fewer address translations. Regions that are not almost fully used stay in
+// small pages. For programs alone, once a scene is loaded.
 void MoveIntoLargePages();
 
 // Zeros, which take memory only where they are written: page by page, or in pages of 2 MB if
@@ -59,9 +57,8 @@ class LazyZeros {
 
 // Vectors of zeros that take memory only where they are written, and give it back in parts.
 
-// Allocates zeros for a std::vector whose size never changes: its values are 0 at first, and where
-// they are many, they take memory only where they are written, page by page. For types whose
-// default has no bit set.
+// Allocates zeros for a std::vector whose size never changes: many take memory only where they are
+// written, page by page. For types whose default has no bit set.
 template <typename T>
 struct ZeroAllocator {
     using value_type = T;

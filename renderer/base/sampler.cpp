@@ -1,7 +1,5 @@
 #include "renderer/base/sampler.h"
 
-#include "renderer/base/hash.h"
-
 namespace lull {
 namespace {
 
@@ -53,8 +51,7 @@ void Sampler::StartSample(const Vec2i& pixel, uint32_t sampleIndex) {
 // Pads independent two-dimensional Owen-scrambled Sobol sets: the index is shuffled again for each
 // pair, which keeps every pair a (0,2)-sequence over the samples of a pixel (Burley 2020). To
 // scramble a number is to reverse its bits, permute and reverse them back; the first dimension is
-// itself the reversed index, and of the second only the last reversal remains. Pairs are
-// independent, so that the compiler can make all of them at once.
+// itself the reversed index, and of the second only the last reversal remains.
 void Sampler::MakePairs() {
     for (uint32_t i = 0; i < kPairs; ++i) {
         const uint64_t h = MixBits(state + 0x9e3779b97f4a7c15ull * (dimension + i + 1));

@@ -9,6 +9,7 @@
 
 #include "renderer/base/math.h"
 #include "renderer/base/variant.h"
+#include "stopping/base/hash.h"
 
 namespace lull {
 
@@ -40,22 +41,16 @@ class Sampler {
     void StartSample(const Vec2i& pixel, uint32_t index);
 
     // Return the next one or two dimensions, each in [0, 1).
-    float Get1D() { return kind == SamplerKind::Random ? Random1D() : Sobol1D(); }
+    float Get1D() { return kind == SamplerKind::Random ? UnitFloat(NextRandom()) : xs[NextPair()]; }
     Vec2f Get2D() { return kind == SamplerKind::Random ? Random2D() : Sobol2D(); }
 
   private:
     // Advances SplitMix64 (Steele, Lea, Flood 2014): a counter through a mixing function, so that
     // each number costs two multiplications, and starting a sample a hash.
-    uint64_t NextRandom() {
-        uint64_t z = (state += 0x9e3779b97f4a7c15ull);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-        return z ^ (z >> 31);
-    }
-    float Random1D() { return float(NextRandom() >> 40) * 0x1p-24f; }
+    uint64_t NextRandom() { return MixBits(state += 0x9e3779b97f4a7c15ull); }
     Vec2f Random2D() {
         const uint64_t r = NextRandom();
-        return {float(r >> 40) * 0x1p-24f, float((r >> 8) & 0xffffff) * 0x1p-24f};
+        return {UnitFloat(r), float((r >> 8) & 0xffffff) * 0x1p-24f};
     }
     // Sobol: returns the index of the next pair among those made.
     uint32_t NextPair() {
@@ -65,12 +60,10 @@ class Sampler {
         }
         return nextPair++;
     }
-    float Sobol1D() { return xs[NextPair()]; }
     Vec2f Sobol2D() {
         const uint32_t i = NextPair();
         return {xs[i], ys[i]};
     }
-    // Makes the next kPairs pairs of dimensions.
     void MakePairs();
 
     static constexpr uint32_t kPairs = 8;

@@ -58,7 +58,6 @@ Distribution2D::Distribution2D(std::span<const float> values, int columns, int r
 BlockDistribution::BlockDistribution(int columns, int rows, const Weigh& weigh, float tolerance)
     : columns(columns), rows(rows) {
     const int across = (columns + kSide - 1) / kSide, down = (rows + kSide - 1) / kSide;
-    // Cells that fill up the last blocks have no weight.
     const int stride = across * kSide;
     std::vector<float> strip(size_t(stride) * kSide);
     const auto weighStrip = [&](int block) {
@@ -93,7 +92,6 @@ BlockDistribution::BlockDistribution(int columns, int rows, const Weigh& weigh, 
     blocks = Distribution2D(means, across, down);
     if (total > 0) scale = float(double(columns) * rows / Sqr(kSide));
 
-    // Leave out as many tables as the tolerance allows.
     std::vector<int> order(count);
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),

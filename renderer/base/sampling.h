@@ -14,8 +14,7 @@ struct SineCosine {
     float sine, cosine;
 };
 
-// Returns sine and cosine of an angle in [-pi/4, pi/4], with errors below 1e-7 (the polynomials of
-// Cephes, Moshier 1989).
+// Takes an angle in [-pi/4, pi/4]; errors are below 1e-7 (polynomials of Cephes, Moshier 1989).
 inline SineCosine SineCosineOf(float angle) {
     const float z = Sqr(angle);
     const float s = (-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f;
@@ -43,8 +42,7 @@ inline Vec2f SampleConcentricDisk(const Vec2f& u) {
     return r * (isWide ? Vec2f(c, s) : Vec2f(s, c));
 }
 
-// Maps the unit square to the hemisphere around +z, up to the angle to it of this sine, with
-// density cos(theta) / (pi sine^2).
+// Maps the unit square to directions up to this sine from +z; density: cos(theta) / (pi sine^2).
 inline Vec3f SampleCosineHemisphere(const Vec2f& u, float sine = 1) {
     const Vec2f d = sine * SampleConcentricDisk(u);
     return {d.x(), d.y(), SafeSqrt(1 - d.squaredNorm())};
@@ -92,8 +90,7 @@ struct DistributionTables {
         const int entries = EntriesFor(count);
         return guide[std::min(int(u * float(entries)), entries - 1)];
     }
-    // Returns the i with cdf[i] <= u < cdf[i + 1], from Begin(u) onwards (cutpoint method, Chen and
-    // Asau 1974).
+    // Returns the i with cdf[i] <= u < cdf[i + 1], from Begin(u) onwards (Chen and Asau 1974).
     int FindFrom(int begin, float u) const {
         int i = begin;
         while (cdf[i + 1] <= u && i < count - 1) ++i;
@@ -115,9 +112,7 @@ class Distribution1D {
     explicit Distribution1D(std::span<const float> values);
 
     int Count() const { return int(cdf.size()) - 1; }
-    // Returns the mean of the values.
     float Integral() const { return integral; }
-    // Returns the probability of choosing element i.
     float Pmf(int i) const { return cdf[i + 1] - cdf[i]; }
     // Returns the density at x in [0, 1).
     float Pdf(float x) const { return Pmf(std::clamp(int(x * Count()), 0, Count() - 1)) * Count(); }
@@ -201,8 +196,7 @@ inline std::optional<SplineWeights> WeightsAt(std::span<const float> nodes, floa
     const float x0 = nodes[k], x1 = nodes[k + 1], width = x1 - x0;
     const float t = (x - x0) / width, t2 = t * t, t3 = t2 * t;
     SplineWeights s{k - 1, {0, 2 * t3 - 3 * t2 + 1, 3 * t2 - 2 * t3, 0}};
-    // The slopes at both ends are differences of the neighbours, one-sided at the first and last
-    // node.
+    // Slopes are differences of the neighbours, one-sided at the first and last node.
     const float atStart = t3 - 2 * t2 + t, atEnd = t3 - t2;
     if (k > 0) {
         const float slope = atStart * width / (x1 - nodes[k - 1]);
@@ -352,8 +346,7 @@ class BlockDistribution {
         return tables[size_t(block.y()) * size_t(blocks.Columns()) + block.x()];
     }
     static float Pmf(const Sums& sums, int i) { return i == 0 ? sums[0] : sums[i] - sums[i - 1]; }
-    // Chooses an element; `u` in [0, 1) becomes the place in it, and `pmf` is multiplied by its
-    // probability.
+    // `u` in [0, 1) becomes the place in the element, and `pmf` is multiplied by its probability.
     static int Choose(const Sums& sums, float* u, float* pmf) {
         int i = 0;
         for (int k = 0; k < kSide - 1; ++k) i += sums[k] <= *u;

@@ -22,7 +22,6 @@ constexpr bool ReflectsAgain() {
     return IsMirrorLike<L>() && !L::kIsSpecular && !std::is_same_v<L, FresnelBlend>;
 }
 
-// Returns whether light goes to the side of the geometric normal that the lobe means.
 template <typename L>
 bool KeepsSide(bool reflects, bool sameHemisphere) {
     if constexpr (requires { L::kTellsSides; })

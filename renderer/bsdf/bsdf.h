@@ -22,19 +22,17 @@ struct BsdfSample {
 
 // A shading normal that is tilted may send a mirror's light below the surface. Light to such a
 // direction wo is scattered in a turned frame, if that is wanted: its normal lies between both
-// normals, where the mirror direction just stays above, as in Cycles. Glossy light that is still
-// scattered below is reflected at the surface once more, so that none is lost. Diffuse lobes alone
-// are pbrt-v3's.
+// normals, where the mirror direction just stays above, as in Cycles. Glossy light still scattered
+// below is reflected once more. Diffuse lobes alone are pbrt-v3's.
 
 class Bsdf {
   public:
     static constexpr int kMaxLobes = 8;  // as pbrt-v3; materials that could need more are refused
 
-    // Takes the orthonormal shading frame, the geometric normal (both world) and the relative
-    // index of refraction across the surface (1 for opaque surfaces), which only the radiance
-    // scale of paths through it needs.
-    // `turnsNormal` says whether the shading normal is turned where it would reflect into the
-    // surface.
+    // Takes the orthonormal shading frame, the geometric normal (both world) and the relative index
+    // of refraction across the surface (1 for opaque surfaces), which only the radiance scale of
+    // paths through it needs. `turnsNormal` turns the shading normal where it would reflect into
+    // the surface.
     Bsdf(const Frame& shading, const Vec3f& ng, float eta = 1, bool turnsNormal = false)
         : shading(shading),
           ng(ng),
@@ -64,8 +62,7 @@ class Bsdf {
     int LobeCount(LobeSet set) const {
         return set == LobeSet::All ? lobeCount : lobeCount - specularCount;
     }
-    // Returns whether light from the other side of the surface can be scattered to this one, other
-    // than by specular lobes.
+    // Returns whether lobes not specular can scatter light from the other side to this one.
     bool Transmits() const;
     const Lobe& At(int i) const { return lobes[i]; }
     float Eta() const { return eta; }
@@ -77,9 +74,8 @@ class Bsdf {
     }
 
     // Returns f and the density with which Sample(wo, ., set) chooses wi; both 0 for specular
-    // lobes. Directions are world, unit, pointing away from the surface. As in pbrt-v3 the
-    // geometric normal decides between reflection and transmission, which keeps light from leaking.
-    // Both values are finite; where float cannot hold one, both are 0.
+    // lobes. Directions are world, unit, pointing away. As in pbrt-v3 the geometric normal decides
+    // between reflection and transmission. Where float cannot hold one value, both are 0.
     BsdfValue Evaluate(const Vec3f& wo, const Vec3f& wi, LobeSet set) const;
 
     // Makes Sample choose among LobeSet::All by the share of light that each lobe scatters to wo,
@@ -109,8 +105,7 @@ class Bsdf {
         const float mirrored = 2 * cosine * alongNg - geometric;
         return (geometric < 0 ? -mirrored : mirrored) < LeastHeight(std::abs(geometric));
     }
-    // Returns the cosine with the geometric normal that a mirror direction has at least; directions
-    // may always leave as flat as they come.
+    // Returns a mirror direction's least cosine with the geometric normal; it may be as flat as wo.
     static float LeastHeight(float geometric) { return std::min(0.9f * geometric, 0.01f); }
     Frame TurnedFrame(const Vec3f& wo) const;
     Bsdf Turned(const Vec3f& wo) const;
@@ -121,8 +116,7 @@ class Bsdf {
                            LobeSet set) const;
     std::optional<BsdfSample> SampleHere(const Vec3f& wo, const Vec3f& woWorld, const Vec2f& u,
                                          LobeSet set) const;
-    // `below` is the local direction that the surface reflects to wi, where light is scattered to
-    // it; null where there is none.
+    // `below` is the local direction that the surface reflects to wi; null where there is none.
     BsdfValue EvaluateLocal(const Vec3f& wo, const Vec3f& wi, const Vec3f* below, bool reflects,
                             LobeSet set) const;
 

@@ -1,30 +1,25 @@
 #include "renderer/bsdf/coat.h"
+#include "stopping/base/hash.h"
 
 #include <bit>
 #include <optional>
 
-#include "renderer/base/hash.h"
-
 namespace lull {
 namespace {
 
-// Returns |cos| of a direction of this cosine in the coat.
 float CosineInside(float cosine, float eta) {
     return std::sqrt(std::max(1 - (1 - Sqr(cosine)) / Sqr(eta), 1e-12f));
 }
 
-// Returns Smith's auxiliary function.
 float Lambda(const TrowbridgeReitz& distribution, const Vec3f& w) {
     return 0.5f * (distribution.Stretch(w) / std::abs(w.z()) - 1);
 }
 
-// Returns G(v, w) / G1(v), the weight of a normal that is visible from v.
 float MaskingOfSecond(const TrowbridgeReitz& d, const Vec3f& v, const Vec3f& w) {
     const float first = 1 + Lambda(d, v);
     return first / (first + Lambda(d, w));
 }
 
-// A point set in the unit cube (Roberts 2018).
 Vec3f LatticePoint(int i) {
     const auto fraction = [](double x) { return float(x - std::floor(x)); };
     return {fraction(0.5 + 0.8191725133961645 * i), fraction(0.5 + 0.6710436067037893 * i),
@@ -39,7 +34,6 @@ constexpr int kRows = 33;  // of rough coats
 
 float AlphaOfRow(int i) { return std::max(1e-3f, Sqr(float(i) / (kRows - 1))); }
 
-// Random numbers that two directions determine.
 class WalkNumbers {
   public:
     WalkNumbers(const Vec3f& wo, const Vec3f& wi) {
@@ -66,7 +60,6 @@ TrowbridgeReitz DistributionOf(const uint16_t (&alpha)[2]) {
 }
 bool IsSmooth(const uint16_t (&alpha)[2]) { return alpha[0] == 0 && alpha[1] == 0; }
 
-// Both interfaces of a coated conductor. Directions are above the base, but those that say so.
 class ConductorWalk {
   public:
     explicit ConductorWalk(const CoatedConductorLobe& lobe)
@@ -78,7 +71,6 @@ class ConductorWalk {
           isCoatSmooth(IsSmooth(lobe.coatAlpha)),
           isBaseSmooth(IsSmooth(lobe.baseAlpha)) {}
 
-    // Returns an estimate of f by light that reaches the base, from wi to wo.
     Rgb Estimate(const Vec3f& wo, const Vec3f& wi, WalkNumbers& numbers) const {
         const auto enter = Enter(wo, numbers), leave = Enter(wi, numbers);
         if (!enter || !leave) return Rgb::Zero();
@@ -106,7 +98,6 @@ class ConductorWalk {
                 const float weight = isBaseSmooth ? 1 : Power(bounce->pdf, pdf);
                 f += beta * (Attenuation(w) * through * weight);
             }
-            // Back down from the coat.
             beta *= Attenuation(w);
             const auto back = ReflectInside(w, numbers);
             if (!back) break;
@@ -116,7 +107,6 @@ class ConductorWalk {
         return f;
     }
 
-    // Returns f of the coat's own reflection.
     float Reflected(const Vec3f& wo, const Vec3f& wi) const {
         if (isCoatSmooth) return 0;
         const Vec3f h = wo + wi;
@@ -142,7 +132,6 @@ class ConductorWalk {
     static float Power(float a, float b) { return a > 0 ? Sqr(a) / (Sqr(a) + Sqr(b)) : 0; }
     float Attenuation(const Vec3f& w) const { return lull::Attenuation(thickness, w); }
 
-    // Lets light from above through the coat.
     std::optional<Crossing> Enter(const Vec3f& w, WalkNumbers& numbers) const {
         const Vec2f u = numbers.Get2D();
         const Vec3f h = isCoatSmooth ? Vec3f(Vec3f::UnitZ()) : coat.SampleVisibleNormal(w, u);
@@ -175,7 +164,6 @@ class ConductorWalk {
         return Reflection{out, Rgb::Constant(weight), 0};
     }
 
-    // Reflects at the base: w and the result both point up, towards the light's way back and on.
     std::optional<Reflection> Bounce(const Vec3f& w, WalkNumbers& numbers) const {
         const Vec2f u = numbers.Get2D();
         const Vec3f h = isBaseSmooth ? Vec3f(Vec3f::UnitZ()) : base.SampleVisibleNormal(w, u);

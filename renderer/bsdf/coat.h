@@ -51,9 +51,8 @@ struct CoatInterface {
     float operator()(float cosine) const { return FresnelDielectric(std::abs(cosine), eta); }
 };
 
-// A diffuse base under a coat, and the reflection of the coat where that is rough. The crossings
-// are independent of each other, so that the light to and fro is a geometric series (five terms of
-// it, where pbrt-v4's walk ends).
+// A diffuse base under a coat, and the reflection of the coat where that is rough. Crossings are
+// independent, so that light to and fro is a geometric series (five terms, as pbrt-v4's walk).
 struct CoatedDiffuseLobe {
     static constexpr bool kIsSpecular = false, kTransmits = false;
     StoredRgb base;  // albedo, in [0, 1]

@@ -8,9 +8,8 @@ namespace {
 constexpr int kCosines = 32, kRoughnesses = 16;
 using Table = float[kRoughnesses][kCosines];
 
-// Integrals over 400 x 400 visible normals each, of f cos / pdf with 1 - (1 - cos)^5 and with
-// (1 - cos)^5 for the reflectance. Rows: the square root of alpha from 0 to 1. Columns: the square
-// root of the cosine from 0 to 1.
+// Integrals over 400 x 400 visible normals each, of f cos / pdf with 1 - (1 - cos)^5 and with (1 -
+// cos)^5 for the reflectance. Rows: sqrt(alpha) from 0 to 1. Columns: sqrt(cosine) from 0 to 1.
 constexpr Table kOfF0 = {
     {0.027234f, 0.017485f, 0.024419f, 0.047679f, 0.081467f, 0.12406f, 0.17416f, 0.2305f,
      0.29167f,  0.35626f,  0.42279f,  0.48981f,  0.55593f,  0.61983f, 0.68035f, 0.73651f,
@@ -169,25 +168,31 @@ constexpr float kMeanOfF90[kRoughnesses] = {0.0477837f,  0.0476552f,  0.0464072f
                                             0.0165212f,  0.012765f,   0.00981358f, 0.00754115f,
                                             0.00581187f, 0.00450308f, 0.0035134f,  0.00276321f};
 
-// A place between two nodes.
 struct Place {
     int i;
     float t;
 };
 
-// `x2` is the square of the variable in which nodes are even.
-Place PlaceOf(float x2, int nodes) {
-    const float x = std::sqrt(std::clamp(x2, 0.f, 1.f)) * float(nodes - 1);
+// `x` in [0, 1] is the variable in which nodes are even.
+Place PlaceAt(float x, int nodes) {
+    x *= float(nodes - 1);
     const int i = std::min(int(x), nodes - 2);
     return {i, x - float(i)};
 }
+Place PlaceOf(float x2, int nodes) { return PlaceAt(std::sqrt(std::clamp(x2, 0.f, 1.f)), nodes); }
 
-constexpr int kSheenCosines = 24, kSheenRoughnesses = 16;
+template <int columns>
+float Between(const float (&table)[kRoughnesses][columns], const Place& r, const Place& c) {
+    const float *row = table[r.i] + c.i, *next = table[r.i + 1] + c.i;
+    return Lerp(r.t, Lerp(c.t, row[0], row[1]), Lerp(c.t, next[0], next[1]));
+}
+
+constexpr int kSheenCosines = 24;
 constexpr float kLeastRoughness = 0.1f;  // the root of CharlieSheen::kLeastAlpha
 
 // Integrals of f cos over 2000 cosines, denser at grazing angles, and 400 azimuths. Rows: the
 // square root of alpha from 0.1 to 1. Columns: the square root of the cosine from 0 to 1.
-constexpr float kSheenAlbedos[kSheenRoughnesses][kSheenCosines] = {
+constexpr float kSheenAlbedos[kRoughnesses][kSheenCosines] = {
     {2.1079f, 2.1271f, 1.9979f, 1.7072f, 1.3827f, 1.0742f, 0.8026f, 0.5758f,
      0.3949f, 0.2574f, 0.1581f, 0.0906f, 0.0479f, 0.0230f, 0.0098f, 0.0036f,
      0.0011f, 0.0003f, 0.0001f, 0.0000f, 0.0000f, 0.0000f, 0.0000f, 0.0000f},
@@ -242,11 +247,7 @@ constexpr float kSheenAlbedos[kSheenRoughnesses][kSheenCosines] = {
 
 GgxAlbedo DirectionalAlbedo(float cosine, float alpha) {
     const Place c = PlaceOf(cosine, kCosines), r = PlaceOf(alpha, kRoughnesses);
-    const auto at = [&](const Table& table) {
-        const float *row = table[r.i] + c.i, *next = table[r.i + 1] + c.i;
-        return Lerp(r.t, Lerp(c.t, row[0], row[1]), Lerp(c.t, next[0], next[1]));
-    };
-    return {at(kOfF0), at(kOfF90)};
+    return {Between(kOfF0, r, c), Between(kOfF90, r, c)};
 }
 
 GgxAlbedo MeanAlbedo(float alpha) {
@@ -257,14 +258,8 @@ GgxAlbedo MeanAlbedo(float alpha) {
 
 float SheenAlbedo(float cosine, float alpha) {
     const float roughness = std::sqrt(alpha);
-    const float x = std::sqrt(std::clamp(cosine, 0.f, 1.f)) * (kSheenCosines - 1);
-    const float y = std::clamp((roughness - kLeastRoughness) / (1 - kLeastRoughness), 0.f, 1.f) *
-                    (kSheenRoughnesses - 1);
-    const int i = std::min(int(x), kSheenCosines - 2), j = std::min(int(y), kSheenRoughnesses - 2);
-    const auto row = [&](int r) {
-        return Lerp(x - float(i), kSheenAlbedos[r][i], kSheenAlbedos[r][i + 1]);
-    };
-    return Lerp(y - float(j), row(j), row(j + 1));
+    const float y = std::clamp((roughness - kLeastRoughness) / (1 - kLeastRoughness), 0.f, 1.f);
+    return Between(kSheenAlbedos, PlaceAt(y, kRoughnesses), PlaceOf(cosine, kSheenCosines));
 }
 
 }  // namespace lull

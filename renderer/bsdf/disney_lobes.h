@@ -1,5 +1,4 @@
-// The lobes of Disney's principled material (Burley 2012 and 2015) as pbrt-v3 has them. See
-// lobes.h for the interface.
+// The lobes of Disney's principled material (Burley 2012 and 2015) as in pbrt-v3 (see lobes.h).
 #pragma once
 
 #include "renderer/bsdf/microfacet.h"
@@ -34,7 +33,6 @@ struct DisneyDiffuse {
         const Vec3f h = wo + wi;
         const float h2 = h.squaredNorm();
         if (!(h2 > kMinHalf2)) return 0;
-        // wi . h / |h| is half of |h|.
         const float cosD = 0.5f * std::sqrt(h2);
         if (part == Part::Sheen) return SchlickWeight(cosD);
         if (part == Part::RetroReflection || part == Part::Whole) {

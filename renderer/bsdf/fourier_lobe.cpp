@@ -23,7 +23,6 @@ struct WeightedSeries {
             }
     }
 
-    // Returns coefficient k of a channel.
     float Coefficient(const FourierTable& table, int channel, int k) const {
         float sum = 0;
         for (int e = 0; e < count; ++e)
@@ -34,7 +33,6 @@ struct WeightedSeries {
     }
 };
 
-// Samples mu of i from the spline of first coefficients in the row of wo.
 float SampleCosine(const FourierTable& table, const SplineWeights& o, float u) {
     const int n = int(table.mu.size());
     const auto cdf = [&](int i) {
@@ -48,7 +46,6 @@ float SampleCosine(const FourierTable& table, const SplineWeights& o, float u) {
     return SampleSpline(table.mu, value, cdf, u);
 }
 
-// Samples the azimuth from a cosine series with coefficients a[0, order).
 double SampleAzimuth(std::span<const float> a, float u) {
     const bool flip = u >= 0.5f;
     const double target = double(flip ? 2 - 2 * u : 2 * u) * a[0] * std::numbers::pi;

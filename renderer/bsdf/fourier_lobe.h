@@ -24,7 +24,6 @@ struct FourierTable {
     std::vector<Series> series;
     std::vector<float> coefficients;
 
-    // Returns the first coefficient of luminance.
     float Mean(int o, int i) const {
         const Series& s = series[size_t(o) * mu.size() + i];
         return s.order > 0 ? coefficients[s.first] : 0;

@@ -22,8 +22,7 @@ inline float FresnelDielectric(float cosI, float eta) {
     return 0.5f * (Sqr(parallel) + Sqr(perpendicular));
 }
 
-// A colour in four lanes, the last one padding: roots and quotients take one instruction
-// each.
+// A colour in four lanes, one of them padding: roots and quotients take one instruction.
 using RgbLanes = Eigen::Array4f;
 
 // Returns the reflectance of a conductor of index n + i k, relative to the medium around it, for
@@ -115,9 +114,8 @@ inline bool Refract(const Vec3f& w, const Vec3f& n, float etaRatio, Vec3f* refra
 }
 
 // Return the integral over cosines from 0 to 1 of F cos and F cos^2, F for light that comes from
-// the inside of a dielectric of index `eta` (below 1: from the outside of one of 1 / eta):
-// polynomial fits of d'Eon and Irving 2011, "A Quantized-Diffusion Model for Rendering Translucent
-// Materials".
+// the inside of a dielectric of index `eta` (below 1: from the outside of one of 1 / eta): fits of
+// d'Eon and Irving 2011, "A Quantized-Diffusion Model for Rendering Translucent Materials".
 inline double FresnelMoment1(double eta) {
     if (eta < 1)
         return 0.45966 +

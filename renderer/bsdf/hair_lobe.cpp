@@ -20,7 +20,6 @@ double LogBesselI0(double x) {
     return std::log(sum);
 }
 
-// Returns the density of scattering along the hair for variance v, by solid angle around it.
 double Longitudinal(double cosI, double cosO, double sinI, double sinO, double v) {
     const double a = cosI * cosO / v, b = sinI * sinO / v;
     // 1 / (2 v sinh(1 / v)) as a logarithm.
@@ -44,7 +43,6 @@ double SampleAzimuthal(double u, double s) {
     return std::clamp(x, -std::numbers::pi, std::numbers::pi);
 }
 
-// Terms of the outgoing direction alone.
 struct Outgoing {
     float sinTheta, cosTheta, phi;
     float gammaO, gammaT;  // angles to the normal, outside and inside, across the hair
@@ -101,7 +99,6 @@ float MeanAzimuth(const Outgoing& o, int p) {
     return 2 * float(p) * o.gammaT - 2 * o.gammaO + float(p) * kPi;
 }
 
-// Deals the bits of u out to two numbers in (0, 1), of 12 bits each.
 Vec2f SplitBits(float u) {
     const auto bits = uint32_t(u * 0x1p24f);
     uint32_t even = 0, odd = 0;

@@ -32,7 +32,6 @@ float SheenAlbedo(float cosine, float alpha);
 struct InterfaceAbove {
     float f0 = 0, f90 = 0;
 
-    // Returns 1 - F.
     float Through(float cosI) const { return 1 - (f0 + (f90 - f0) * SchlickWeight(cosI)); }
 };
 

@@ -1,5 +1,4 @@
-// Estimates the fraction of uniform light that a lobe scatters to wo (z != 0), ignoring roughness.
-// See EstimatedAlbedo() and AlbedoOf().
+// Estimates the fraction of uniform light that a lobe scatters to wo (z != 0), see AlbedoOf().
 #pragma once
 
 #include "renderer/base/math.h"

@@ -52,8 +52,7 @@ struct LambertianTransmission {
     }
 };
 
-// Approximates a surface of V-shaped Lambertian grooves (Oren and Nayar 1994, the qualitative
-// model, eq. 30).
+// A surface of V-shaped Lambertian grooves (Oren and Nayar 1994, the qualitative model, eq. 30).
 struct OrenNayar {
     static constexpr bool kIsSpecular = false, kTransmits = false;
     StoredRgb r;
@@ -210,7 +209,6 @@ template <typename F>
     return Visit<1>(lobe, f);
 }
 
-// Returns whether a lobe favours the mirror direction.
 template <typename L>
 constexpr bool IsMirrorLike() {
     constexpr bool isDiffuse = std::is_same_v<L, LambertianReflection> ||

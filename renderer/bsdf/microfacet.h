@@ -14,8 +14,7 @@ inline float RoughnessToAlpha(float roughness) {
 }
 
 // Represents the anisotropic Trowbridge-Reitz (GGX) distribution (Walter et al. 2007; Heitz 2014,
-// JCGT 3(2)) with Smith's height-correlated masking. Directions are local; neither value depends on
-// the side of the surface.
+// JCGT 3(2)) with Smith's height-correlated masking. Directions are local, of either side.
 class TrowbridgeReitz {
   public:
     // As in pbrt-v3, both alphas are at least 0.001, where float still resolves the peak.
@@ -25,18 +24,16 @@ class TrowbridgeReitz {
     float AlphaX() const { return alphaX; }
     float AlphaY() const { return alphaY; }
 
-    // Returns the density of normals along h, 1/sr. h need not be unit; `length2` is its squared
-    // length, not 0.
+    // Returns the density of normals along h, 1/sr. `length2` is |h|^2, not 0.
     float D(const Vec3f& h, float length2) const {
         const float a = alphaX * alphaY;
         const float q = Sqr(alphaY * h.x()) + Sqr(alphaX * h.y()) + Sqr(a * h.z());
         return kInvPi * a * Sqr(a) * Sqr(length2 / q);
     }
 
-    // Returns |cos w| (1 + 2 Lambda(w)), Lambda being Smith's auxiliary function. With it Smith's
-    // masking needs no tangents and stays finite at grazing angles: G1(w) = 2 |cos w| /
-    // (|cos w| + Stretch(w)), and G(v, w) = 2 |cos v cos w| / (|cos v| Stretch(w) + |cos w|
-    // Stretch(v)).
+    // Returns |cos w| (1 + 2 Lambda(w)), Lambda being Smith's auxiliary function. Smith's masking
+    // by it stays finite at grazing angles: G1(w) = 2 |cos w| / (|cos w| + Stretch(w)), and G(v, w)
+    // = 2 |cos v cos w| / (|cos v| Stretch(w) + |cos w| Stretch(v)).
     float Stretch(const Vec3f& w) const {
         return std::sqrt(Sqr(w.z()) + Sqr(alphaX * w.x()) + Sqr(alphaY * w.y()));
     }
@@ -112,8 +109,7 @@ struct MicrofacetReflection {
         if (std::min(cosO, cosI) < kMinCosine || !(h2 > kMinHalf2)) return {};
         const float d = distribution.D(h, h2);
         const float so = distribution.Stretch(wo), si = distribution.Stretch(wi);
-        // wi . h / |h| is half of |h|; the interface expects it to be signed by the side of the
-        // normal.
+        // wi . h / |h| is half of |h|; the interface wants it signed by the normal's side.
         const float cosH = std::copysign(0.5f * std::sqrt(h2), h.z());
         Rgb f = Rgb(r) * (interface(cosH) * (0.5f * d / Masking::Divisor(cosO, so, cosI, si)));
         if constexpr (requires { interface.coat; }) f *= interface.coat.Through(cosO);
@@ -126,8 +122,7 @@ struct MicrofacetReflection {
     }
 };
 
-// Returns the index of a rough interface, away from 1, where light passes straight on and half
-// vectors would be rounding errors.
+// Keeps the index of a rough interface away from 1, where half vectors would be rounding errors.
 inline float ResolvableIndex(float eta) { return std::abs(eta - 1) < 1e-4f ? 1.0001f : eta; }
 
 // Refracts at microfacets (Walter et al. 2007, eq. 21). The index is 1 on the normal's side. As in

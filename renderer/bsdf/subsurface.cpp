@@ -36,8 +36,7 @@ double MultipleScattering(double sigmaS, double sigmaA, double g, double eta, do
     return sum / kDepths;
 }
 
-// Radiant exitance at distance r after one scattering, at the depths from where it is not reflected
-// totally (15.5.4).
+// Radiant exitance at distance r after one scattering, at depths without total reflection (15.5.4).
 double SingleScattering(double sigmaS, double g, double eta, double r) {
     const double least = r * std::sqrt(Sqr(eta) - 1);
     double sum = 0;
@@ -51,7 +50,6 @@ double SingleScattering(double sigmaS, double g, double eta, double r) {
     return sum / kDepths;
 }
 
-// Integrates the spline through the values up to each node.
 void Integrate(std::span<const float> x, std::span<const float> f, std::span<float> cdf) {
     const int n = int(x.size());
     cdf[0] = 0;
@@ -65,7 +63,6 @@ void Integrate(std::span<const float> x, std::span<const float> f, std::span<flo
     }
 }
 
-// Interpolates the table's profile, without its factor 2 pi r, at the row's weights.
 float ValueAt(const DiffusionTable& table, const SplineWeights& row, float radius) {
     const auto column = WeightsAt(table.radius, radius);
     if (!column) return 0;

@@ -3,7 +3,6 @@
 // exponentials (Burley 2015).
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -30,7 +29,6 @@ struct DiffusionTable {
     DiffusionTable(float g, float eta);
 };
 
-// Represents the profile of a solid with given coefficients per channel.
 class DiffusionProfile {
   public:
     // `sigmaA`, `sigmaS` >= 0 are the coefficients of absorption and scattering, 1/length. The
@@ -67,13 +65,11 @@ class BurleyProfile {
     Rgb albedo, distance;
 };
 
-// Represents either.
 class SubsurfaceProfile {
   public:
     SubsurfaceProfile(const DiffusionProfile& profile, float eta) : eta(eta), kind(profile) {}
     SubsurfaceProfile(const BurleyProfile& profile, float eta) : eta(eta), kind(profile) {}
 
-    // Returns the light that leaves at distance r from where it entered, 1/area.
     Rgb operator()(float r) const {
         return Visit(kind, [&](const auto& k) { return k(r); });
     }

@@ -5,7 +5,6 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -110,7 +109,6 @@ class Help : public CLI::Formatter {
         return text + (app.get_subcommands({}).empty() ? "\n" : " SUBCOMMAND\n");
     }
 
-    // An entry of two columns; the second may have several lines.
     std::string Entry(const std::string& head, const std::string& text) const {
         const std::string indent(column_width_, ' ');
         std::string entry = "  " + head;
@@ -135,7 +133,6 @@ class Help : public CLI::Formatter {
         return text;
     }
 
-    // Returns the rest of an option's head: its value with the default, and related options.
     std::string ValueOf(const CLI::Option& option) const {
         std::string text;
         if (option.get_type_size() != 0) {

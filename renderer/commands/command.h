@@ -1,5 +1,4 @@
-// Lists the subcommands. Each adds its options to the command line and, if it was given, sets the
-// function to run.
+// Lists the subcommands. Each adds its options and, if it was given, sets the function to run.
 #pragma once
 
 #include <fmt/format.h>
@@ -36,8 +35,7 @@ class UsageError : public Error {
 
 class MpiJob;
 
-// The groups of options without a subject, and of those that --help shows of a command with many;
-// the others are by subject.
+// The groups of options without a subject, and of those that --help shows of a command with many.
 inline constexpr const char* kOptions = "Options";
 inline constexpr const char* kCommonOptions = "Common options";
 
@@ -91,7 +89,6 @@ void PrepareStreams();
 
 // Flushes stdout. Throws Error where it, or anything before, could not be.
 void FinishResults();
-// Returns whether something that was printed to stdout is lost.
 bool HasLostResults();
 
 // Prints a message as a line of its own on stderr, after the program's name.
@@ -158,8 +155,7 @@ CLI::Validator OneOf(const Choices& choices) {
 }
 
 // Adds an option that sets *value, which must outlive the parsing, to the value of an enum that is
-// named (EnumNames). The previous *value is the default in the help; a value that may be missing
-// (std::optional) shows none.
+// named (EnumNames). The help shows the previous *value as the default, none of a std::optional.
 template <typename T>
 CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
                              const std::string& help) {
@@ -174,9 +170,8 @@ CLI::Option* AddChoiceOption(CLI::App& app, const std::string& option, T* value,
     return added;
 }
 
-// Adds an option, for a bool a flag, with its group in the help; it sets *value, which must outlive
-// the parsing. The help shows the previous *value of numbers as the default, unless the text ends
-// with another in brackets.
+// Adds an option, for a bool a flag; it sets *value, which must outlive the parsing. The help shows
+// the previous *value of numbers as the default, unless the text ends with another in brackets.
 template <typename T>
 CLI::Option* AddOption(CLI::App& app, const char* group, const std::string& name, T* value,
                        const std::string& help, const std::string& type = "",
@@ -186,8 +181,7 @@ CLI::Option* AddOption(CLI::App& app, const char* group, const std::string& name
     return std::is_arithmetic_v<T> && !help.ends_with(']') ? option->capture_default_str() : option;
 }
 
-// The same of an option that parse(text, value) reads, false where the text "is not " what is
-// wanted.
+// The same of an option that parse(text, value) reads, false where the text "is not " `wanted`.
 template <typename T>
 CLI::Option* AddOption(CLI::App& app, const char* group, const std::string& name,
                        bool (*parse)(const std::string&, T*), T* value, const std::string& wanted,
@@ -232,7 +226,6 @@ std::string ProblemOfNumber(std::string_view text, T least, T most) {
                     : fmt::format("'{}' is not in the range from {} to {}", quoted, least, most);
 }
 
-// Checks that a value is a number from `least` to `most`.
 template <typename T>
 CLI::Validator Between(T least, T most) {
     return CLI::Validator(
@@ -246,7 +239,6 @@ inline CLI::Validator AboveZero() {
         .description("POSITIVE");
 }
 
-// Checks that a value is a whole number of up to 64 bits.
 inline CLI::Validator WholeNumber() {
     return Between<uint64_t>(0, std::numeric_limits<uint64_t>::max()).description("NONNEGATIVE");
 }

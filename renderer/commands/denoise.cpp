@@ -43,14 +43,12 @@ Examples:
 
 Exit codes: 0 success, 1 input or environment error, 2 usage error.)";
 
-// Returns whether a channel is one that the denoised picture does without or has anew.
 bool IsReplaced(const std::string& name) {
     return name == "R" || name == "G" || name == "B" || name == "error" ||
            name.starts_with("half") || name.starts_with("noisy.") || name.starts_with("variance.");
 }
 
-// Returns R, G, B of the mean of both halves, or of all samples where the file has it; 0 for values
-// that are not finite.
+// Returns R, G, B of all samples or, if absent, of both halves; 0 for values that are not finite.
 std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool isWhole) {
     std::vector<float> mean(picture.colour.a.values.size());
     for (size_t c = 0; c < 3; ++c) {
@@ -66,7 +64,6 @@ std::vector<float> MeanOf(const ExrImage& exr, const NoisyPicture& picture, bool
     return mean;
 }
 
-// Throws where the halves do not determine the noise.
 void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture& picture) {
     if (!options.half.empty()) {
         const std::string dependence = DependenceOf(picture.colour);
@@ -81,22 +78,19 @@ void CheckHalves(const Options& options, const ExrImage& exr, const NoisyPicture
             options.input, kLeastDenoisedSpp);
 }
 
-// Moves images of other programs to the display window if their data windows differ: some write
-// those pixels alone that are not black.
+// Uses the display window where data windows differ: some programs write no black borders.
 void UseOneWindow(const Options& options, ExrImage* a, ExrImage* b) {
     if (DataWindow(*a) == DataWindow(*b)) return;
     MoveTo(ShownWindow(*a, options.input), a);
     MoveTo(ShownWindow(*b, options.half), b);
 }
 
-// Writes what an image shows within a window.
 void WriteShown(const std::string& png, const PixelRect& shown, const PixelRect& data,
                 const RgbImage& image) {
     const RgbImage picture = {shown.Width(), shown.Height(), MovedTo(shown, data, 3, image.values)};
     WritePng(png, MeansOf(picture), picture.width, picture.height);
 }
 
-// Returns the image and the one of --half, which then has the same window, to denoise.
 NoisyPicture ReadHalves(const Options& options, ExrImage* exr) {
     if (options.half.empty()) {
         CheckColours(options.input, *exr);
@@ -109,8 +103,7 @@ NoisyPicture ReadHalves(const Options& options, ExrImage* exr) {
     return ReadPicture(*exr, options.input, half, options.half);
 }
 
-// Leaves out the channels that the denoised image replaces, as the next steps need the memory, and
-// NaN.
+// Leaves out NaN, and channels that the denoised image replaces: the next steps need the memory.
 void KeepOtherChannels(ExrImage* exr) {
     std::erase_if(exr->channels, [](const ExrChannel& c) { return IsReplaced(c.name); });
     for (ExrChannel& channel : exr->channels)  // depths may be infinite

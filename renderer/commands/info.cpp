@@ -20,7 +20,6 @@ namespace {
 
 using Counts = std::map<std::string, int>;
 
-// Formats "3 (2 matte, 1 glass)".
 std::string CountsText(const Counts& counts) {
     int total = 0;
     std::string kinds;
@@ -31,7 +30,6 @@ std::string CountsText(const Counts& counts) {
     return kinds.empty() ? "0" : fmt::format("{} ({})", total, kinds);
 }
 
-// Formats "0 red, 1 blue; --variant NAME|N chooses".
 std::string VariantsText(const std::vector<std::string>& variants) {
     std::string text;
     for (size_t i = 0; i < variants.size(); ++i)
@@ -90,7 +88,6 @@ void PrintAppearance(const Description& description, const Scene& scene) {
     Line("lights", CountsText(lights));
 }
 
-// Returns the names of glTF's objects that are flat slabs of clear solid glass.
 std::vector<std::string> NamesOfSlabs(const Description& description, const Scene& scene) {
     std::vector<std::string> names;
     size_t index = 0;
@@ -135,7 +132,6 @@ std::string FilmText(const FilmSettings& film, const std::string& file) {
     return text + ", image " + DefaultOutput(film.filename, file);
 }
 
-// Returns the name that is used, and the file's if it differs.
 std::string UsedText(const std::string& used, const Entity& asked) {
     if (!asked.loc.file || asked.name == used) return used;
     return fmt::format("{} ({} in the file)", used, asked.name);

@@ -38,8 +38,7 @@ int PassLengthFor(const Rule& rule, int blocks, const ScheduleOptions& schedule)
     return std::max(1, length);
 }
 
-// Returns the largest value in [0, 1] of a mask, stretched over an image of `size`, in these
-// pixels.
+// Returns the largest value in [0, 1] in these pixels of a mask stretched over an image of `size`.
 float LargestIn(const Image& mask, const PixelRect& pixels, const Vec2i& size) {
     const std::array<int64_t, 2> extent = {mask.width, mask.height};
     const auto begin = [&](int i) { return pixels.min[i] * extent[size_t(i)] / size[i]; };
@@ -144,7 +143,6 @@ void SetCautionsByObject(const ImportantObject& important, PreparedRender* p) {
         p);
 }
 
-// Reads the rule, lets the schedule suit it, and cuts the blocks.
 void PrepareRule(PreparedRender* p) {
     RenderSettings& settings = p->settings;
     ScheduleOptions& schedule = settings.schedule;
@@ -169,7 +167,6 @@ void PrepareRule(PreparedRender* p) {
     if (!ObjectOf(p->request.importance)) SetCautionsByMask(p);
 }
 
-// Warns of blocks that no criterion will ever stop.
 void CheckBlocks(std::span<const Block> blocks, int smallestSide, Warnings& warnings) {
     for (const Block& block : blocks)
         if (!block.votes && block.leader < 0)
@@ -179,7 +176,6 @@ void CheckBlocks(std::span<const Block> blocks, int smallestSide, Warnings& warn
                                      smallestSide));
 }
 
-// Returns whether a rule looks at the half after any of the passes of a block.
 bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
     const std::unique_ptr<Criterion> criterion = MakeCriterion(rule);
     for (int spp = 0; spp < schedule.cap;) {
@@ -189,8 +185,7 @@ bool LooksAtHalf(const Rule& rule, const ScheduleOptions& schedule) {
     return false;
 }
 
-// Returns how the film is kept, with no light groups yet: whoever goes on from a checkpoint may
-// look at the half.
+// Without light groups yet. Whoever goes on from a checkpoint may look at the half.
 FilmOptions FilmOf(const PreparedRender& p) {
     const RenderSettings& settings = p.settings;
     const LayerOptions layers = p.request.WantedLayers();
@@ -200,7 +195,6 @@ FilmOptions FilmOf(const PreparedRender& p) {
             .layers = layers};
 }
 
-// Returns grades in words, with semicolons between them.
 std::string NamesOf(const std::vector<Grade>& grades) {
     std::string text;
     for (const Grade& grade : grades) {
@@ -237,7 +231,6 @@ RenderFiles NameFilesOf(const RenderRequest& request, const FilmSettings& film) 
     return {with(".exr"), with(".png"), with(".spp.png"), with(".thresholds.csv"), report};
 }
 
-// Returns all files that may be written or removed.
 std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
     std::vector<NamedFile> outputs;
     for (const std::string& file : {files.exr, files.png, files.sppMap, files.thresholds})
@@ -246,7 +239,6 @@ std::vector<NamedFile> OutputsOf(const RenderFiles& files) {
     return outputs;
 }
 
-// Returns the groups of these names, none without any, as MakeLightGroups() does.
 LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Description& description,
                               const Scene& scene) {
     if (names.empty()) return {};
@@ -257,8 +249,7 @@ LightGroups ChooseLightGroups(const std::vector<std::string>& names, const Descr
     }
 }
 
-// Returns the memory of previews and of the denoiser's written inputs, bytes per pixel, which the
-// film and its layers do not include.
+// Returns the bytes per pixel of previews and of the denoiser's written inputs.
 int64_t BytesBeside(const RenderRequest& request) {
     const bool hasPreviews = request.denoise && request.preview;
     return (hasPreviews ? kPreviewBytes : 0) + (request.denoiseLayers ? kHalfChannelsBytes : 0);
@@ -293,7 +284,6 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
 
 namespace {
 
-// Returns the first line of a text that another has not, for a message.
 std::string FirstDifference(const std::string& text, const std::string& other) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)
@@ -301,7 +291,6 @@ std::string FirstDifference(const std::string& text, const std::string& other) {
     return "";
 }
 
-// Returns whether a file is there and was not cut short.
 bool IsWhole(const std::string& file) try {
     if (!IsThere(file)) return false;
     if (file.ends_with(".png")) return ReadImage(file).width > 0;
@@ -313,7 +302,6 @@ bool IsWhole(const std::string& file) try {
     return false;
 }
 
-// Returns whether all files but the EXR that a render ends with are there, none of them cut short.
 bool AreWhole(const RenderFiles& files) {
     const std::initializer_list<std::string> others = {files.png, files.sppMap, files.thresholds,
                                                        files.report};

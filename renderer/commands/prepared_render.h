@@ -35,11 +35,9 @@ struct PreparedRender : RenderJob {
     std::vector<BlockHistory> histories;
 };
 
-// Reads the scene and the rule, and names the files. Throws Error, or UsageError, for all that can
-// be wrong before the work begins.
+// Reads scene and rule, and names the files. Throws Error or UsageError for all that can be wrong.
 std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ranks);
 
-// Returns the grades for the denoiser.
 std::vector<Grading> GradingsOf(const std::vector<Grade>&);
 
 // Frames of `lull render --frames --resume` whose files are there.
@@ -47,8 +45,7 @@ std::vector<Grading> GradingsOf(const std::vector<Grade>&);
 // Returns all that decides the files of a frame, by which --resume knows it; a line each.
 std::string SettingsOf(const PreparedRender&);
 
-// Returns whether all files of a frame are there, whole. Throws Error where they are of another
-// render.
+// Returns whether all files of a frame are there. Throws Error where they are of another render.
 bool IsFinished(const PreparedRender&);
 
 }  // namespace lull::render

@@ -20,8 +20,7 @@ namespace lull::render {
 
 namespace {
 
-// Returns the maker of criteria that see blocks as the grades show them, unless the rule sees to
-// that itself, or only counts.
+// Makes criteria that see blocks as graded, unless the rule sees to that itself, or only counts.
 CriterionMaker MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& grades) {
     CriterionMaker criteriaOf = CriteriaOf(rule);
     if (grades.empty() || rule.stopAt || rule.need == ViewNeed::Measured) return criteriaOf;
@@ -32,7 +31,6 @@ CriterionMaker MakeGradedCriteria(const Rule& rule, const std::vector<Grade>& gr
     };
 }
 
-// Returns the maker of criteria by the caution of each block.
 CriterionMaker MakeCautiousCriteria(const PreparedRender& p) {
     if (p.cautions.empty()) return MakeGradedCriteria(p.rule, p.grades);
     std::map<double, CriterionMaker> makers;
@@ -45,7 +43,6 @@ CriterionMaker MakeCautiousCriteria(const PreparedRender& p) {
     };
 }
 
-// Returns the maker of the criteria; for a page, they also keep the curves of each block.
 CriterionMaker MakeCriterionMaker(PreparedRender* p) {
     CriterionMaker criteriaOf = MakeCautiousCriteria(*p);
     if (!p->request.HasPage()) return criteriaOf;
@@ -57,7 +54,6 @@ CriterionMaker MakeCriterionMaker(PreparedRender* p) {
     };
 }
 
-// Adds who hears of the render beside those that every command has.
 void AddListeners(const PreparedRender& p, RenderEvents* events) {
     const Messages messages = MessagesOf(p.settings);
     if (p.clock)
@@ -142,7 +138,6 @@ void WritePreview(const PreparedRender& p, Session* session, const RenderResult&
         MessagesOf(p.settings).Warn(fmt::format("no preview: {}", e.what()));
 }
 
-// Renders, and shows pictures on the way where they are asked for.
 RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     if (p->clock) p->ranks->SetClock(p->clock);
     if (p->denoiser && p->display)
@@ -158,13 +153,11 @@ RenderResult RenderPrepared(PreparedRender* p, Session* session) {
     return p->Run(session);
 }
 
-// Denoised image of a finished render.
 struct DenoiserResults {
     std::optional<DenoisedImage> image;
     std::vector<ExrChannel> halves;  // what can be denoised later
 };
 
-// Makes the requested images, and frees their inputs.
 DenoiserResults TakeDenoised(const PreparedRender& p, const RenderResult& result,
                              Session* session) {
     const RenderSettings& settings = p.settings;
@@ -244,7 +237,6 @@ ResultFiles WriteFiles(PreparedRender& p, const Film& film, const RenderResult& 
     return results;
 }
 
-// Prints how the render ended, writes all files, and prints how it continues.
 ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) {
     const RenderSettings& settings = p.settings;
     const Messages messages = MessagesOf(settings);
@@ -264,7 +256,6 @@ ExitCode Write(PreparedRender& p, const RenderResult& result, Session* session) 
     return result.cancelled ? kInterrupted : kDone;
 }
 
-// Prints the path of a sample instead.
 ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     RenderJob render(request.render, ranks, false);
     render.Compile();
@@ -272,7 +263,6 @@ ExitCode RunPath(const RenderRequest& request, MpiJob* ranks) {
     return kDone;
 }
 
-// Renders one image, unless it is a frame that is finished.
 ExitCode RunImage(const RenderRequest& request, MpiJob* ranks, const std::string& note = "") {
     const std::unique_ptr<PreparedRender> p = Prepare(request, ranks);
     const CheckpointOptions& checkpoint = request.render.checkpoint;

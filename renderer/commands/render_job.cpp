@@ -26,7 +26,6 @@ namespace lull {
 
 namespace {
 
-// Lets all ranks share a render, of which a warning says so if one does not answer.
 void ShareAmongRanks(MpiJob* ranks, SessionOptions* options) {
     options->agree = [ranks](const std::string& what) { ranks->Begin(what); };
     options->render.peers = ranks->GetPeers();
@@ -45,7 +44,6 @@ void ShareAmongRanks(MpiJob* ranks, SessionOptions* options) {
     };
 }
 
-// Returns a word as one has to type it.
 std::string ForShell(const std::string& word) {
     const auto isPlain = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+=./:,@%", c);

@@ -29,16 +29,13 @@ class RenderJob {
     RenderJob(const RenderJob&) = delete;
     RenderJob& operator=(const RenderJob&) = delete;
 
-    // Returns whether this is the first rank.
     bool Leads() const;
-    // There, throws Error where a result or the checkpoint would replace another or an input, of
-    // which those of the scene are known, or could not be written now. Takes the checkpoint for
-    // this process alone.
+    // There, throws Error where a result or the checkpoint would replace another or an input, or
+    // could not be written now. Takes the checkpoint for this process alone.
     void CheckFiles(std::vector<NamedFile> outputs, std::vector<NamedFile> inputs = {});
     // There, takes the results, of which `output` is one, for this process alone. Throws Error if
     // another process has them.
     void LockResults(const std::string& output);
-    // Lets rules read denoised blocks during the render.
     void DenoiseBlocks();
     // Warns where blocks are denoised from samples whose halves depend on each other.
     void CheckSampler() const;
@@ -46,14 +43,12 @@ class RenderJob {
     // with the caution of the settings, unless there is another.
     Rule ReadRule(const std::string& option, const std::string& rule,
                   std::optional<double> caution = {}) const;
-    // Compiles the scene, and sets the sampler, where the user names none, and the provenance; the
-    // rule is left to be filled in.
+    // Compiles the scene, and sets the sampler, if none is named, and the provenance but the rule.
     void Compile();
     // Returns the identity that checkpoints and ranks must share, from the provenance.
     RenderIdentity Identity() const;
-    // Returns the options of a session without a rule that can be interrupted and, where it is
-    // shared, has the checkpoint of the settings and all ranks. `adaptive`: blocks stop by
-    // themselves, as the progress shows.
+    // Returns the options of an interruptible session without a rule; where it is shared, with the
+    // checkpoint and all ranks. `adaptive`: blocks stop by themselves, as the progress shows.
     SessionOptions MakeSessionOptions(bool adaptive, bool isShared = true) const;
     // Takes up the checkpoint, and renders until the end or an interruption.
     RenderResult Run(Session*, const RenderFunction& render = Render) const;
@@ -81,8 +76,7 @@ class RenderJob {
 // Returns the options of a render that resumes from the file without being told to.
 CheckpointOptions ResumeIfThere(const std::string& file, double interval);
 
-// Returns exclusive access to a checkpoint, for as long as work may write it. Throws Error if
-// another process has it.
+// Returns exclusive access to a checkpoint. Throws Error if another process has it.
 FileLock LockCheckpointFile(const std::string& file);
 
 // Returns how to continue a render that has ended early: by which command, if it has a checkpoint.

@@ -16,8 +16,7 @@ namespace lull {
 
 namespace {
 
-// Returns which blocks have ended, and how: a block at the cap that its rule has not stopped is not
-// stopped.
+// Returns which blocks have ended, and how: one that its rule leaves at the cap is not stopped.
 std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     const RenderProgress& p = result.progress;
     if (kind == RuleTrend::Samples)
@@ -28,8 +27,7 @@ std::string EndsOf(const RenderResult& result, RuleTrend::Kind kind) {
     return text;
 }
 
-// Returns the savings compared with the highest sample count of a block everywhere, unless there
-// are none.
+// Returns the savings compared with the highest sample count of a block everywhere, if any.
 std::string SavingsOf(const RenderResult& result) {
     int most = 0;
     for (const BlockResult& b : result.blocks) most = std::max(most, b.block.spp);
@@ -60,7 +58,6 @@ void WarnOfRejected(int64_t rejected, const Messages& messages) {
             fmt::format("{} samples were not finite or negative; they count as black", rejected));
 }
 
-// Returns how much ranks of different speed had to do in the end.
 std::string SharesOf(const std::vector<double>& shares) {
     if (shares.empty()) return "";
     const auto [least, most] = std::ranges::minmax(shares);
@@ -70,7 +67,6 @@ std::string SharesOf(const std::vector<double>& shares) {
     return text + "\n";
 }
 
-// Returns the blocks at the cap, their rule's value there, and a sufficient cap.
 std::string CappedOf(const Provenance& provenance, const RenderResult& result) {
     constexpr size_t kShown = 8;
     const std::vector<CappedBlock> capped = FindCapped(result);
@@ -155,7 +151,6 @@ std::string WayOf(const PathStep& step) {
         Numbers(step.direction), density);
 }
 
-// Returns why there is no further step.
 std::string EndOf(const PathLog& log, const Scene& scene) {
     if (log.steps.empty()) return "It meets nothing that emits or scatters.\n";
     const PathStep& last = log.steps.back();

@@ -45,8 +45,7 @@ DenoisedImage DenoiseWithReports(Picture picture, const PixelRect& region,
 void PrintDenoised(const DenoisedImage&, double seconds, bool quiet, const Messages& = {},
                    double accepted = kAcceptedDifference);
 
-// Prints the path of a sample, bounce by bounce, on stdout. Throws UsageError for a pixel that the
-// image does not have.
+// Prints the path of a sample, bounce by bounce. Throws UsageError for a pixel outside the image.
 void PrintPath(const Vec2i& pixel, int sample, const RenderSettings&, const Description&,
                const Scene&);
 

@@ -47,7 +47,6 @@ the image. A file of --checkpoint is kept.
 Ctrl-C ends the render and writes the current image; a second Ctrl-C ends it at once.
 Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
-// Makes a validator of a function that throws.
 template <typename Parse>
 CLI::Validator CheckBy(const Parse& parse) {
     const auto problem = [=](const std::string& text) -> std::string {
@@ -134,7 +133,6 @@ void AddPictureOptions(CLI::App& app, RenderRequest* o) {
               "Remove the directly visible background; the PNG gets alpha");
 }
 
-// Adds --pixel, --time and --frames, and the options that go with them.
 void AddWorkOptions(CLI::App& app, RenderRequest* o) {
     auto* pixel = AddOption(
         app, "Advanced", "--pixel", ParsePixel, &o->pixel, "x,y in pixels",

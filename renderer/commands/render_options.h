@@ -45,13 +45,11 @@ struct RenderRequest {
     int frameNumber = 0;    // in the sequence, from 1; 0: there is none
     bool sameSeed = false;  // for all frames; else frame n has the seed of the settings plus n
 
-    // Returns the rule of --stop, --spp and --denoise.
     std::string Rule() const;
     // Returns how pictures are graded when noise is judged; none: they are not.
     std::vector<Grade> Grades() const;
     // Returns the clock in words, for headers; empty where there is none.
     std::string ClockText() const;
-    // Returns whether the report is a page, with curves.
     bool HasPage() const { return report.ends_with(".html"); }
     // Returns the layers, with no light groups yet.
     LayerOptions WantedLayers() const {
@@ -75,8 +73,7 @@ std::function<double()> StartClock(const RenderRequest&);
 std::unique_ptr<Display> MakeDisplay(const RenderRequest&, const std::string& name,
                                      const PixelRect& region, int ranks);
 
-// Returns the name of the file of frame `number`, counted from 1: image.0001.exr for image.exr; an
-// empty name as it is.
+// Returns the name of the file of frame `number`, from 1: image.0001.exr for image.exr; "" for "".
 std::string NumberedFile(const std::string& file, int number);
 
 }  // namespace lull::render

@@ -13,7 +13,6 @@
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/scene_edits.h"
 #include "renderer/render/provenance.h"
-#include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

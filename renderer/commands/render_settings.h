@@ -32,7 +32,6 @@ struct SceneOptions {
 // --animation, --shutter, --variant, --solid-glass.
 void AddSceneOptions(CLI::App& app, SceneOptions* options);
 
-// Prints warnings on stderr as they occur.
 Warnings MakePrintedWarnings(const SceneOptions&, const Messages& = {});
 
 // Reads the scene's file. Throws Error, and leaves others in the warnings, as ParsePbrt() does.
@@ -71,7 +70,6 @@ void AddEstimatorOption(CLI::App& app, Estimator* estimator);
 // Adds --caution, and its names, --quality, to a group of the help.
 void AddCautionOptions(CLI::App& app, const char* group, double* caution);
 
-// Adds --checkpoint, --checkpoint-interval and --resume.
 void AddCheckpointOptions(CLI::App& app, CheckpointOptions* options);
 
 // Adds --checkpoint-interval alone, for commands that name the file themselves.
@@ -88,7 +86,6 @@ void AddFileOfRule(const std::string& rule, std::vector<NamedFile>* inputs);
 // Returns the folder of installed models, next to the program.
 std::string ModelFolder();
 
-// Returns the format of messages.
 inline Messages MessagesOf(const RenderSettings& settings) {
     return {.isJson = settings.jsonProgress};
 }

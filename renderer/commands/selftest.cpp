@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numeric>
 
 #include "renderer/commands/command.h"
 #include "renderer/commands/render_settings.h"
@@ -45,7 +44,6 @@ struct Outcome {
     int spp = 0;
 };
 
-// Parses the text of a pbrt-v3 file, which exists in memory alone, and compiles it.
 std::unique_ptr<const Scene> SceneOf(const std::string& text) {
     const std::unique_ptr<FILE, int (*)(FILE*)> file(std::tmpfile(), std::fclose);
     if (!file || std::fputs(text.c_str(), file.get()) < 0 || std::fflush(file.get()) != 0)
@@ -57,7 +55,6 @@ std::unique_ptr<const Scene> SceneOf(const std::string& text) {
     return Compile(scene, options, warnings);
 }
 
-// Renders one block by a rule and denoises it if asked for.
 Outcome RenderBlock(const std::string& text, const std::string& rule, bool denoise) {
     const std::unique_ptr<const Scene> scene = SceneOf(text);
     const PixelRect region{scene->film.cropMin, scene->film.cropMax};
@@ -82,7 +79,6 @@ Outcome RenderBlock(const std::string& text, const std::string& rule, bool denoi
     return outcome;
 }
 
-// Prints a row, and returns whether the check has passed.
 bool Check(const char* name, double answer, double tolerance, double ours) {
     const bool passed = std::abs(ours - answer) <= tolerance;
     fmt::print("{:<6} {:<56} {:>6} {:>6}  {:.6g}\n", passed ? "ok" : "FAILED", name, answer,

@@ -64,7 +64,6 @@ void ForgetVariance(const Halves& rest, size_t pixel, Planes* ofMean) {
     ofMean->values[pixel] = std::min(ofMean->values[pixel], Sqr(difference) / 4);
 }
 
-// Removes the emission of small lamps from the colours, with its share of their variance.
 void TakeEmission(NoisyPicture* picture) {
     Halves &colour = picture->colour, &emission = picture->emission;
     MakeSane(&emission);
@@ -205,7 +204,6 @@ DenoisedPicture Denoise(NoisyPicture in, Effort effort, const ShareListener& onS
 
 namespace {
 
-// Adds an image of half the size, linearly interpolated between the centres of its pixels.
 void AddEnlarged(const Planes& half, Planes* image) {
     const auto neighbour = [](int i, int size) {
         return std::clamp(i / 2 + (i % 2 == 0 ? -1 : 1), 0, size - 1);

@@ -2,8 +2,7 @@
 //
 // Colours are fitted to features (RegressTile()) twice: each half of the samples by weights from
 // the other half. Each filtered half is compared with the samples of the other, which measures blur
-// as well as residual noise. With more samples, weights become so selective that the result
-// converges to the mean of the samples.
+// as well as noise.
 #pragma once
 
 #include <functional>
@@ -26,16 +25,14 @@ inline float DisparityOf(float depth) { return depth > 0 ? 1 / std::max(depth, 1
 using FeatureReader = std::function<Halves(int y0, int y1)>;
 
 // Returns the mean of both halves, each filtered by non-local means with weights from the other
-// half, and scaled to [-1, 1]. Noise comes from lenses, motion and glossy paths; without noise,
-// nothing is changed. NaN counts as 0. Calls forget(end), if there is such, when the rows above
-// `end` will not be read again.
+// half, and scaled to [-1, 1]. Without noise, nothing is changed. NaN counts as 0. Calls
+// forget(end), if there is such, when the rows above `end` will not be read again.
 Planes FilterFeatures(int width, int height, const FeatureReader&,
                       const std::function<void(int end)>& forget = {});
 
 // Filters noisy colours: fits in windows of some pixels, the choice among them, and the same at
 // half of the size for wider structure (denoise.h).
 
-// The effort of denoising.
 enum class Effort {
     Full,
     Quick  // a little worse, in 60 % of the time: for a look at how far a render is
@@ -59,8 +56,7 @@ Halves FilterColours(const Halves& noisy, Planes features, const Planes& varianc
 struct RegressionInput {
     const Planes& colour;
     const Planes& features;
-    // The other half of the samples, from which weights come (PatchWeights::Of), so that they do
-    // not depend on the noise of `colour`.
+    // The other half, from which weights come, so that they do not depend on the noise of `colour`.
     PatchGuide guide;
     PatchOptions patches;
     std::span<const float> bandwidths;
@@ -69,8 +65,7 @@ struct RegressionInput {
     int rowsPerFit = 1;
 };
 
-// Returns for each bandwidth the fit of the colours of a tile, which lies within the image, to its
-// features.
+// Returns for each bandwidth the fit of the colours of a tile, within the image, to its features.
 std::vector<Planes> RegressTile(const RegressionInput&, const ImageTile&);
 
 // Chooses, place by place, which of several pictures is nearest to the truth.
@@ -80,10 +75,9 @@ inline constexpr int kChoiceReach = 11;  // pixels, from which a choice depends 
 // Returns for each half a mixture of the candidates, R, G, B; the last of them are the unfiltered
 // samples, `noisy`, with this variance of a pixel. The squared error of a candidate is that of the
 // other half, filtered, against the samples of this one, less the part explained by their noise:
-// unbiased, but noisy, so that it is averaged over some pixels, weighted by inverse noise. The
-// half that judges the result (visible_error.h) so has no part in the choice, which would
-// underestimate the error. The samples themselves are chosen only where all others are worse
-// beyond chance.
+// unbiased, but noisy, so that it is averaged. The half that judges the result (visible_error.h) so
+// has no part in the choice, which would underestimate the error. The samples themselves are chosen
+// only where all others are worse beyond chance.
 Halves ChooseCandidates(std::vector<Halves> candidates, const Halves& noisy,
                         const Planes& variance);
 
@@ -98,9 +92,8 @@ struct Firefly {
 // Scales down each pixel of a half (R, G, B) that is brighter than the same pixel of the other half
 // by more than `limit` times the standard deviation of such differences around, and brighter than
 // all of its neighbours are there, to that limit. The lesser half may be exceeded by as much more
-// as it is above the darkest neighbour: so a pixel bright in both halves, such as a glint, stays
-// unchanged. With more samples, the energy removed vanishes as their noise does. Values are finite
-// and not negative.
+// as it is above the darkest neighbour: so a pixel bright in both halves stays unchanged. Values
+// are finite and not negative.
 std::vector<Firefly> TakeFireflies(float limit, Halves*);
 
 // Adds them to a picture: each over the 81 x 81 pixels around, in proportion to their brightness
@@ -150,8 +143,7 @@ struct DenoisedPicture {
 };
 
 // Estimates the variance of a pixel of either half, R, G, B, > 0, from that of the mean (see
-// NoisyPicture), if it is known, and the difference of the halves, whose values are as Sane() has
-// them.
+// NoisyPicture), if it is known, and the difference of the halves, whose values are Sane().
 Planes EstimateVariance(const Halves& colour, const Planes& ofMean);
 
 // Lowers the variance of the mean, where it is known, of pixels from which fireflies were taken to
@@ -180,8 +172,7 @@ Planes WithCoarsePart(Planes fine, const Planes& coarse);
 // lines of 11 pixels and bars of 3 x 15 pixels around each pixel. A sum is structure where it is
 // more than 4.5 times as large as its standard deviation: by the variance of its pixels, by the
 // difference of the halves in them, or by that in the 7 x 7 pixels around each, whichever is
-// largest. So neither fireflies nor the gaps between them nor variances that are too small are
-// taken for structure.
+// largest.
 
 inline constexpr int kStructureReach = 10;  // pixels that decide on one, to each side
 

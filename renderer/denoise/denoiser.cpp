@@ -20,7 +20,6 @@ void Add(const Halves& halves, Halves* sum) {
     Add(halves.b, &sum->b);
 }
 
-// Replaces the errors of blocks by larger ones of the same blocks.
 void Raise(const Blocks& errors, Blocks* blocks) {
     for (size_t i = 0; i < blocks->size(); ++i) {
         if (!errors[i]) continue;
@@ -32,8 +31,7 @@ void Raise(const Blocks& errors, Blocks* blocks) {
     }
 }
 
-// A denoised picture as it is shown, some pixels of which are made at a time, as a graded copy of a
-// large one would take much memory.
+// A denoised picture as it is shown, made part by part: a graded copy would take much memory.
 struct ShownPicture {
     const DenoisedPicture& linear;
     const Grading& grading;  // null: the same
@@ -56,7 +54,6 @@ struct ShownPicture {
     static constexpr int kRows = 232;  // with margins not more than BandRows() takes at once
 };
 
-// Returns the structure that a picture lacks.
 Planes StructureLeft(const ShownPicture& picture) {
     const DenoisedPicture& linear = picture.linear;
     if (!picture.grading) return StructureLeft(linear.noisy, linear.variance, linear.halves);
@@ -69,7 +66,6 @@ Planes StructureLeft(const ShownPicture& picture) {
     return left;
 }
 
-// Returns the standard errors of pixels.
 std::vector<float> DeviationOf(const ShownPicture& picture, const Planes& structure) {
     std::vector<float> deviation;
     deviation.reserve(structure.Area());
@@ -82,7 +78,6 @@ std::vector<float> DeviationOf(const ShownPicture& picture, const Planes& struct
     return deviation;
 }
 
-// Measures the error of a block.
 VisibleError ErrorIn(const ShownPicture& picture, const Planes& structure, const PixelRect& block) {
     const ImageTile tile{block.min.x(), block.min.y(), block.max.x(), block.max.y()};
     const ImageTile crop = tile.Grown(kErrorReach).Within(picture.Width(), picture.Height());
@@ -92,8 +87,7 @@ VisibleError ErrorIn(const ShownPicture& picture, const Planes& structure, const
                                {{part.x0, part.y0}, {part.x1, part.y1}});
 }
 
-// Measures the error of a picture as it is shown. Returns the standard errors of pixels, where they
-// are wanted.
+// Measures the error of a picture as it is shown. Returns the standard errors of pixels, if wanted.
 std::vector<float> MeasureShown(const ShownPicture& picture, std::span<const PixelRect> places,
                                 bool withDeviation, Blocks* blocks) {
     if (places.empty() && !withDeviation) return {};
@@ -109,7 +103,6 @@ std::vector<float> MeasureShown(const ShownPicture& picture, std::span<const Pix
     return withDeviation ? DeviationOf(picture, structure) : std::vector<float>();
 }
 
-// Measures the error of a denoised picture, whose memory it uses.
 DenoisedImage Measured(DenoisedPicture denoised, std::span<const PixelRect> places,
                        const DenoiserOptions& options) {
     DenoisedImage result;

@@ -37,7 +37,6 @@ struct DenoisedImage {
 // bits for any number of threads.
 DenoisedImage RunDenoiser(NoisyPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
-// A picture as the sum of the light of groups of lights.
 struct GroupedPicture {
     int groups = 1;   // > 0
     Planes features;  // as in NoisyPicture
@@ -50,8 +49,7 @@ struct GroupedPicture {
 // largest: of the sum, or of a group.
 DenoisedImage RunDenoiser(GroupedPicture, std::span<const PixelRect>, const DenoiserOptions& = {});
 
-// Finds halves of the samples whose noise is not independent, which therefore cannot judge each
-// other.
+// Finds halves whose noise is not independent, which therefore cannot judge each other.
 
 // Returns why two halves, R, G, B, of one size, are not independent, or "". Found are
 //   - the same values, unless all pixels are alike, which have no noise;

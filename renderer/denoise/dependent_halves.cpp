@@ -1,6 +1,5 @@
 #include "renderer/denoise/denoiser.h"
 
-#include <array>
 #include <cmath>
 
 #include "stopping/signals/lightness.h"
@@ -44,7 +43,6 @@ Planes HighPassed(const Planes& image) {
     return result;
 }
 
-// Sums over a tile, of both halves (a, b) and of half their difference squared.
 struct TileSums {
     double aa = 0, bb = 0, ab = 0, ad = 0;
     double abBeside = 0, ddBeside = 0;  // products with the pixels to the right and below
@@ -72,7 +70,6 @@ TileSums SumTile(const Planes& a, const Planes& b, int x0, int y0) {
     return sums;
 }
 
-// A weighted mean of many values.
 struct Mean {
     double weights = 0, sum = 0, weightSquares = 0, weighted = 0, squares = 0;
     int count = 0;
@@ -99,7 +96,6 @@ bool IsOneColour(const Planes& image) {
     return true;
 }
 
-// Compares values bit by bit, after Sane().
 bool AreSame(const Planes& a, const Planes& b) {
     for (size_t i = 0; i < a.values.size(); ++i)
         if (Sane(a.values[i]) != Sane(b.values[i])) return false;

@@ -47,8 +47,7 @@ float MedianDisparity(int height, const FeatureReader& read) {
     return std::bit_cast<float>(middle * kCounters + find(low, &rank));
 }
 
-// Brings features to [-1, 1]: of one over the depth, d becomes d / (d + median), which is 0 where
-// there is nothing.
+// Brings features to [-1, 1]: one over the depth, d, becomes d / (d + median).
 void ScaleFeatures(float median, Planes* half) {
     for (int f = 0; f < kDisparity; ++f)
         for (size_t i = 0; i < half->Area(); ++i) {
@@ -61,7 +60,6 @@ void ScaleFeatures(float median, Planes* half) {
     }
 }
 
-// Adds half of a tile of an image, filtered by the weights of `guide`.
 void AddFiltered(const Planes& image, const PatchGuide& guide, const ImageTile& tile,
                  Planes* result) {
     PatchWeights weights(guide, tile, 0, kFeaturePatches);
@@ -124,7 +122,6 @@ constexpr int kMargin = 2 * kChoiceReach + 4;
 static_assert(kMargin % 2 == 0);
 constexpr int kFitReach = 2 * kPatches.radius;  // pixels from which a fit depends on features
 
-// Returns whether a picture is large enough to be looked at in half of its size.
 bool HasCoarse(int width, int height) { return std::min(width, height) >= 2 * kLeastSide; }
 
 // The share of the pixels of all scales that have been filtered.
@@ -146,7 +143,6 @@ class Meter {
     double all = 0, done = 0;
 };
 
-// Inputs of one scale.
 struct Level {
     const Halves& noisy;
     const Planes& features;
@@ -158,7 +154,6 @@ struct Level {
     int Height() const { return variance.height; }
 };
 
-// Some rows of the candidates of all bandwidths.
 struct CandidateRows {
     int first = 0;  // the row of the picture that is their first
     std::vector<Halves> pictures;
@@ -167,7 +162,6 @@ struct CandidateRows {
         const Planes picture(width, rows, kColours);
         pictures.assign(kBandwidths.size(), {picture, picture});
     }
-    // Forgets the rows above `row`.
     void MoveTo(int row) {
         for (Halves& picture : pictures)
             for (Planes* half : {&picture.a, &picture.b})
@@ -176,7 +170,6 @@ struct CandidateRows {
                               half->Row(c, 0));
         first = row;
     }
-    // Makes the rows [y0, y1).
     void Fit(const Level& level, int y0, int y1) {
         ForEachTile(level.Width(), y0, y1, [&](const ImageTile& tile) {
             ForEachIndex(2, [&](int i) {
@@ -195,7 +188,6 @@ struct CandidateRows {
             });
         });
     }
-    // Returns a crop, which begins at an even pixel, of the best of all scales.
     Halves Choose(const Level& level, const ImageTile& crop) const {
         const Halves noisy = Crop(level.noisy, crop);
         const Planes variance = Crop(level.variance, crop);

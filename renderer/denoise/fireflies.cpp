@@ -14,7 +14,6 @@ constexpr int kBandRows = 256;          // over which what is taken is returned 
 constexpr int kRounds = 2;              // as fireflies hide each other
 constexpr float kMostReturned = 0.05f;  // of a pixel's brightness, by one firefly
 
-// The extremes of the luminance of a pixel and its eight neighbours.
 struct Around {
     Planes least, most;
 };
@@ -35,14 +34,12 @@ Around LuminancesAround(const Planes& image) {
     return around;
 }
 
-// A pixel of a half whose colour is to be scaled down.
 struct Bright {
     Planes Halves::*half;
     size_t pixel;
     float scale;
 };
 
-// Finds the fireflies of a tile.
 std::vector<Bright> FindIn(float limit, const Halves& halves, const ImageTile& tile) {
     const ImageTile crop = tile.Grown(kScaleRadius).Within(halves.a.width, halves.a.height);
     const Halves part = Crop(halves, crop);
@@ -76,7 +73,6 @@ std::vector<Bright> FindIn(float limit, const Halves& halves, const ImageTile& t
     return found;
 }
 
-// Finds those of an image, always in the same order.
 std::vector<Bright> Find(float limit, const Halves& halves) {
     const int width = halves.a.width, height = halves.a.height;
     std::vector<std::vector<Bright>> columns(size_t(width / kTileWidth + 1));
@@ -94,7 +90,6 @@ Planes Spread(Planes image) {
     return BoxSum(BoxSum(std::move(image), kSpreadRadius), kSpreadRadius);
 }
 
-// Rows of an image, and those within reach of the spread.
 struct Band {
     int y0, y1;
     ImageTile around;
@@ -107,13 +102,11 @@ struct Band {
         const int y = int(pixel / size_t(width));
         return y >= around.y0 && y < around.y1;
     }
-    // Returns the place of a pixel of the image in `around`.
     size_t Local(size_t pixel, int width) const {
         return pixel - size_t(around.y0) * size_t(width);
     }
 };
 
-// Calls use(band) for all bands of an image.
 template <typename Use>
 void ForEachBand(const Planes& image, const Use& use) {
     for (int y0 = 0; y0 < image.height; y0 += kBandRows) {

@@ -17,8 +17,7 @@ constexpr int kSmoothRadius = kErrorReach;
 constexpr double kLeast = 0.01;  // of the mean deviation
 // Contrast sensitivity (Barten, "Contrast Sensitivity of the Human Eye", SPIE 1999; at 100 cd/m^2,
 // 10 degrees, 40 pixels a degree): people see blotches of 4, 8, 16 pixels 2.2, 2.0, 1.4 times as
-// well as noise that changes from pixel to pixel. By these constants they count 1.5, 1.8, 1.9
-// times.
+// well as noise by the pixel. By these constants they count 1.5, 1.8, 1.9 times.
 constexpr int kCoarseRadius = 3;  // pixels
 constexpr float kCoarseGain = 1;
 constexpr float kVisible = 1.13f;  // times the standard deviation of a sum of products of noise
@@ -30,11 +29,9 @@ constexpr double kUsualDeviation = 0.25;
 // the samples and of the usual ratio. Chosen on 13 scenes by three seeds, so that the bound of the
 // visible difference is exceeded in 7 % (tests/measurements/renderer.md).
 constexpr double kModelDeviation = 0.15;
-// The bound is not below this fraction of the samples' own bound, because of errors hidden under
-// the noise of unusual pictures.
+// The bound is not below this fraction of the samples' own bound, for errors hidden under noise.
 constexpr double kTrust = 0.8;
 
-// Sums up a sub-block.
 struct Sums {
     double count = 0, lightness = 0, lightnessSquares = 0, squared = 0, variance = 0, least = 0;
 
@@ -57,7 +54,6 @@ struct Sums {
     }
 };
 
-// Mean squares of errors, with the variance of the first.
 struct Squares {
     double estimate = 0, variance = 0, least = 0;
 };
@@ -77,9 +73,8 @@ struct Estimate {
 };
 
 // Returns the samples' estimate. By Cauchy's inequality the square is at most mean(1 / w) mean(w
-// s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s).
-// Little is known of s itself, but much of its variances, which are correlated with it; noisier
-// sub-blocks get smaller weights, so that their uncertainty does not dominate.
+// s), for any weights w > 0 of the mean squares s, and about that where w goes as 1 / sqrt(s). By
+// variances, which go with s, noisier sub-blocks get smaller weights.
 Estimate FromSamples(std::span<const Squares> all) {
     const double n = double(all.size());
     double deviations = 0;
@@ -95,7 +90,6 @@ Estimate FromSamples(std::span<const Squares> all) {
     return {inverse * mean, inverse * inverse * variance};
 }
 
-// Returns the usual error for this difference of the denoised halves.
 Estimate Usual(double least) {
     const double mean = Sqr(kUsual * least);
     return {mean, Sqr(2 * kUsualDeviation * mean)};
@@ -120,7 +114,6 @@ Planes LuminancesOf(const Planes& image) {
     return luminances;
 }
 
-// Returns slope * (a - b) of the luminances of two pictures, in lightness.
 Planes Difference(const Planes& a, const Planes& b, const Planes& slope) {
     Planes difference(a.width, a.height, 1);
     for (size_t i = 0; i < difference.Area(); ++i)
@@ -137,7 +130,6 @@ void AddSquare(const Planes& a, const Planes& b, const Planes& slope, float shar
     for (size_t i = 0; i < sum->Area(); ++i) sum->values[i] += share * Sqr(difference.values[i]);
 }
 
-// Measures all but the structure.
 EstimatedError Measure(const DenoisedPicture& denoised, bool asSeen) {
     EstimatedError error;
     error.lightness = Planes(denoised.picture.width, denoised.picture.height, 1);

@@ -8,7 +8,6 @@ namespace lull {
 
 namespace {
 
-// Calls use(y0, y1) for some rows after the other, those of a large image on all threads.
 template <typename Use>
 void ForEachRows(const Planes& image, const Use& use) {
     constexpr int kRows = 32;
@@ -21,12 +20,10 @@ void ForEachRows(const Planes& image, const Use& use) {
     });
 }
 
-// Returns how many of the places up to `radius` before and after place i there are.
 int CountAround(int i, int size, int radius) {
     return std::min(size, i + radius + 1) - std::max(0, i - radius);
 }
 
-// Replaces each row by the sum of those up to `radius` above and below, or by their mean.
 void FilterColumns(int radius, bool asMean, Planes* image) {
     const size_t width = size_t(image->width);
     const int height = image->height;
@@ -148,7 +145,6 @@ void PatchWeights::MoveTo(int y) {
     }
 }
 
-// Adds up the differences of row y along the rows of patches.
 void PatchWeights::AddRow(int y) {
     const int length = area.x1 - area.x0 + kLanes;
     for (int o = 0; o < halfCount; ++o) {
@@ -174,7 +170,6 @@ void PatchWeights::AddRow(int y) {
     }
 }
 
-// Makes the distances of row y from the sums of AddRow() over the rows of its patches.
 void PatchWeights::MeasureRow(int y) {
     const int length = area.x1 - area.x0 + kLanes;
     const float norm = 1.f / float(sumRows * sumRows * image.Count());

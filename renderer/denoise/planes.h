@@ -43,7 +43,6 @@ struct Planes {
 
 inline constexpr int kColours = 3;  // R, G, B
 
-// Two half buffers.
 struct Halves {
     Planes a, b;
 };
@@ -51,7 +50,6 @@ inline Halves MakeHalves(int width, int height, int count) {
     return {Planes(width, height, count), Planes(width, height, count)};
 }
 
-// Returns the luminance of pixel i of an image with channels R, G, B.
 inline float LuminanceOf(const Planes& image, size_t i) {
     return Luminance(Rgb(image.Plane(0)[i], image.Plane(1)[i], image.Plane(2)[i]));
 }
@@ -93,7 +91,6 @@ struct ImageTile {
     ImageTile Grown(int margin) const {
         return {x0 - margin, y0 - margin, x1 + margin, y1 + margin};
     }
-    // Returns the part within an image.
     ImageTile Within(int width, int height) const {
         return {std::max(x0, 0), std::max(y0, 0), std::min(x1, width), std::min(y1, height)};
     }
@@ -129,7 +126,6 @@ void ForEachTile(int width, int height, const Use& use) {
     for (int y = 0; y < height; y += rows) ForEachTile(width, y, std::min(height, y + rows), use);
 }
 
-// Returns the part of an image that a tile within it covers.
 inline Planes Crop(const Planes& image, const ImageTile& tile) {
     Planes part(tile.x1 - tile.x0, tile.y1 - tile.y0, image.count);
     for (int c = 0; c < part.count; ++c)
@@ -142,7 +138,6 @@ inline Halves Crop(const Halves& halves, const ImageTile& tile) {
     return {Crop(halves.a, tile), Crop(halves.b, tile)};
 }
 
-// Copies a tile of an image to where (x, y) is its first pixel.
 inline void Paste(const Planes& image, const ImageTile& tile, int x, int y, Planes* to) {
     for (int c = 0; c < image.count; ++c)
         for (int v = tile.y0; v < tile.y1; ++v)
@@ -194,8 +189,7 @@ struct PatchOptions {
 
 // Measures, row by row of a tile and its border, the distance of the patches of two pixels: the
 // mean over patch and channels of (u - u')^2 / (v + v') - 1, which is 0 on average for patches that
-// differ by noise only. Where one of them has far more noise, v + v' is limited. Only the rows are
-// stored that the current one is compared with.
+// differ by noise only. Where one of them has far more noise, v + v' is limited.
 class PatchWeights {
   public:
     struct Offset {

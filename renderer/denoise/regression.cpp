@@ -23,13 +23,11 @@ constexpr int kAtOnce = 4;          // neighbours for which each sum is loaded a
 
 static_assert(kUnknowns % 2 == 0);
 
-// The normal equations, one a row: sums of w xi xj, then of w xi c. The part left of the diagonal
-// is not used.
+// The normal equations, one a row: sums of w xi xj from the diagonal on, then of w xi c.
 using Equations = std::array<std::array<Lanes, kColumns>, kUnknowns>;
 
 // Adds neighbours with these weights to the rows i and i + 1, which have their values loaded once;
-// values are xj and c of each. Columns are written out, as loops of few rounds cost more than they
-// do.
+// values are xj and c of each. Columns are written out: loops of few rounds cost more.
 template <size_t i, size_t... j>
 void AddToRows(const Lanes* weights, const std::array<Lanes, kColumns>* values,
                std::index_sequence<j...>, Equations* equations) {
@@ -79,7 +77,6 @@ void Solve(Equations* equations) {
         }
 }
 
-// Position of a neighbour.
 struct Neighbour {
     int x, y;            // relative to the pixel
     ptrdiff_t distance;  // in memory
@@ -187,7 +184,6 @@ class TileFits {
         }
     }
 
-    // Sets the terms of a neighbour in the equations. Features are relative to the pixel's.
     void Look(const Neighbour& at, const float* featuresHere, const float* coloursHere,
               std::array<Lanes, kColumns>* values) const {
         (*values)[0] = Lanes::Ones();
@@ -200,8 +196,7 @@ class TileFits {
             (*values)[kUnknowns + c] = LanesIn(coloursHere + c * colour.PlaneSize() + at.distance);
     }
 
-    // Adds the prediction of the fit at (x, y) for its neighbours within the tile, by their
-    // weights, which are the same both ways.
+    // Adds the fit's prediction at (x, y) for its neighbours by their weights, the same both ways.
     void Spread(int x, int y, Cutout* to) {
         const auto unknown = [&](size_t i, size_t c) -> Lanes& {
             return equations[i][kUnknowns + c];
@@ -264,7 +259,6 @@ constexpr float kDarkest = 1e-3f;  // squared luminance below which errors are n
 constexpr float kAlikeVariance = 1e-4f;  // relative, squared; below it, pixels count alike
 constexpr float kChanceDeviations = 2;   // of chance that a candidate must be better by
 
-// Scale and weights of all candidates' errors.
 struct ErrorScale {
     Planes ofSquares;  // makes squared errors relative
     Planes weight;     // of pixels
@@ -310,8 +304,7 @@ Planes ErrorOf(const Planes& made, const Planes& other, const Planes& reference,
     return error;
 }
 
-// Returns the squared error of the samples, which is their variance, and the chance error of the
-// others' estimates.
+// Returns the squared error of the samples: their variance, and the others' chance error.
 Planes ErrorOfNoise(const Planes& variance, const ErrorScale& scale) {
     Planes error(variance.width, variance.height, 1), chance = error;
     for (size_t i = 0; i < error.Area(); ++i) {

@@ -32,7 +32,6 @@ struct Offset {
     int x, y;
 };
 
-// Pixels around one, over which the residual is summed.
 struct Kernel {
     std::vector<Offset> sums;    // of pixels or, if it is wide, of the boxes around them
     std::vector<Offset> middle;  // the pixels that get the mean
@@ -48,7 +47,6 @@ std::vector<Offset> Box(int radius, int step) {
     return box;
 }
 
-// Steps along the axis that the line is closer to.
 std::vector<Offset> Line(int direction, int reach, int step) {
     const double angle = direction * std::numbers::pi / kDirections, c = std::cos(angle),
                  s = std::sin(angle), length = std::max(std::abs(c), std::abs(s));
@@ -69,7 +67,6 @@ std::vector<Kernel> AllKernels() {
     return kernels;
 }
 
-// Residual of the mean of both halves in lightness, its variance, and sums over boxes.
 struct Residual {
     enum Channel {
         kValue,
@@ -82,7 +79,6 @@ struct Residual {
     Cutout pixels, boxes;  // with zeros beyond the border of the picture
 };
 
-// Measures row y of the picture, which is row `row` of the result.
 void MeasureResidual(const Halves& noisy, const Planes& variance, const Halves& picture, int y,
                      int row, Planes* to) {
     for (int x = 0; x < variance.width; ++x) {
@@ -110,7 +106,6 @@ void BlurChannel(Residual::Channel channel, Planes* image) {
     std::copy_n(blurred.values.data(), image->Area(), image->Plane(channel));
 }
 
-// Returns some rows of a picture with a margin, of an image whose first row is row `first` of it.
 Cutout WithMargin(const Planes& image, int first, int y0, int y1) {
     Cutout cutout(ImageTile{0, y0, image.width, y1}.Grown(kKernelReach), image.count);
     const int begin = std::max(first, y0 - kKernelReach);
@@ -121,7 +116,6 @@ Cutout WithMargin(const Planes& image, int first, int y0, int y1) {
     return cutout;
 }
 
-// Returns the residual of the rows [y0, y1), and of those that kernels around them reach.
 Residual ResidualOf(const Halves& noisy, const Planes& variance, const Halves& picture, int y0,
                     int y1) {
     const int first = std::max(0, y0 - kResidualReach),
@@ -147,7 +141,6 @@ struct Found {
     float mean, share, weight;
 };
 
-// The squared sum over a kernel, by the variance that it has if it is noise, and that sum.
 struct KernelSum {
     Lanes value, squared;
 };
@@ -187,7 +180,6 @@ void FindAt(const Residual& residual, const std::vector<Kernel>& kernels, int x,
     }
 }
 
-// Returns the structure found in each row. The residual, which is large, is made band by band.
 std::vector<std::vector<Found>> Find(const Halves& noisy, const Planes& variance,
                                      const Halves& picture, const std::vector<Kernel>& kernels) {
     const int width = variance.width, height = variance.height;
@@ -218,7 +210,6 @@ void ForEachPixel(const Kernel& kernel, const Planes& image, int x, int y, const
                 if (IsWithin(image, u, v)) use(u, v);
 }
 
-// Returns the mean residual of the samples of one half.
 Rgb MeanResidual(const Planes& noisy, const Planes& picture, const Kernel& kernel, int x, int y) {
     Rgb sum = Rgb::Zero();
     ForEachPixel(kernel, noisy, x, y, [&](int u, int v) {
@@ -248,8 +239,7 @@ void AddToRows(std::span<const Found> all, std::span<const Rgb> means,
     }
 }
 
-// Adds to each pixel of a half the weighted mean of all, row by row, that is found by kernels with
-// it in their middle.
+// Adds to each pixel of a half the weighted mean of all that kernels in whose middle it is find.
 void AddFound(const std::vector<Found>& all, const std::vector<Kernel>& kernels,
               const Planes& noisy, Planes* picture) {
     std::vector<Rgb> means(all.size());

@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kMostError = 100;  // in lightness: black instead of white
 
-// Returns the detail that a block lacks, in lightness, where its error is `ratio` times half the
-// difference of the halves.
+// Returns the lightness that a block lacks, where its error is `ratio` times HalfDifference().
 Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const float> slope,
                  float ratio) {
     const Planes& size = noisy.a;
@@ -33,7 +32,6 @@ Planes MissingIn(const Halves& halves, const Halves& noisy, std::span<const floa
     return MissingDetail(crossed, ratio);
 }
 
-// The picture of a block, prepared for comparisons with pictures that differ by its error.
 struct ShownBlock {
     Planes picture;
     std::vector<float> slope;  // of lightness by luminance
@@ -67,7 +65,6 @@ ShownBlock Show(Planes picture, const Planes& returned, const DisplayModel& disp
     return block;
 }
 
-// Returns half the difference of two pictures.
 Planes HalfDifference(const Halves& halves) {
     Planes half = halves.a;
     for (size_t i = 0; i < half.values.size(); ++i)
@@ -75,7 +72,6 @@ Planes HalfDifference(const Halves& halves) {
     return half;
 }
 
-// Sets the error to 0 in these pixels of a block.
 void Clear(std::span<const size_t> pixels, const PixelRect& block, EstimatedError* error) {
     for (const size_t i : pixels) {
         const int x = block.min.x() + int(i) % block.Width(),
@@ -134,7 +130,6 @@ constexpr double kIndependent = 0.25;
 constexpr double kPattern = 1.5;
 constexpr int kSmallestSide = 8;  // pixels; coarser bands have too few values to tell
 
-// Takes the finest band out of an image, which is reduced.
 Plane TakeBand(Plane* image) {
     Plane coarse = Reduce(*image), band = Expand(coarse, image->width, image->height);
     for (size_t i = 0; i < band.values.size(); ++i)
@@ -143,8 +138,7 @@ Plane TakeBand(Plane* image) {
     return band;
 }
 
-// Returns an upper estimate of the mean square by which the error of a band exceeds the expected
-// one; 0 where that is not significant.
+// Returns an upper estimate of the excess of a band's mean squared error; 0 if not significant.
 double Excess(const Plane& a, const Plane& b, const Plane& noise, const Plane& half, float ratio) {
     double sum = 0, squares = 0;
     for (size_t i = 0; i < a.values.size(); ++i) {

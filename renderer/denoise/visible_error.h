@@ -14,8 +14,7 @@ namespace lull {
 
 // Estimates the error in lightness of a denoised picture from the halves of its samples.
 
-// Estimates, pixel by pixel, of the squared error in lightness L (0 to 100) of a denoised picture
-// as a display shows it.
+// Estimates by pixel of the squared error in lightness L (0 to 100) of a picture as displayed.
 struct EstimatedError {
     Planes lightness;  // of the picture
     Planes squared;    // an estimate of it without bias (see ChooseCandidates()), and very noisy
@@ -47,7 +46,6 @@ struct LightnessError {
 // Measures a block of at least 10 pixels a side.
 LightnessError MeasureLightnessError(const EstimatedError&, const PixelRect&);
 
-// Returns the part of a picture that a tile within it covers.
 DenoisedPicture Crop(const DenoisedPicture&, const ImageTile&);
 
 // Returns the estimated standard error of each pixel in lightness, smoothed over the pixels around,
@@ -64,13 +62,11 @@ inline LightnessSlope<float> DisplayedLightness(float y) {
 
 // Shows denoised pictures as they are graded.
 
-// Replaces linear R, G, B of pixels by those that a display shows, from any thread; null: they
-// stay.
+// Replaces linear R, G, B of pixels by those on a display, from any thread; null: they stay.
 using Grading = std::function<void(std::span<float> rgb)>;
 
 // Returns the picture as it is shown. Its halves and their samples differ from it by noise, which
-// is scaled by the derivative of the grading there, so that estimates without bias have none after
-// it.
+// is scaled by the derivative of the grading there, which keeps estimates unbiased.
 DenoisedPicture Graded(const DenoisedPicture&, const Grading&);
 
 // The visible difference (renderer/vision/visible_difference.h) between a block of the picture and
@@ -79,16 +75,14 @@ DenoisedPicture Graded(const DenoisedPicture&, const Grading&);
 struct VisibleError {
     double estimate = 0;
     double upper = 0;  // seldom exceeded
-    // How many of the worst pixels may be wrong by kNoticedError or more, and by how much at most,
-    // in lightness.
+    // How many of the worst pixels may be wrong by kNoticedError or more, and by what lightness.
     int worstPixels = 0;
     double worst = 0;
 };
 
 inline constexpr double kNoticedError = 5;  // of a pixel, in lightness
 
-// The estimate, without the worst pixels, below which a block is accepted: the default of the rule
-// `denoised`.
+// The default of the rule `denoised`: the estimate, without the worst pixels, of accepted blocks.
 inline constexpr double kAcceptedDifference = 3.1;
 
 // Measures a block of at least 10 pixels a side. Half the difference of the denoised halves has the

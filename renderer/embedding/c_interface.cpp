@@ -187,8 +187,7 @@ namespace lull {
 
 namespace {
 
-// Copies the rows of an image from y0 on to planes from number `first` on. Values need not be
-// aligned.
+// Copies rows from y0 on to planes from number `first` on. Values need not be aligned.
 void Copy(const float* from, const lull_halves& layout, int y0, int channels, int first,
           Planes* to) {
     const ptrdiff_t channel = layout.channel_stride ? layout.channel_stride : sizeof(float);

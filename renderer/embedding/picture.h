@@ -32,16 +32,13 @@ std::vector<double> LightnessOf(const lull_picture& picture);
 // Returns whether the strides of a picture leave room for a fourth channel.
 bool HasFourthChannel(const lull_picture& picture);
 
-// Counts the values of a part of a picture that begins at `origin`. None of 8-bit codes, all of
-// which are possible.
+// Counts the values of a part of a picture that begins at `origin`. None of 8-bit codes.
 PictureValues ValuesOf(const lull_picture& picture, const void* origin, const lull_rect& part);
 
-// Denoises a picture. Throws std::invalid_argument, with nothing written, for pictures and outputs
-// that lull/lull.h does not allow.
+// Throws std::invalid_argument, with nothing written, for what lull/lull.h does not allow.
 void Denoise(const lull_noisy_picture& noisy, lull_denoised_picture* clean);
 
-// Notices pictures of a block that lie too far apart for rules that compare them: these then look
-// at none, and never stop the block.
+// Notices pictures of a block too far apart for rules that compare them, which never stop it then.
 
 class PictureSpacing {
   public:

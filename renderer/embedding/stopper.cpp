@@ -77,7 +77,6 @@ uint32_t Checksum(std::span<const std::byte> bytes) {
     return uint32_t(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-// Returns the identity of a saved state: its settings, rule and blocks.
 std::vector<std::byte> IdentityOf(const lull_settings& settings, const Rule& rule,
                                   const BlockGrid& grid) {
     StateWriter writer;

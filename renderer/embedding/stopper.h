@@ -34,8 +34,7 @@ class Stopper {
     std::vector<lull_answer> Observe(const lull_picture& picture, int spp);
     lull_answer ObserveBlock(int block, const lull_picture& picture, int spp);
     lull_answer Answer(int block) const;
-    // Returns a warning about the pictures that were shown, valid until the next call; "" if there
-    // is none.
+    // Returns a warning about the pictures shown, valid until the next call; "" if there is none.
     const char* Warning() const;
 
     std::vector<std::byte> Save() const;

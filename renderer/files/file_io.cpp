@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 // Members of AtomicFile. It has linkage, and so must these.
 namespace file_io {
 
-// Owns a descriptor and, while `temporary` is not empty, the file of that name.
 struct OutputFile {
     int fd = -1;
     int lock = -1;  // another descriptor of the same file, which keeps it locked
@@ -47,7 +46,6 @@ struct OutputFile {
     }
 };
 
-// The end of the links of `path`: the place to write to, and its status.
 struct Target {
     fs::path path;
     fs::file_status status;
@@ -75,7 +73,6 @@ fs::path BesideTarget(const fs::path& target, const std::string& tag) {
                                               tag, target.extension().string().substr(0, 32));
 }
 
-// Creates the file; returns false, with errno, where there is one or it cannot be created.
 bool Create(const fs::path& name, OutputFile* file) {
     file->fd = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file->fd >= 0) file->temporary = name;
@@ -97,8 +94,7 @@ bool CreateLocked(const fs::path& name, OutputFile* file) {
     return false;
 }
 
-// Removes the file that a killed writer has left; returns false if another process is writing to
-// it, or that cannot be determined.
+// Removes the file that a killed writer has left; returns false if another may be writing to it.
 bool RemoveLeftover(const fs::path& name) {
     OutputFile old;
     old.fd = open(name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -108,9 +104,8 @@ bool RemoveLeftover(const fs::path& name) {
     return !IsNamed(old.fd, name) || unlink(name.c_str()) == 0;
 }
 
-// Creates a new file in the folder of `target`. It has always the same name, so that files left by
-// killed writers do not accumulate; where another writer has that, or the file system has no locks,
-// a name of its own.
+// Creates a new file in the folder of `target`. It always has the same name, so that files of
+// killed writers do not accumulate, or, without locks or where another has that, a name of its own.
 void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* file) {
     const fs::path common = BesideTarget(target, "tmp");
     for (int attempt = 0; attempt < 10; ++attempt) {
@@ -125,7 +120,6 @@ void OpenTemporary(const std::string& path, const fs::path& target, OutputFile* 
     FailWithErrno(path);
 }
 
-// Calls write(bytes, done), which returns the number of bytes written, until all are.
 template <typename Write>
 void WriteAll(const std::string& path, std::span<const std::byte> bytes, const Write& write) {
     for (size_t done = 0; done < bytes.size();) {
@@ -300,6 +294,10 @@ FileContents ReadFile(const std::string& path, const FileLoc& loc) {
         done += size_t(n);
     }
     return contents;
+}
+
+std::string ExtensionOf(const std::string& file) {
+    return LowerCase(fs::path(file).extension().string());
 }
 
 std::string_view WithoutByteOrderMark(std::string_view text, const FileLoc& loc) {

@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "renderer/base/error.h"
 #include "stopping/base/input_file.h"
@@ -16,8 +15,7 @@ namespace lull {
 
 // Names of open files.
 
-// Returns whether the name is still of the open file: an earlier holder of its lock may have
-// removed or renamed it.
+// Returns whether the name is still of the open file: who had its lock may have moved it.
 bool IsNamed(int fd, const std::string& name);
 
 // Replaces the file at `path` by `bytes` atomically: they are written to a new file in its folder,
@@ -61,10 +59,12 @@ struct FileContents {
 // the file), if it is missing, a directory, or cannot be read.
 FileContents ReadFile(const std::string& path, const FileLoc& loc = {});
 
+// Returns the extension of a file's name, such as ".png", in lower case.
+std::string ExtensionOf(const std::string& file);
+
 // Cleans texts of what editors and old programs put around them.
 
-// Returns the text without UTF-8's byte-order mark. Throws Error at `loc` for UTF-16 and UTF-32,
-// with or without theirs.
+// Returns the text without UTF-8's byte-order mark. Throws Error at `loc` for UTF-16 and UTF-32.
 std::string_view WithoutByteOrderMark(std::string_view text, const FileLoc& loc);
 
 // Does so, and leaves out Control-Z and NUL at the end, by which old programs mark it.

@@ -24,8 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Finds files again, by their names with all links followed and, where they exist, by device and
-// inode.
+// Finds files again, by names with all links followed and, of those that exist, device and inode.
 class FoundFiles {
   public:
     // Returns the file that is the same as this one, null for none, and keeps this one. Files that
@@ -86,7 +85,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Makes a folder of a new name; "" where that cannot be done.
 std::string MakeNewFolder() {
     std::error_code error;
     const fs::path parent = fs::temp_directory_path(error);

@@ -32,8 +32,7 @@ class ResultFiles {
     void WriteAll(const std::vector<File>&);
     void WriteText(const std::string& path, const std::string& text);
 
-    // Removes the file that earlier work has left there, so that it is not taken for one of these.
-    // Nothing else than a file is removed.
+    // Removes the file that earlier work has left there, which could be taken for one of these.
     static void RemoveOld(const std::string& path);
 
     // Returns the files that were written, wherever they are, in that order.

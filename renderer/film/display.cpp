@@ -42,8 +42,7 @@ DisplayAddress ParseDisplayAddress(const std::string& text) {
     return address;
 }
 
-// State of the thread; the thread shares it, so that a slow look-up of a name does not
-// block.
+// Shared by the thread, so that a slow look-up of a name does not block.
 struct Display::State {
     State(const DisplayAddress& address, const std::string& name, const PixelRect& region,
           std::function<void(const std::string&)> warn)
@@ -116,14 +115,12 @@ struct Display::State {
         return ended && Clock::now() >= deadline;
     }
 
-    // Returns whether the end has come.
     bool Rest(Seconds time) {
         std::unique_lock lock(mutex);
         changed.wait_for(lock, time, [&] { return bool(ended); });
         return ended;
     }
 
-    // Tells the thread to end by then, and waits for it so long.
     void End(Seconds time) {
         std::unique_lock lock(mutex);
         if (ended) return;

@@ -10,7 +10,6 @@
 
 namespace lull {
 
-// Where a viewer listens.
 struct DisplayAddress {
     std::string host, port;
 };
@@ -25,8 +24,7 @@ DisplayAddress ParseDisplayAddress(const std::string& text);
 // retries every few seconds, and sends everything to a viewer that appears later.
 class Display {
   public:
-    // `name` is the name of the image in the viewer; `warn` is called at most once, from any
-    // thread.
+    // `name` is the image's in the viewer; `warn` is called at most once, from any thread.
     Display(const DisplayAddress&, const std::string& name, const PixelRect& region,
             std::function<void(const std::string&)> warn);
     // Ends without waiting for the viewer.

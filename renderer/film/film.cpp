@@ -11,7 +11,6 @@ namespace lull {
 
 namespace {
 
-// Returns the mean of samples that add up to `sum`; black, where there are none.
 Rgb MeanOf(const std::array<double, 3>& sum, uint32_t count) {
     if (count == 0) return {0, 0, 0};
     return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};
@@ -21,7 +20,6 @@ void Store(const Rgb& c, float* to) {
     for (int i = 0; i < 3; ++i) to[i] = c[i];
 }
 
-// Returns the tile that each pixel along an axis of `size` pixels is in.
 std::vector<int> TilesAlong(int size, const TileGrid& grid, bool isAcross) {
     std::vector<int> tiles;
     int tile = -1;
@@ -120,28 +118,16 @@ void Film::Extract(const PixelRect& rect, bool withHalf, FilmView* view) const {
         }
 }
 
-template <typename Visit>
-void Film::ForEachPixel(Visit visit) const {
-    size_t i = 0;
-    for (const int row : rows)
-        for (const int column : columns) visit(i++, tiles.At({column, row}).count);
-}
-
 std::vector<float> Film::MeanImage() const {
     FilmView view;
     Extract(Region(), false, &view);
     return std::move(view.mean);
 }
 
-std::vector<float> Film::SppImage() const {
-    std::vector<float> image(sums.Pixels().size());
-    ForEachPixel([&](size_t i, uint32_t count) { image[i] = float(count); });
-    return image;
-}
-
 int64_t Film::SampleCount() const {
     int64_t n = 0;
-    ForEachPixel([&](size_t, uint32_t count) { n += count; });
+    for (const int row : rows)
+        for (const int column : columns) n += tiles.At({column, row}).count;
     return n;
 }
 

@@ -11,8 +11,7 @@
 
 namespace lull {
 
-// Sums up samples of a tile: how noisy they are, and what each strategy of light paths adds to
-// that.
+// Sums up samples of a tile: their noise, and what each strategy of light paths adds to it.
 struct SampleSpread {
     double squares = 0;   // of luminance, about the means of its pixels
     int64_t freedom = 0;  // how many of these are independent
@@ -21,16 +20,14 @@ struct SampleSpread {
     double light = 0;      // of that of light paths, one by one, in the round
 };
 
-// A coarse picture of a region: one colour for each square of spacing x spacing pixels of an image,
-// row by row, finite.
+// A coarse picture: one finite colour for each square of spacing x spacing pixels, row by row.
 struct FirstLook {
     int spacing = 1;  // pixels, > 0
     std::vector<Rgb> colours;
     int eyeWidth = 0;  // as in TileGrid
 };
 
-// The means of a rectangle of pixels as the stopping criteria read them: row-major RGB
-// triples. Reused from pass to pass.
+// The means of a rectangle as criteria read them: row-major RGB triples. Reused from pass to pass.
 struct FilmView {
     int width = 0, height = 0;
     std::vector<float> mean, halfMean;
@@ -58,18 +55,15 @@ class FilmTile;
 class Film {
   public:
     explicit Film(const PixelRect& region, const FilmOptions& options = {});
-    // Returns the size of such a film in bytes.
     static int64_t Bytes(const PixelRect& region, const FilmOptions&);
 
     const PixelRect& Region() const { return sums.Region(); }
     bool HasHalf() const { return halfSums.has_value(); }
-    // Forgets the sums of the half.
     void DropHalf() { halfSums.reset(); }
 
     // Returns a pixel; its `rejected` is 0, as those are counted by tile.
     FilmPixel At(const Vec2i& p) const;
-    // Opens a rectangle of whole tiles with the same number of samples, to add as many to each of
-    // its pixels.
+    // Opens a rectangle of whole tiles of one sample count, to add as many to each pixel.
     FilmTile Tile(const PixelRect& pixels);
 
     // Sets the colours that means of pixels without samples have instead of black.
@@ -81,9 +75,8 @@ class Film {
     // unless it is wanted. Throws std::logic_error if it is wanted and the film has no half.
     void Extract(const PixelRect& rect, bool withHalf, FilmView* view) const;
 
-    // Return the whole image (row-major RGB) and the samples each pixel had.
+    // Returns the whole image, row-major RGB.
     std::vector<float> MeanImage() const;
-    std::vector<float> SppImage() const;
     int64_t SampleCount() const;
     int64_t RejectedCount() const;
 
@@ -125,9 +118,6 @@ class Film {
     };
     using Sums = PixelPlane<std::array<double, 3>>;
 
-    // Calls visit(index, count) for every pixel, row by row.
-    template <typename Visit>
-    void ForEachPixel(Visit) const;
     Vec2i TileOf(const Vec2i& p) const {
         const Vec2i at = p - Region().min;
         return {columns[size_t(at.x())], rows[size_t(at.y())]};

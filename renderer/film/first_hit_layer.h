@@ -30,7 +30,6 @@ struct FeatureSums {
     bool operator==(const FeatureSums&) const = default;
 };
 
-// The same albedo and normal as AOVs.
 struct SurfaceSums {
     std::array<double, 3> albedo = {}, normal = {};
 
@@ -133,8 +132,7 @@ class FirstHitLayer {
     std::optional<PixelPlane<NearestHit>> nearest;
 };
 
-// Sums up the light of surfaces that are seen directly, of which the denoiser leaves small ones as
-// they are.
+// Sums up the light of surfaces seen directly, of which the denoiser leaves small ones as they are.
 
 // The sums of a pixel, R, G, B, of the samples that are in the half (InHalf()), and of the others.
 struct EmissionSums {
@@ -212,8 +210,7 @@ class SquareLayer {
     Plane plane;
 };
 
-// Accumulates the coverage of each pixel, for compositing: by the scene, and by which objects
-// and materials how much.
+// Accumulates the coverage of each pixel, for compositing: by the scene, by objects and materials.
 
 // The sums of a pixel, added to in the order of the samples as FilmPixel is.
 struct AlphaPixel {
@@ -232,8 +229,7 @@ struct AlphaPixel {
     bool operator==(const AlphaPixel&) const = default;
 };
 
-// Which share of a pixel one object or material has: its number (FirstHit), 0 for none, and
-// the weights of its samples.
+// An object's or material's share of a pixel: its number (FirstHit), 0: none, and its weights.
 struct MatteShare {
     uint32_t number = 0;
     float weight = 0;

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,15 +26,13 @@ namespace lull {
 // Returns how many of the samples 0 .. count - 1 are in the half.
 uint32_t HalfCount(uint32_t count);
 
-// Returns the luminance of a sum of colours.
 inline double Luminance(const std::array<double, 3>& sum) {
     const auto& [r, g, b] = kLuminanceWeights;
     return r * sum[0] + g * sum[1] + b * sum[2];
 }
 
-// The sums of a pixel. Samples arrive in the order of their indices, 0, 1, 2, ..., and are
-// added to the running sums one by one, so that the sums are the same bits however the samples are
-// cut into passes.
+// The sums of a pixel. Samples are added one by one in the order of their indices, so that the sums
+// are the same bits however they are cut into passes.
 struct FilmPixel {
     std::array<double, 3> sum = {}, halfSum = {};
     uint32_t count = 0;
@@ -51,14 +48,12 @@ struct FilmPixel {
         ++count;
         rejected += wasRejected;
     }
-    // Return the mean of all samples, or of those in the half; without any, black, or the mean of
-    // all.
+    // Return the mean of all samples (none: black), or of those in the half (none: of all).
     Rgb Mean() const;
     Rgb HalfMean() const;
 };
 
-// A Pixel, value-initialised, for each of a region. Different ones can be changed by
-// different threads at the same time.
+// A Pixel, value-initialised, for each of a region. Threads can change different ones.
 template <typename Pixel, typename Allocator = std::allocator<Pixel>>
 class PixelPlane {
   public:
@@ -82,10 +77,8 @@ class PixelPlane {
         for (int y = rect.min.y(); y < rect.max.y(); ++y)
             writer->PutAll(std::span(&At({rect.min.x(), y}), size_t(rect.Width())));
     }
-    // Returns how many bytes that takes.
     static int64_t Bytes(const PixelRect& rect) { return rect.Area() * int64_t(sizeof(Pixel)); }
-    // Restores the data of Put(). Throws std::runtime_error where the bytes end too
-    // early.
+    // Restores the data of Put(). Throws std::runtime_error at their early end.
     void Get(const PixelRect& rect, StateReader* reader) {
         for (int y = rect.min.y(); y < rect.max.y(); ++y)
             reader->GetAll(std::span(&At({rect.min.x(), y}), size_t(rect.Width())));
@@ -181,7 +174,6 @@ class SplatPlane : public PixelPlane<SplatPixel> {
 
 // The AOVs that denoisers and compositors read ("arbitrary output variables").
 
-// Which are wanted, and how.
 struct AovSet {
     bool albedo = false, normal = false, depth = false, position = false, object = false,
          material = false, noise = false, alpha = false, cryptomatte = false;
@@ -200,7 +192,6 @@ std::string NameOf(const AovSet&);
 // Returns the same in words, with throughSpecular, for headers.
 std::string TextOf(const AovSet&);
 
-// Returns the names of all, with a separator between them.
 std::string AllAovs(const char* separator);
 
 // Reads such names, in any order. Throws Error naming the first unknown one.
@@ -228,8 +219,7 @@ struct SplatLight {
     double samples = 0;
     double camera = 0;  // the luminance of these samples without it
 
-    // Returns how much the squares of the samples' luminance add up to more by it: its variance is
-    // that of a Poisson process.
+    // Returns what it adds to the squares of the samples' luminance, as a Poisson process does.
     double Squares() const { return squares + 2 * each * camera + samples * each * each; }
 };
 

@@ -61,8 +61,7 @@ class LightGroupLayer {
     }
 
     int Count() const { return int(planes.size()); }
-    // Returns a pixel of a group: its sums, and the sample count that the film has. Without noise,
-    // `halfSum` is 0.
+    // Returns a pixel of a group, with the film's sample count. Without noise, `halfSum` is 0.
     FilmPixel At(int group, const Vec2i& p, uint32_t count) const {
         const Planes& plane = planes[size_t(group)];
         FilmPixel pixel{.sum = plane.sums.At(p), .count = count};
@@ -122,7 +121,6 @@ class LightGroupLayer {
 
 class Layers {
   public:
-    // No layers.
     Layers() = default;
     Layers(const PixelRect& region, const LayerOptions& wanted) : options(wanted) {
         const auto make = [&]<typename Kind>(std::optional<Kind>& kind) {

@@ -53,7 +53,6 @@ class ViewTransform {
     // Replaces linear R, G, B with the primaries of sRGB by encoded values, of which a display
     // shows 0 to 1. Infinite and NaN values are for the configuration to map.
     virtual void Apply(float* rgb, size_t pixels) const = 0;
-    // Returns the names of display and view, as DISPLAY/VIEW.
     virtual const char* Name() const = 0;
 };
 

@@ -1,6 +1,5 @@
-// The module of all formats but PNG and OpenEXR: OpenImageIO reads them. It is apart from the
-// program since OpenImageIO brings some 200 libraries, which take longer to load than many a
-// render.
+// The module of all formats but PNG and OpenEXR: OpenImageIO reads them. It is apart since
+// OpenImageIO brings some 200 libraries, which take longer to load than many a render.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -8,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -56,7 +54,6 @@ void HideAlpha(std::vector<char>* webp) {
     }
 }
 
-// An image of 4 channels, read from bytes.
 std::vector<uint8_t> ReadColors(std::vector<char> bytes, int width, int height) {
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &memory;
@@ -136,8 +133,7 @@ struct RadianceHeader {
     }
 };
 
-// Returns whether a TIFF leaves out how many bits a pixel has, which makes it one; OpenImageIO
-// takes it for eight.
+// Returns whether a TIFF leaves out its bits a pixel: it is one, OpenImageIO takes eight.
 bool LacksBitsPerSample(std::string_view tiff) {
     constexpr unsigned kBitsPerSample = 258;
     const bool isBig = tiff.starts_with("MM");
@@ -157,7 +153,6 @@ bool LacksBitsPerSample(std::string_view tiff) {
     return true;
 }
 
-// Returns rows from the top, of texels as they are stored.
 std::vector<float> Upright(const std::vector<float>& stored, int width, int height, int channels,
                            const RadianceHeader& order) {
     const int outWidth = order.turns ? height : width, outHeight = order.turns ? width : height;

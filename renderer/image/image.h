@@ -13,8 +13,7 @@
 
 namespace lull {
 
-// A 16-bit IEEE 754 float. Eigen::half is not used, since Eigen 3.4 converts it in software
-// when compiled by GCC.
+// A 16-bit IEEE 754 float. Eigen 3.4 converts Eigen::half in software by GCC.
 struct Half {
     uint16_t bits = 0;
 
@@ -38,7 +37,6 @@ struct Image {
     int channels = 0;  // 1: grey; 2: grey, alpha; 3: RGB; 4: RGB, unassociated alpha
     std::variant<std::vector<uint8_t>, std::vector<Half>, std::vector<float>> texels;
 
-    // Returns the memory that the texels take.
     size_t Bytes() const {
         return std::visit([](const auto& t) { return t.size() * sizeof(t[0]); }, texels);
     }

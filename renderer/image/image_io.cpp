@@ -33,7 +33,6 @@ constexpr size_t kSignature = 8;  // tells PNG and EXR from the rest
     throw Error(OneLine(fmt::format("cannot read image \"{}\": {}", path, reason)));
 }
 
-// Refuses implausible sizes before any memory is allocated.
 void CheckSize(const std::string& path, size_t fileSize, const ImageShape& shape) {
     const std::string size = fmt::format("{}x{}x{}", shape.width, shape.height, shape.channels);
     if (shape.width < 1 || shape.height < 1 || shape.channels < 1 || shape.width > kMaxSide ||
@@ -48,7 +47,6 @@ void CheckSize(const std::string& path, size_t fileSize, const ImageShape& shape
                 "use a smaller version of it");
 }
 
-// A file that has been found: its contents where the program reads its format itself.
 struct FoundFile {
     std::string path;
     size_t size = 0;
@@ -113,7 +111,6 @@ std::unique_ptr<ImageFile> Open(const std::string& type, std::span<const std::by
     return OpenOtherFormat("memory." + type, bytes);
 }
 
-// Converts the colours of a file of other primaries.
 void ToRec709(const ImageFile& file, Image* image) {
     const float* const xy = file.Chromaticities();
     if (!xy || image->channels < 3) return;
@@ -129,7 +126,6 @@ void ToRec709(const ImageFile& file, Image* image) {
         image->texels);
 }
 
-// Reads an image by `open`. Errors get the name here, which readers do not know.
 template <typename Open>
 Image Read(const std::string& name, size_t fileSize, const Open& open) try {
     const std::unique_ptr<ImageFile> file = open();
@@ -152,7 +148,6 @@ Image Read(const std::string& name, size_t fileSize, const Open& open) try {
     FailToRead(name, e.what());
 }
 
-// Converts a picture to an EXR of its values.
 ExrImage ExrOf(const Image& picture) {
     ExrImage image;
     image.width = picture.width;

@@ -72,9 +72,8 @@ std::shared_ptr<const ViewTransform> LoadView(const std::string& config, const s
 // half and float texels stay as they are, everything else becomes float (16-bit integers: 0 to 1).
 // Values are neither linearised nor multiplied by alpha. Of 4 or more channels the first 4 are read
 // if the last of these is alpha, else the first 3. An EXR's display window is the image, which is 0
-// outside the data window. Throws Error with the path and the reason: missing, unreadable,
-// truncated, larger than 2^16 a side, too short for its size, or a format whose module is not
-// installed.
+// outside the data window. Throws Error with the path and the reason, also for more than 2^16 a
+// side, or a format whose module is not installed.
 Image ReadImage(const std::string& path);
 
 // Reads an image from memory; `type` is the extension of its format, "png" or "jpg" for instance,
@@ -94,7 +93,6 @@ struct ExrChannel {
 // A matrix is in pbrt's convention: applied to column vectors, stored row by row.
 using ExrAttribute = std::variant<std::string, int, float, Mat4d>;
 
-// The contents of an EXR file.
 struct ExrImage {
     int width = 0, height = 0;     // of the data window
     Vec2i origin = Vec2i::Zero();  // of the data window, within the display window
@@ -113,15 +111,13 @@ struct ExrImage {
 // Returns how many values were clamped to 16 bits. Throws Error with the path and the reason.
 int64_t WriteExr(const std::string& path, const ExrImage& image);
 
-// Fills in row `y` of an image, 0 at the top, with adjacent channels. Is called from any thread,
-// for several rows at the same time.
+// Fills in row `y` of an image, 0 at the top, with adjacent channels. Is called from any thread.
 using RowSource = std::function<void(int y, std::span<float> values)>;
 
 // Does the same with channels of `image` that have no values: they come row by row.
 int64_t WriteExr(const std::string& path, const ExrImage& image, const RowSource& rows);
 
-// Writes several images as the parts of one file, whose attributes "view" name them; `rows` has
-// those of each.
+// Writes images as the parts of a file, whose attributes "view" name them; `rows`: one of each.
 int64_t WriteExr(const std::string& path, std::span<const ExrImage> parts,
                  std::span<const RowSource> rows);
 
@@ -133,22 +129,19 @@ ExrImage ReadExr(const std::string& path);
 // rounded, clamped to [0, 255]; NaN is black. Throws Error.
 std::vector<std::byte> EncodePng(std::span<const Rgb> pixels, int width, int height);
 
-// Encodes 8-bit sRGB pixels (R, G, B, rows from the top) as they are, as small as PNG can. Throws
-// Error.
+// Encodes 8-bit sRGB pixels (R, G, B, rows from the top), as small as PNG can. Throws Error.
 std::vector<std::byte> EncodePng(std::span<const uint8_t> srgb, int width, int height);
 
 // How a PNG shows linear RGB.
 struct PngFormat {
     int bits = 8;  // a component, or 16
     Grade grade = {};
-    // Rows have alpha as a fourth value, by which the colours are multiplied; in the file, as PNG
-    // has it, they are not.
+    // Rows have alpha as a fourth value, by which colours are multiplied; in the file they are not.
     bool hasAlpha = false;
     std::map<std::string, std::string> text = {};  // for the header: name (letters only), value
 };
 
-// Write PNGs, whole or not at all: of linear RGB, of linear RGB that comes row by row, and of 8-bit
-// sRGB. Throw Error.
+// Write PNGs, whole or not at all, of linear RGB, all or row by row, or of 8-bit sRGB. Throw Error.
 void WritePng(const std::string& path, std::span<const Rgb> pixels, int width, int height,
               const PngFormat& format = {});
 void WritePng(const std::string& path, const RowSource& rows, int width, int height,

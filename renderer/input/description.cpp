@@ -13,7 +13,6 @@
 namespace lull {
 namespace {
 
-// Returns the numbers of `parameter` that make up one value of `type`.
 int Components(ParameterType type) {
     switch (type) {
         case ParameterType::Point2:
@@ -29,7 +28,6 @@ int Components(ParameterType type) {
     }
 }
 
-// Finds the parameter of that type and name without marking it as used.
 const Parameter* Search(const std::vector<Parameter>& parameters, ParameterType type,
                         const std::string& name) {
     for (const Parameter& parameter : parameters)
@@ -50,7 +48,6 @@ std::string TypesOf(const Parameter& parameter) {
            NameOf(*parameter.wanted) + "\"";
 }
 
-// Returns the values if the parameter is there with exactly one value (and marks it), else null.
 template <typename T>
 const T* FindOne(const std::vector<Parameter>& parameters, ParameterType type,
                  const std::string& name) {
@@ -188,7 +185,6 @@ std::vector<std::string> FilesOf(const Description& d) {
 
 namespace {
 
-// Returns a name with the backslashes that it had before they were read as escapes.
 std::string WithBackslashes(const std::string& name) {
     constexpr std::string_view kRead = "\b\f\n\r\t", kWritten = "bfnrt";
     std::string written;

@@ -48,8 +48,7 @@ enum class ParameterType {
     Normal,
     Spectrum,
     Texture,
-    // Of pbrt-v4, until it is known what they are the spectra of: names and files, pairs of
-    // wavelength and value, kelvin.
+    // Of pbrt-v4, until their use is known: names and files, pairs of wavelength and value, kelvin.
     SpectrumName,
     SpectrumSamples,
     Blackbody
@@ -259,8 +258,7 @@ struct Description {
     std::vector<InstanceEntity> instances;
     std::vector<Motion> motions;
     std::vector<EmbeddedImage> images;
-    // How the file's format lets people choose between materials: the names, in its order. They are
-    // no part of the scene.
+    // The names by which the file lets people choose materials, in its order. No part of the scene.
     std::vector<std::string> variants;
 
     std::string directory;             // of the scene's file; relative file names start there
@@ -280,8 +278,7 @@ std::string ResolvePath(const Description& description, const std::string& file)
 
 // Returns "crc32:" and eight hexadecimal digits, computed from everything in a description and from
 // the contents of all files that its parameters name (meshes, images, spectra). Names of folders do
-// not count, so a scene that has been moved stays the same. Missing files count as empty: whoever
-// needs them reports them.
+// not count, so a scene that was moved stays the same. Missing files count as empty.
 std::string SceneHash(const Description&);
 
 }  // namespace lull

@@ -8,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "renderer/files/file_io.h"
 #include "renderer/input/gltf/cameras.h"
 #include "renderer/input/gltf/document.h"
 #include "renderer/input/gltf/materials.h"
@@ -20,7 +21,6 @@ namespace {
 // Blender's: enough for glass behind glass; roulette ends dim paths long before.
 constexpr int kMaxDepth = 12;
 
-// A mesh in one of its poses; those that are equal have the same shapes.
 struct PosedMesh {
     int mesh, skin = -1;          // -1: none
     std::vector<double> weights;  // of its morph targets; empty: none
@@ -32,14 +32,12 @@ struct PosedMesh {
     }
 };
 
-// Shapes of a mesh: in its own space, or in the world if it has a skin, and, on request, points on
-// their outline.
+// Shapes of a mesh, in the world if it has a skin, and, on request, points on their outline.
 struct MeshShapes {
     std::vector<ShapeEntity> shapes;
     std::vector<Vec3f> outline;
 };
 
-// One place where a mesh stands.
 struct Placement {
     int node;
     Mat4d worldFromMesh;
@@ -87,7 +85,6 @@ MeshShapes ReadMesh(const GltfDocument& document, const std::vector<GltfNode>& n
     return result;
 }
 
-// Returns the mesh of a node as the node has it.
 PosedMesh MeshOf(const GltfDocument& document, int index) {
     const tinygltf::Node& node = document.model.nodes[size_t(index)];
     const std::vector<double>& usual = document.model.meshes[size_t(node.mesh)].weights;
@@ -103,8 +100,7 @@ bool HasExtent(const Mat4d& m) {
 }
 
 // Returns a transform that flattens the mesh with a millionth of its extent left across, which has
-// an inverse: a flat mesh stays as it is. A transform onto a line or a point is returned as it
-// is.
+// an inverse: a flat mesh stays as it is. One onto a line or a point is returned as it is.
 Mat4d Thickened(const Mat4d& m) {
     if (HasExtent(m) || !m.allFinite()) return m;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.topLeftCorner<3, 3>(),
@@ -125,7 +121,6 @@ bool AnyJointMoves(const GltfDocument& document, const std::vector<GltfNode>& no
     });
 }
 
-// Lists where meshes stand, without those that have been flattened to nothing.
 std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& document,
                                                            const std::vector<GltfNode>& nodes,
                                                            Warnings& warnings) {
@@ -157,7 +152,6 @@ std::map<PosedMesh, std::vector<Placement>> ListPlacements(const GltfDocument& d
     return placements;
 }
 
-// Returns the name of the node or, if it has none, of the mesh; can be empty.
 std::string NameOf(const GltfDocument& document, const Placement& placement) {
     const tinygltf::Node& node = document.model.nodes[size_t(placement.node)];
     return node.name.empty() ? document.model.meshes[size_t(node.mesh)].name : node.name;
@@ -243,8 +237,7 @@ Description ParseGltf(const std::string& file, const GltfOptions& options, Warni
 }
 
 bool IsGltf(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = ExtensionOf(file);
     return extension == ".gltf" || extension == ".glb";
 }
 

@@ -32,9 +32,8 @@ struct GltfOptions {
     }
 };
 
-// Reads the scene in `file`. Throws Error, with the file and the JSON pointer of the place, for
-// anything wrong, or required but not supported; unsupported optional features lead to
-// warnings.
+// Reads the scene in `file`. Throws Error, with the file and the JSON pointer, for anything wrong,
+// or required but not supported; optional features lead to warnings.
 Description ParseGltf(const std::string& file, const GltfOptions& options, Warnings& warnings);
 
 // Returns whether a file is a glTF file, by its extension.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
 namespace lull {
 namespace {
@@ -24,7 +23,6 @@ struct HalfEdgeMesh {
     static int Previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
 };
 
-// Connects twins by sorting half-edges by their pair of vertices.
 void FindTwins(HalfEdgeMesh* mesh, const FileLoc& loc) {
     struct Key {
         int low, high, edge;
@@ -43,9 +41,8 @@ void FindTwins(HalfEdgeMesh* mesh, const FileLoc& loc) {
         while (end < keys.size() && keys[end].low == keys[i].low && keys[end].high == keys[i].high)
             ++end;
         const auto fail = [&](const char* what) {
-            throw Error(loc, "loopsubdiv: the edge between vertices " +
-                                 std::to_string(keys[i].low) + " and " +
-                                 std::to_string(keys[i].high) + what);
+            throw Error(loc, "loopsubdiv: the edge between vertices {} and {}{}", keys[i].low,
+                        keys[i].high, what);
         };
         if (end - i > 2) fail(" belongs to more than two faces");
         if (end - i == 2) {
@@ -70,12 +67,10 @@ HalfEdgeMesh MakeMesh(std::span<const float> p, std::span<const int> indices, co
     for (int h = 0; h < mesh.Edges(); ++h) {
         const int v = mesh.origin[h];
         if (v < 0 || size_t(v) >= mesh.p.size())
-            throw Error(loc, "loopsubdiv: index " + std::to_string(v) +
-                                 " is out of range, there are " + std::to_string(mesh.p.size()) +
-                                 " vertices");
+            throw Error(loc, "loopsubdiv: index {} is out of range, there are {} vertices", v,
+                        mesh.p.size());
         if (v == mesh.Target(h))
-            throw Error(loc, "loopsubdiv: face " + std::to_string(h / 3) + " repeats vertex " +
-                                 std::to_string(v));
+            throw Error(loc, "loopsubdiv: face {} repeats vertex {}", h / 3, v);
         mesh.leaving[v] = h;
     }
     FindTwins(&mesh, loc);
@@ -126,7 +121,6 @@ float Beta(int valence) { return valence == 3 ? 3.f / 16 : 3.f / (8 * valence); 
 // Returns the weight of a neighbour in the limit of repeated subdivision (Hoppe et al. 1994).
 float LimitWeight(int valence) { return 1 / (valence + 3 / (8 * Beta(valence))); }
 
-// Appends a vertex to `p` on each edge. Returns its index for each half-edge.
 std::vector<int> AddMiddles(const HalfEdgeMesh& old, std::vector<Vec3f>* p) {
     std::vector<int> middle(old.origin.size());
     for (int h = 0; h < old.Edges(); ++h) {

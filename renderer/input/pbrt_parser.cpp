@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -25,8 +24,7 @@ struct Directive {
     void (PbrtBuilder::*run)();
 };
 
-// Lists every directive, and whether it belongs before WorldBegin, after it or both. Four of them
-// are pbrt-v4's.
+// Lists every directive, and whether it belongs before WorldBegin, after it or both.
 constexpr Directive kDirectives[] = {
     {"Accelerator", Place::Options, &PbrtBuilder::Accelerator},
     {"ActiveTransform", Place::Anywhere, &PbrtBuilder::ActiveTransform},
@@ -72,15 +70,13 @@ constexpr Directive kDirectives[] = {
 };
 static_assert(std::ranges::is_sorted(kDirectives, {}, &Directive::name));
 
-// Returns null where a token is no directive.
 const Directive* FindDirective(const Token& token) {
     if (token.kind != TokenKind::Word) return nullptr;
     const auto it = std::ranges::lower_bound(kDirectives, token.text, {}, &Directive::name);
     return it != std::end(kDirectives) && it->name == token.text ? it : nullptr;
 }
 
-// Returns the directive that a token begins. Throws Error if it is none, or stands where it must
-// not.
+// Returns the directive that a token begins. Throws Error if it is none, or at a wrong place.
 const Directive& DirectiveAt(const Token& token, PbrtBuilder::Stage stage) {
     const Directive* directive = FindDirective(token);
     if (!directive)
@@ -97,12 +93,10 @@ const Directive& DirectiveAt(const Token& token, PbrtBuilder::Stage stage) {
 // Returns whether the directives after one that failed can still be judged: not after one that
 // opens or closes a scope, misspelled ones included.
 bool CanContinueAfter(const Token& token) {
-    std::string text = token.text;
-    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string text = LowerCase(token.text);
     return text.find("begin") == text.npos && text.find("end") == text.npos;
 }
 
-// Returns false where the rest cannot be cut into tokens.
 bool SkipToDirective(PbrtLexer* lexer) {
     try {
         while (lexer->Peek().kind != TokenKind::End && !FindDirective(lexer->Peek())) lexer->Take();
@@ -112,7 +106,6 @@ bool SkipToDirective(PbrtLexer* lexer) {
     }
 }
 
-// Reads directives until the end, or an error after which none can be judged.
 void ReadDirectives(PbrtBuilder* builder, Warnings& warnings) {
     PbrtLexer& lexer = builder->lexer;
     Token token;
@@ -158,51 +151,56 @@ constexpr std::string_view kV4Directives[] = {"Attribute", "ColorSpace", "Import
 // Kinds that a directive has in one version only.
 struct KindOf {
     std::string_view directive, kind;
-    PbrtVersion version;
     const char* instead = nullptr;  // in pbrt-v4
 };
-constexpr KindOf kKinds[] = {
-    {"Film", "image", PbrtVersion::V3, "\"rgb\""},
-    {"Film", "gbuffer", PbrtVersion::V4},
-    {"Film", "rgb", PbrtVersion::V4},
-    {"Film", "spectral", PbrtVersion::V4},
-    {"Material", "coatedconductor", PbrtVersion::V4},
-    {"Material", "coateddiffuse", PbrtVersion::V4},
-    {"Material", "conductor", PbrtVersion::V4},
-    {"Material", "dielectric", PbrtVersion::V4},
-    {"Material", "diffuse", PbrtVersion::V4},
-    {"Material", "diffusetransmission", PbrtVersion::V4},
-    {"Material", "interface", PbrtVersion::V4},
-    {"Material", "measured", PbrtVersion::V4},
-    {"Material", "thindielectric", PbrtVersion::V4},
-    {"Material", "disney", PbrtVersion::V3, "\"coateddiffuse\" or \"mix\""},
-    {"Material", "fourier", PbrtVersion::V3, "\"measured\""},
-    {"Material", "glass", PbrtVersion::V3, "\"dielectric\""},
-    {"Material", "kdsubsurface", PbrtVersion::V3,
-     "\"subsurface\" with \"reflectance\" and \"mfp\""},
-    {"Material", "matte", PbrtVersion::V3, "\"diffuse\" with \"reflectance\""},
-    {"Material", "metal", PbrtVersion::V3, "\"conductor\""},
-    {"Material", "mirror", PbrtVersion::V3, "\"conductor\" with \"reflectance\""},
-    {"Material", "plastic", PbrtVersion::V3, "\"coateddiffuse\""},
-    {"Material", "substrate", PbrtVersion::V3, "\"coateddiffuse\""},
-    {"Material", "translucent", PbrtVersion::V3, "\"diffusetransmission\""},
-    {"Material", "uber", PbrtVersion::V3, "\"coateddiffuse\" or \"mix\""},
-    {"Integrator", "ao", PbrtVersion::V3},
-    {"Integrator", "directlighting", PbrtVersion::V3},
-    {"Integrator", "whitted", PbrtVersion::V3},
-    {"Integrator", "simplepath", PbrtVersion::V4},
-    {"Integrator", "simplevolpath", PbrtVersion::V4},
-    {"Sampler", "02sequence", PbrtVersion::V3, "\"zsobol\""},
-    {"Sampler", "lowdiscrepancy", PbrtVersion::V3, "\"zsobol\""},
-    {"Sampler", "maxmindist", PbrtVersion::V3, "\"zsobol\""},
-    {"Sampler", "random", PbrtVersion::V3, "\"independent\""},
-    {"Sampler", "independent", PbrtVersion::V4},
-    {"Sampler", "paddedsobol", PbrtVersion::V4},
-    {"Sampler", "pmj02bn", PbrtVersion::V4},
-    {"Sampler", "zsobol", PbrtVersion::V4},
-    {"Camera", "environment", PbrtVersion::V3, "\"spherical\""},
-    {"Camera", "spherical", PbrtVersion::V4},
+constexpr KindOf kKindsOfV3[] = {
+    {"Film", "image", "\"rgb\""},
+    {"Material", "disney", "\"coateddiffuse\" or \"mix\""},
+    {"Material", "fourier", "\"measured\""},
+    {"Material", "glass", "\"dielectric\""},
+    {"Material", "kdsubsurface", "\"subsurface\" with \"reflectance\" and \"mfp\""},
+    {"Material", "matte", "\"diffuse\" with \"reflectance\""},
+    {"Material", "metal", "\"conductor\""},
+    {"Material", "mirror", "\"conductor\" with \"reflectance\""},
+    {"Material", "plastic", "\"coateddiffuse\""},
+    {"Material", "substrate", "\"coateddiffuse\""},
+    {"Material", "translucent", "\"diffusetransmission\""},
+    {"Material", "uber", "\"coateddiffuse\" or \"mix\""},
+    {"Integrator", "ao"},
+    {"Integrator", "directlighting"},
+    {"Integrator", "whitted"},
+    {"Sampler", "02sequence", "\"zsobol\""},
+    {"Sampler", "lowdiscrepancy", "\"zsobol\""},
+    {"Sampler", "maxmindist", "\"zsobol\""},
+    {"Sampler", "random", "\"independent\""},
+    {"Camera", "environment", "\"spherical\""},
 };
+constexpr KindOf kKindsOfV4[] = {{"Film", "gbuffer"},
+                                 {"Film", "rgb"},
+                                 {"Film", "spectral"},
+                                 {"Material", "coatedconductor"},
+                                 {"Material", "coateddiffuse"},
+                                 {"Material", "conductor"},
+                                 {"Material", "dielectric"},
+                                 {"Material", "diffuse"},
+                                 {"Material", "diffusetransmission"},
+                                 {"Material", "interface"},
+                                 {"Material", "measured"},
+                                 {"Material", "thindielectric"},
+                                 {"Integrator", "simplepath"},
+                                 {"Integrator", "simplevolpath"},
+                                 {"Sampler", "independent"},
+                                 {"Sampler", "paddedsobol"},
+                                 {"Sampler", "pmj02bn"},
+                                 {"Sampler", "zsobol"},
+                                 {"Camera", "spherical"}};
+
+std::optional<PbrtVersion> VersionOfKind(std::string_view directive, std::string_view kind) {
+    const auto isIt = [&](const KindOf& k) { return k.directive == directive && k.kind == kind; };
+    if (std::ranges::any_of(kKindsOfV3, isIt)) return PbrtVersion::V3;
+    if (std::ranges::any_of(kKindsOfV4, isIt)) return PbrtVersion::V4;
+    return {};
+}
 
 // Parameters that one version alone has, whatever the directive.
 struct ParameterOf {
@@ -227,20 +225,15 @@ std::optional<PbrtVersion> VersionAt(const Token& token, const Token& next, bool
         const std::string_view name = NameOfParameter(token.text);
         const auto* known = std::ranges::find(kVersionsOfParameters, name, &ParameterOf::name);
         if (!name.empty() && known != std::end(kVersionsOfParameters)) return known->version;
-        if (token.text == "string type" && next.kind == TokenKind::String)
-            for (const KindOf& kind : kKinds)
-                if (kind.directive == "Material" && kind.kind == next.text) return kind.version;
-        return {};
+        const bool isType = token.text == "string type" && next.kind == TokenKind::String;
+        return isType ? VersionOfKind("Material", next.text) : std::nullopt;
     }
     if (token.kind != TokenKind::Word) return {};
     if (std::ranges::count(kV4Directives, token.text) > 0) return PbrtVersion::V4;
     if (token.text == "WorldEnd") *hasEnded = true;
-    for (const KindOf& kind : kKinds)
-        if (kind.directive == token.text && kind.kind == next.text) return kind.version;
-    return {};
+    return VersionOfKind(token.text, next.text);
 }
 
-// Returns the version of the first sign; nothing where there is none.
 std::optional<PbrtVersion> FindSign(const std::filesystem::path& directory, PbrtLexer& lexer,
                                     bool* hasBegun, bool* hasEnded, Token* last) {
     Token& token = *last;
@@ -261,7 +254,7 @@ std::optional<PbrtVersion> FindSign(const std::filesystem::path& directory, Pbrt
 }  // namespace
 
 void RefuseKindOfV3(std::string_view directive, std::string_view kind, const FileLoc& loc) {
-    for (const KindOf& known : kKinds)
+    for (const KindOf& known : kKindsOfV3)
         if (known.instead && known.directive == directive && known.kind == kind)
             throw Error(loc, "{} \"{}\" is pbrt-v3's, in a scene for pbrt-v4; write {}", directive,
                         kind, known.instead);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -27,7 +26,6 @@ constexpr int64_t kMostElements = std::numeric_limits<int32_t>::max();
 // Names where the values of a vertex property go.
 enum Slot { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
 
-// Maps each slot to the property that fills it, -1 for none.
 using SlotMap = std::array<int, kSlots>;
 
 // Names of texture coordinates of vertices, in lower case without underscores; pbrt-v3 reads u and
@@ -50,8 +48,7 @@ constexpr std::pair<const char*, const char*> kUvs[] = {{"u", "v"},
 
 std::string WithoutCase(std::string name) {
     std::erase(name, '_');
-    for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return name;
+    return LowerCase(name);
 }
 
 SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
@@ -80,7 +77,6 @@ SlotMap MapSlots(const PlyElement& vertex, const FileLoc& loc) {
     return slots;
 }
 
-// Points at where the values of a slot go: one for each vertex, `stride` floats apart.
 struct Column {
     float* values;
     size_t stride;
@@ -92,7 +88,6 @@ Column ColumnOf(MeshData* mesh, int slot) {
     return {mesh->uvs.data()->data() + (slot - kU), 2};
 }
 
-// Returns the least bytes that a row of the element can take; a list may be empty.
 size_t LeastRowBytes(const PlyElement& element, PlyFormat format) {
     size_t bytes = 0;
     for (const PlyProperty& property : element.properties)
@@ -152,7 +147,6 @@ uint32_t IndexOf(double written, const PlyCursor& cursor) {
     return uint32_t(index);
 }
 
-// One row of the faces.
 struct Face {
     size_t corners = 0;
     std::vector<uint32_t> vertices;  // empty: more than are modelled
@@ -212,7 +206,6 @@ void ReadFace(const PlyElement& element, PlyCursor& cursor, Face* face) {
 // Texture coordinates of the corners of triangles; none where they are those of the vertices.
 using WedgeUvs = std::vector<std::optional<std::array<Vec2f, 3>>>;
 
-// Adds the triangles of a face; `uvs`, if there are any, keep to them.
 void AddFace(const Face& face, const FileLoc& loc, MeshData* mesh, WedgeUvs* uvs,
              Warnings& warnings) {
     if (face.corners < 3 || face.vertices.empty()) {
@@ -264,7 +257,6 @@ void ReadStrips(const PlyElement& element, PlyCursor& cursor, MeshData* mesh) {
                 cursor.SkipProperty(property);
 }
 
-// Returns the uvs of the corners, one entry a triangle, where faces have lists of them.
 WedgeUvs ReadFaces(const PlyElement& element, PlyCursor& cursor, MeshData* mesh,
                    Warnings& warnings) {
     if (std::ranges::count_if(element.properties, IsIndices) != 1)
@@ -365,12 +357,10 @@ void CheckMesh(MeshData* mesh, const FileLoc& loc, Warnings& warnings) {
     for (size_t i = 0; i < mesh->triangles.size(); ++i)
         for (const uint32_t index : mesh->triangles[i]) {
             if (index >= mesh->positions.size())
-                throw Error(loc, "triangle " + std::to_string(i) + " refers to vertex " +
-                                     std::to_string(index) + ", but there are " +
-                                     std::to_string(mesh->positions.size()));
+                throw Error(loc, "triangle {} refers to vertex {}, but there are {}", i, index,
+                            mesh->positions.size());
             if (!mesh->positions[index].allFinite())
-                throw Error(loc,
-                            "vertex " + std::to_string(index) + " of the PLY file is not finite");
+                throw Error(loc, "vertex {} of the PLY file is not finite", index);
         }
     // The others are of no triangle; they must not widen the mesh.
     for (Vec3f& position : mesh->positions)

@@ -22,8 +22,7 @@ Mat4d FromAxes(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::
     return m;
 }
 
-// Returns the transform of a studio's light space to the world: +z is up, +x where the camera is,
-// +y to its right.
+// Returns a studio's light space in the world: +z is up, +x at the camera, +y to its right.
 Mat4d WorldFromStudio(const Mat4d& cameraFromWorld) {
     const Eigen::Matrix3d m = cameraFromWorld.topLeftCorner<3, 3>();
     const Eigen::Vector3d up = UpOf(m, {});

@@ -11,8 +11,7 @@ namespace lull {
 // Brightens all that the film records by 2 to the power of `stops`.
 void SetExposure(double stops, Description* description);
 
-// Replaces the integrator by "path" or "bdpt". Where the scene's sees media, "volpath" is the path
-// that does.
+// Replaces the integrator by "path", where the scene's sees media "volpath", or "bdpt".
 void SetIntegrator(const std::string& name, Description* description);
 
 // Has the camera render a pair, or one eye of it: numbers and names as in Stereo.

@@ -99,8 +99,7 @@ Rgb LoadSpectrum(const std::string& path, const FileLoc& loc, Warnings* warnings
                           {std::make_shared<const std::string>(path), 0}, warnings);
 }
 
-// Both follow from the tabulated optical constants of copper (56 wavelengths from 299 to 886 nm)
-// by RgbFromSamples.
+// From the tabulated constants of copper (56 wavelengths from 299 to 886 nm) by RgbFromSamples.
 Rgb CopperEta() { return Rgb(0.19998972f, 0.92208579f, 1.0998763f); }
 Rgb CopperK() { return Rgb(3.9046382f, 2.4476332f, 2.1376510f); }
 
@@ -108,7 +107,6 @@ namespace {
 
 bool IsSeparator(char c) { return std::isspace(static_cast<unsigned char>(c)) || c == ','; }
 
-// What stands between the numbers of a line.
 struct Separators {
     bool haveCommas = false, haveBlanks = false;  // alone
 

@@ -17,14 +17,12 @@ inline constexpr int kCieFirst = 360, kCieLast = 830;  // nm, in steps of 1
 inline constexpr int kCieRows = kCieLast - kCieFirst + 1;
 extern const std::array<float, kCieRows> kCieX, kCieY, kCieZ;
 
-// Returns the linear sRGB of CIE XYZ.
 Rgb RgbFromXyz(double x, double y, double z);
 
 // Returns the RGB of a spectrum given as pairs (wavelength in nm, value), in any order, linear
 // between them and constant beyond: the integrals with the colour matching functions, scaled so
-// that a constant 1 has Y near 1. `warnings` receives one of spectra that no visible wavelength
-// has, such as those in micrometres. Throws Error at `loc` for no pairs, half a pair, and a result
-// beyond float's range.
+// that a constant 1 has Y near 1. Warns of spectra of no visible wavelength. Throws Error at `loc`
+// for no pairs, half a pair, and a result beyond float's range.
 Rgb RgbFromSamples(std::span<const float> pairs, const FileLoc& loc = {},
                    Warnings* warnings = nullptr);
 
@@ -36,8 +34,7 @@ Rgb RgbFromBlackbody(double kelvin, const FileLoc& loc = {});
 double Planck(double wavelength, double kelvin);
 
 // Reads a file of wavelengths (nm) and values, separated by white space or commas, with comments
-// from '#' to the end of the line. `loc` is the place that names the file. Throws Error if it
-// cannot be read.
+// from '#' to the end of the line. `loc` names the file. Throws Error if it cannot be read.
 Rgb LoadSpectrum(const std::string& path, const FileLoc& loc = {}, Warnings* warnings = nullptr);
 
 // Return pbrt-v3's defaults for metals: copper's index of refraction and absorption as RGB.
@@ -54,12 +51,10 @@ std::vector<float> ReadNumberFile(const std::string& path, const std::string& ki
 
 // Reads numbers that have to be at least 0, of which rounding may have left some just below.
 
-// Returns x, and 0 for what rounding a 0 could leave below it (NotNegative()). Other negative
-// numbers and NaN stay as they are.
+// Returns NotNegative(x); negative numbers and NaN as they are.
 float RaisedToZero(float x);
 
-// Returns a parameter so. Throws Error with its place for all that is then no finite number of at
-// least 0.
+// Returns a parameter so. Throws Error with its place unless that is finite and at least 0.
 float GetNonnegative(const Entity& entity, const std::string& name, float otherwise);
 
 }  // namespace lull

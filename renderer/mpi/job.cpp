@@ -42,7 +42,6 @@ std::vector<std::byte> Pack(const T& what) {
     return std::move(writer.bytes);
 }
 
-// Returns the next value of this type and its sender; nothing if none has arrived.
 template <typename T>
 std::optional<std::pair<int, T>> Receive(Peers* peers) {
     while (const std::optional<PeerMessage> message = peers->Receive()) {
@@ -101,7 +100,6 @@ namespace {
 // Seconds that ranks are waited for.
 constexpr double kLeastPatience = 5, kMostPatience = 60;
 
-// Returns the number of processes that mpirun or srun has started, from their variables.
 int LaunchedProcesses() {
     for (const char* name :
          {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS"})
@@ -109,7 +107,6 @@ int LaunchedProcesses() {
     return 1;
 }
 
-// FNV-1a.
 uint64_t HashOf(const std::string& text) {
     uint64_t hash = 0xcbf29ce484222325;
     for (const char c : text) hash = (hash ^ uint8_t(c)) * 0x100000001b3;

@@ -42,8 +42,7 @@ class MpiJob {
 
     // Waits until all ranks are ready to begin, and checks that all are about to render the same
     // thing, which `what` describes completely. A rank that has been silent for longer than rank 0
-    // was busy before, and a minute, is not waited for: it may still join. Throws Error, or
-    // OtherRankFailed.
+    // was busy before, and a minute, is not waited for. Throws Error, or OtherRankFailed.
     void Begin(const std::string& what);
     // Replaces that minute by a tenth of the time left by the clock, but at least five seconds.
     void SetClock(std::function<double()> secondsLeft) { clock = std::move(secondsLeft); }
@@ -57,7 +56,6 @@ class MpiJob {
     // Has warnings and errors put into the lines that wording(kind, message) returns.
     using Wording = std::function<std::string(const std::string& kind, const std::string& message)>;
     void SetWording(Wording given) { wording = std::move(given); }
-    // Prints a warning, whatever the rank.
     void Warn(const std::string& message) const;
     // Prints errors, one for each line, once for all ranks, and ends them all if others would wait
     // for this one.

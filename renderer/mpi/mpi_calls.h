@@ -20,7 +20,6 @@ MpiWorld StartMpi();
 // Waits for all ranks, rank 0 no longer than `patience` seconds, and ends MPI, if it was started.
 // Returns false if one has not come.
 bool EndMpi(double patience);
-// Ends all ranks.
 void AbortMpi(int exitCode);
 std::unique_ptr<Peers> MakeMpiPeers();
 

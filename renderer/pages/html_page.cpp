@@ -22,7 +22,6 @@ std::string Uri(std::span<const Rgb> pixels, int width, int height) {
 // Returns how many squares of `scale` pixels a side there are along `size` pixels, the last less.
 int Shrunk(int size, int scale) { return (size + scale - 1) / scale; }
 
-// Returns the means of such squares, row by row, of values with so many channels a pixel.
 std::vector<float> Shrink(std::span<const float> values, int width, int height, int channels,
                           int scale) {
     std::vector<float> means;
@@ -43,7 +42,6 @@ std::vector<float> Shrink(std::span<const float> values, int width, int height, 
     return means;
 }
 
-// Returns the pixels of an image.
 std::vector<Rgb> PixelsOf(const RgbImage& image) {
     std::vector<Rgb> pixels;
     pixels.reserve(image.values.size() / 3);
@@ -52,7 +50,6 @@ std::vector<Rgb> PixelsOf(const RgbImage& image) {
     return pixels;
 }
 
-// Shows the estimated errors of pixels.
 std::string ErrorUri(const DenoisedImage& denoised) {
     std::vector<float> shares;
     for (const float error : denoised.error) shares.push_back(std::min(1.f, error / 2));

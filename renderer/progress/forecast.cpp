@@ -47,7 +47,6 @@ double Bounded(const StopTrend& trend, double slope) {
     return trend.IsOfOdds() ? std::clamp(slope, -40.0, -0.2) : std::clamp(slope, -2.0, -0.1);
 }
 
-// Returns the level above which a number says no more.
 double CertainLevel(std::span<const StopTrend> trends) {
     double highest = 0;
     for (const StopTrend& trend : trends)
@@ -55,7 +54,6 @@ double CertainLevel(std::span<const StopTrend> trends) {
     return highest > 0 ? kCertain * highest : std::numeric_limits<double>::infinity();
 }
 
-// Returns the median of the slopes that the blocks show; 0 if there is none.
 double UsualSlope(std::span<const StopTrend> trends, double certain) {
     std::vector<double> slopes;
     bool isPower = false, saturates = false;
@@ -70,7 +68,6 @@ double UsualSlope(std::span<const StopTrend> trends, double certain) {
     return MedianOf(&slopes);
 }
 
-// At which spp a block stops, without regard to the cap.
 struct Stop {
     double spp = 0;
     bool isLeast = true;  // more than that is not to be told
@@ -220,8 +217,7 @@ std::time_t NextTimeOfDay(const std::string& text, std::time_t now) {
 
     std::tm today = {};
     localtime_r(&now, &today);
-    // A day more until it is in the future; mktime() knows of the ends of months, and finds out
-    // about summer time.
+    // A day more until it is in the future; mktime() knows of months and of summer time.
     for (int day = 0;; ++day) {
         std::tm then = today;
         then.tm_mday += day;

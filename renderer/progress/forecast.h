@@ -22,13 +22,11 @@ class StopTrend {
     explicit StopTrend(const RuleTrend& rule = {}) : rule(rule) {}
 
     // Adds a decision of the criterion at `spp` > 0, which increases. `noise` is
-    // Criterion::NetworkNoise(): for a rule that has it, a decision without it (one from a
-    // checkpoint) is ignored.
+    // Criterion::NetworkNoise(): rules that have it ignore a decision without it.
     void Add(int spp, const Decision& decision, std::optional<double> noise = {});
 
     // Describes the last two doublings by a straight line of the level over Abscissa(). Levels
-    // above `certain` are left out: a network that is as sure as it can be does not say by how
-    // much.
+    // above `certain`, as sure as a network can be, are left out.
     struct Line {
         double level = 0;  // at the last spp
         double slope = 0;  // 0: not to be seen yet
@@ -72,8 +70,7 @@ class StopTrend {
 //
 // The error of a Monte Carlo estimate falls as a power of the samples, with the exponent -1/2 if
 // they are independent: in logarithms a line. It is fitted by the median of the slopes between any
-// two points (Theil 1950, Sen 1968), so that no single pass matters; where a block has shown little
-// of it, the slope of the other blocks counts for more.
+// two points (Theil 1950, Sen 1968), with the slope of other blocks where one has shown little.
 std::optional<std::vector<double>> PredictStops(std::span<const StopTrend> trends,
                                                 std::span<const Block> blocks, int cap);
 
@@ -93,8 +90,7 @@ double ParseDuration(const std::string& text);
 // Throws std::invalid_argument for anything else.
 std::time_t NextTimeOfDay(const std::string& text, std::time_t now);
 
-// Return the seconds to leave for the files of an image, twice their CPU time on an idle core; and
-// for its denoiser on `threads` threads.
+// Return the seconds to leave for an image's files, twice their CPU time, and for its denoiser.
 double SecondsToWrite(int64_t pixels);
 double SecondsToDenoise(int64_t pixels, int threads);
 

@@ -26,7 +26,6 @@ struct TimeLeft {
     bool IsBound() const { return end == End::Cap || end == End::Limit; }
 };
 
-// Returns how long it takes from here; nothing where nobody knows.
 std::optional<TimeLeft> Remaining(const RenderProgress& p, double rate, bool adaptive) {
     using End = TimeLeft::End;
     std::optional<TimeLeft> left;
@@ -53,7 +52,6 @@ std::string TextOf(const TimeLeft& left) {
                                                  : time + " left";
 }
 
-// Returns the columns of a terminal.
 int ColumnsOf(std::FILE* stream) {
     constexpr int kUsualColumns = 80;
     winsize size = {};

@@ -27,8 +27,7 @@ struct RenderProgress {
     bool operator==(const RenderProgress&) const = default;
 };
 
-// Estimates the speed from recent work, since the blocks that are left can be slower than those
-// that have stopped.
+// Estimates the speed from recent work, since the blocks that are left can be slower.
 class RateMeter {
   public:
     void Add(const RenderProgress&);
@@ -43,8 +42,7 @@ class RateMeter {
 double ShareDone(const RenderProgress&);
 
 // Contents of a progress report. If blocks stop by themselves (`adaptive`) the time left is a
-// prediction; while there is none, an upper bound, as the text says, or before the first block has
-// stopped nothing.
+// prediction; while there is none, an upper bound, or before the first block has stopped nothing.
 struct ProgressState {
     RenderProgress progress;
     double share = 0;  // done, in [0, 1]
@@ -71,7 +69,6 @@ enum class ProgressStyle {
     Json    // one object per line
 };
 
-// Returns the style of reports on stderr.
 ProgressStyle StyleOfReports(bool json, bool quiet);
 
 // Prints a report by its style: over the last one, or as a line of its own. `text` fits on a line.
@@ -99,8 +96,7 @@ class ProgressPrinter {
     double nextPlainLine = 30;           // seconds since the start
 };
 
-// Reports how much of a step that follows the render is done, such as the denoising of a large
-// picture.
+// Reports how much of a step after the render is done, such as the denoising of a picture.
 
 class StepPrinter {
   public:

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 namespace lull {
 
@@ -73,7 +72,6 @@ py::array ToPixels(const py::array& array, const std::string& name, int width, i
     return py::isinstance<py::array_t<float>>(array) ? array : py::array_t<float>(array);
 }
 
-// Returns an array with the same pixels, R, G and B side by side.
 py::array Packed(const py::array& pixels) {
     return py::module_::import("numpy").attr("array")(FirstChannels(pixels, 3),
                                                       py::arg("order") = "C");

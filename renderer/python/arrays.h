@@ -33,8 +33,7 @@ inline void Check(lull_status status) {
 // Gives a warning of Python's. Throws pybind11::error_already_set where Python makes it an error.
 void Warn(const std::string& text);
 
-// Throws pybind11::value_error unless an image has this size and at least so many channels, of
-// which a single one needs no dimension.
+// Throws pybind11::value_error unless an image has this size and as many channels or more.
 void CheckShape(const pybind11::array& image, const std::string& name, pybind11::ssize_t height,
                 pybind11::ssize_t width, int channels);
 

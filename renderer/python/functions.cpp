@@ -56,7 +56,6 @@ constexpr const char* kColourName = "a or b";
 
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-// Returns an image as contiguous floats; channels beyond those wanted, such as alpha, are left out.
 Floats ToFloats(const py::array& array, const std::string& name, int channels, py::ssize_t height,
                 py::ssize_t width) {
     CheckShape(array, name, height, width, channels);
@@ -71,7 +70,6 @@ Floats ToFloats(const py::array& array, const std::string& name, int channels, p
     return Floats(wanted);
 }
 
-// The arrays that a lull_halves points to.
 class Halves {
   public:
     Halves(const py::array& a, const py::array& b, const char* name, int channels,
@@ -79,7 +77,6 @@ class Halves {
         : a(ToFloats(a, name, channels, height, width)),
           b(ToFloats(b, name, channels, height, width)) {}
 
-    // Reads one image, a pair of them, or None.
     static std::optional<Halves> Read(const py::object& given, const char* name, int channels,
                                       py::ssize_t height, py::ssize_t width) {
         if (given.is_none()) return {};
@@ -104,7 +101,6 @@ lull_halves ViewOf(const std::optional<Halves>& halves) {
     return halves ? halves->View() : lull_halves{};
 }
 
-// Returns where blocks begin along an axis, and its end.
 std::vector<int> CutsOf(int length, int side) {
     std::vector<int> cuts;
     for (int at = 0; at == 0 || at + kLeastRest <= length; at += side) cuts.push_back(at);

@@ -19,7 +19,6 @@ namespace lull {
 
 namespace {
 
-// How it stands with all blocks, for each number an array of rows x columns.
 struct Answer {
     int columns;
     std::vector<lull_answer> blocks;

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kSmallestNoiseSide = 10;  // pixels, of blocks that VisibleNoise() takes
 
-// Returns the end of the pass that pixels of a block have samples of, beyond its spp; 0: none have.
 int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film) {
     options.inSteps = true;
     const int most = MostSamples(block.pixels, film);
@@ -21,7 +20,6 @@ int EndOfPassBegun(const Block& block, ScheduleOptions options, const Film& film
     return end;
 }
 
-// Returns the visible noise of a block, of any size, both of whose means are in the view.
 double NoiseOf(const BlockView& view) {
     if (std::min(view.width, view.height) >= kSmallestNoiseSide) return VisibleNoise(view);
     const LightnessNoise noise = ComputeLightnessNoise(view);

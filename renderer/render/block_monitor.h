@@ -1,5 +1,4 @@
-// Monitors a block during a render: where rules would have stopped it, how it looked there, and how
-// its noise developed.
+// Monitors a block: where rules would have stopped it, how it looked there, and its noise.
 #pragma once
 
 #include <map>
@@ -44,8 +43,7 @@ struct MonitorOptions {
     bool goesOn = false;     // to the cap, rather than until all rules have stopped the block
 };
 
-// Runs several rules over one block; its own decisions are the first rule's until that
-// stops.
+// Runs several rules over one block, and decides as the first until that stops.
 class BlockMonitor final : public Criterion {
   public:
     // A null rule does not check the block. `history` must outlive the monitor.
@@ -78,8 +76,7 @@ struct GradedJudge {
 };
 
 // Shows a block to each judge until that has stopped it, and stops it once all have: the picture
-// with the most visible noise counts. The numbers are those of the judge that is farthest from
-// stopping.
+// with the most visible noise counts. The numbers are those of the judge farthest from it.
 class GradedCriterion final : public Criterion {
   public:
     explicit GradedCriterion(std::vector<GradedJudge> judges);

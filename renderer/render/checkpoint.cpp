@@ -24,7 +24,6 @@ constexpr std::array<std::string_view, 5> kOlderFormats = {"lull checkpoint 1", 
 
 std::string GroupName(size_t block) { return fmt::format("block_{:05}", block); }
 
-// Calls visit(value) for all that is kept of a block but its decisions, and of a decision.
 template <typename Visit>
 void ForEachValue(BlockResult& result, const Visit& visit) {
     Block& block = result.block;
@@ -51,7 +50,6 @@ void ForEachValue(BlockDecision& record, const Visit& visit) {
     if (noise >= 0) record.networkNoise = noise;
 }
 
-// Packs the block's state: its samples, its cost, and its criterion's decisions.
 std::vector<std::byte> PackBooks(BlockResult result) {
     StateWriter writer;
     const auto put = [&](const auto& value) { writer.Put(value); };
@@ -104,7 +102,6 @@ void ReadPlanes(const Hdf5Group& group, const PixelRect& rect, Film* film) {
     if (MostSamples(rect, *film) < 0) throw Error("it has impossible counts of samples");
 }
 
-// Returns the shares of light rounds.
 BdptShares SharesIn(const Hdf5Group& root) {
     const std::vector<float> shares = root.Array<float>("shares", std::array<int64_t, 1>{2});
     if (!(shares[0] >= 0 && shares[0] <= 1 && shares[1] > 0 && shares[1] <= 1))
@@ -146,7 +143,6 @@ int CapIn(const RenderIdentity& identity) {
     return identity.contains("cap") ? std::atoi(identity.at("cap").c_str()) : 0;
 }
 
-// Throws Error naming the first thing that is not the same.
 void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, MayDiffer what) {
     constexpr std::array kStops = {"stop", "model", "cap"};
     RenderIdentity all = wanted;
@@ -161,7 +157,6 @@ void CheckIdentity(const RenderIdentity& found, const RenderIdentity& wanted, Ma
                 key, ValueIn(found, key), ValueIn(wanted, key));
 }
 
-// Throws Error naming the first plane of the film that is not there, or is of something else.
 void CheckPlanes(const RenderIdentity& found, const Film& film) {
     for (const auto& [name, identity] : PlanesOf(film)) {
         const auto at = found.find(name);

@@ -207,8 +207,7 @@ void Executor::ShowPreview(double pause) {
     if (!options.events.onPreview || ledger.Seconds() < nextPreview || schedule.Unlocked().Done())
         return;
     options.events.onPreview(Result());
-    // Previews that take long, as denoised ones and those of many ranks, become up to ten times as
-    // rare.
+    // Previews that take long, as denoised ones, become up to ten times as rare.
     const double end = ledger.Seconds(), interval = options.events.previewInterval;
     nextPreview = end + std::clamp(4 * (end - pause), interval, 10 * interval);
 }

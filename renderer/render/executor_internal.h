@@ -22,7 +22,6 @@ namespace lull {
 // A schedule that threads share, with the state of its passes: a clock that can end them, earlier
 // values of their pixels, and a viewer that shows where blocks have stopped.
 
-// Decision on a block after a pass.
 struct BlockAnswer {
     bool stop = false;
     double noise = kUnknownNoise;
@@ -74,7 +73,6 @@ class LiveSchedule {
     const Schedule& Unlocked() const { return schedule; }
     const Block& BlockAt(int i) const { return schedule.Blocks()[size_t(i)]; }
     const RankTiles& Share() const { return share; }
-    // Returns the tiles of a block that a rank has.
     std::vector<PixelRect> TilesOfRank(int block, int rank) const;
 
   private:
@@ -101,7 +99,6 @@ class LiveSchedule {
 
 // Asks the criteria of blocks after each pass.
 
-// The decision on a block after a pass.
 struct BlockCheck {
     BlockAnswer answer;
     Decision decision;  // of the criterion, which may not have checked the block
@@ -113,8 +110,7 @@ struct BlockCheck {
 // checked at the same time without locks.
 class BlockCriteria {
   public:
-    // Makes the criteria of the blocks that vote, as an interrupted render has left them. The
-    // options must outlive it.
+    // Makes the criteria of voting blocks, as a render has left them. The options must outlive it.
     BlockCriteria(const RenderOptions&, std::span<const Block> blocks);
 
     // Returns the inputs of criterion and clock for a block.
@@ -139,13 +135,11 @@ class BlockCriteria {
 // Returns the most samples that a pixel has.
 int MostSamples(const PixelRect&, const Film&);
 
-// Return where blocks are, those given or those that an interrupted render has left, none if there
-// is none; with a clock, also how noisy.
+// Return where blocks are, given or left by an interrupted render; with a clock, also how noisy.
 std::vector<BlockStart> StartsOf(std::span<const BlockResult> blocks, const RenderOptions&);
 std::vector<BlockStart> StartsOf(const RenderOptions&);
 
-// Runs the tasks of a render: identical tasks for tiles, and single works such as decisions on
-// blocks.
+// Runs the tasks of a render: identical ones for tiles, and single works such as decisions.
 
 // The thread sanitizer sees the order that a mutex gives, but not the order of tasks within oneTBB:
 // hence the first thing that a task reads is a TaskOrder.
@@ -155,7 +149,6 @@ class TaskSet {
     TaskSet(std::function<void()> doTile, std::function<void(std::exception_ptr)> take)
         : doTile(std::move(doTile)), take(std::move(take)) {}
 
-    // Spawns tasks of tiles, from within the arena.
     void Spawn(int count) {
         open += count;
         tileTask.order.Leave();
@@ -171,16 +164,13 @@ class TaskSet {
         workTask.order.Leave();
         arena->enqueue(group.defer(std::ref(workTask)));
     }
-    // Waits until there is no task any more.
     void Wait() {
         group.wait();
         tileTask.order.Enter();
     }
-    // Returns whether there is none now.
     bool IsIdle() const { return open == 0; }
 
   private:
-    // The work of all tasks of tiles.
     struct TileTask {
         TaskSet* set;
         TaskOrder order = {};
@@ -190,7 +180,6 @@ class TaskSet {
             order.Leave();
         }
     };
-    // Does the oldest of `works`.
     struct WorkTask {
         TaskSet* set;
         TaskOrder order = {};
@@ -242,15 +231,13 @@ struct TileEffort {
 // Costs a lock a tile.
 class ProgressLedger {
   public:
-    // Goes on with the books of an interrupted render, with the samples that the film has. The
-    // options must outlive it.
+    // Goes on with the books of an interrupted render and its film. The options must outlive it.
     ProgressLedger(const RenderOptions&, size_t blocks);
 
     // Returns the seconds since the start, of the runs before this one as well.
     double Seconds() const;
 
-    // Notes a tile that was rendered here, with its CPU time, and the part of a block that
-    // another rank has rendered.
+    // Notes a tile rendered here, with its CPU time, and the part of a block from another rank.
     void AddTile(int block, double processorSeconds, const TileEffort&);
     void AddPart(int block, double processorSeconds, int64_t samples);
     void AddCheck(int block, int spp, const BlockCheck&);
@@ -282,8 +269,7 @@ class ProgressLedger {
     const double secondsBefore, spentBefore;
     const int64_t samplesBefore;
 
-    // Guards the members below, except for criteria's seconds and decisions in `results`, which
-    // belong to one thread at a time.
+    // Guards the members below, but criteria's seconds and decisions in `results`.
     std::mutex mutex;
     std::vector<BlockResult> results;
     std::vector<StopTrend> trends;  // of the blocks; empty: nothing is predicted
@@ -294,8 +280,7 @@ class ProgressLedger {
     double nextReport = 0;
 };
 
-// Overrides for one of several ranks. All are called from tasks; empty: as for a
-// process that is alone.
+// Overrides for one of several ranks, called from tasks; empty: as for a process alone.
 struct RankHooks {
     std::function<void(int block)> onPassEnd;                      // instead of the decision
     std::function<void(int block, FilmView*)> completeView;        // with pixels of other ranks
@@ -313,12 +298,10 @@ class Executor {
     Executor(const RenderOptions&, std::span<const BlockStart> starts, RankTiles = {},
              RankHooks = {});
 
-    // Renders all, with checkpoints, for a process that is alone.
     RenderResult Run();
 
     // Asks the criterion and returns how many tiles have become ready.
     int DecideBlock(int block);
-    // Spawns the tiles that are ready.
     void SpawnReady() { tasks.Spawn(schedule.ReadyTiles()); }
     // With no task at work: begins a round of light paths, none of which are traced. Calls
     // `writeCheckpoint` before a round that the cap cuts short, after which none is written: with a
@@ -334,8 +317,7 @@ class Executor {
 
     // Returns whether it is time for a pause, to write a checkpoint or to show a preview.
     bool IsPauseDue() const;
-    // With no task at work: write the state, show how far it is, if it is time; and return the
-    // result.
+    // With no task at work: write the state, show how far it is, and return the result.
     void WriteCheckpoint();
     void ShowPreview(double pause);  // since these seconds of the render nothing works for it
     RenderResult Result();

@@ -14,7 +14,6 @@ namespace lull {
 
 namespace {
 
-// Returns the variance of the mean luminance, from the sum of the samples' squares; finite.
 float VarianceOfMean(double squares, double mean, double count) {
     const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
     return float(std::min(variance, double(std::numeric_limits<float>::max())));
@@ -30,7 +29,6 @@ struct WholeLight {
     Rgb Look(const Vec2i& p) const { return film.MeanAt(p); }
 };
 
-// The same of a group of lights.
 struct GroupLight {
     const Film& film;
     const LightGroupLayer& layer;
@@ -43,8 +41,7 @@ struct GroupLight {
     }
 };
 
-// Returns the mean of the four neighbours of a pixel that have samples and are within `rect`;
-// nothing where none are.
+// Returns the mean of those of the four neighbours within `rect` that have samples; may be nothing.
 template <typename Light>
 std::optional<Rgb> NeighbourMean(const Light& light, const PixelRect& rect, const Vec2i& p) {
     Rgb sum(0, 0, 0);
@@ -60,7 +57,6 @@ std::optional<Rgb> NeighbourMean(const Light& light, const PixelRect& rect, cons
     return count > 0 ? std::optional<Rgb>(sum / float(count)) : std::nullopt;
 }
 
-// How sums over both halves of a pixel's samples become means.
 struct Split {
     bool isSplit;  // otherwise there are too few samples, and both have the mean of all
     double inA, inB;
@@ -74,8 +70,7 @@ struct Split {
 
 constexpr auto kSkip = [](const Vec2i&) {};
 
-// Calls use(split, pixel, p) for each pixel p that has samples, and useEmpty(p) for the others,
-// rows on all threads.
+// Calls use(split, pixel, p) for pixels p with samples, useEmpty(p) for others, on all threads.
 template <typename Light, typename Use, typename UseEmpty = decltype(kSkip)>
 void ForEachPixel(const Light& light, const PixelRect& rect, const Use& use,
                   const UseEmpty& useEmpty = kSkip) {
@@ -135,8 +130,7 @@ Planes VarianceOfLight(const Light& light, const PixelRect& rect) {
     return variance;
 }
 
-// Returns all but the colours. Calls forget(end), if there is such, when features of the rows above
-// `end` are not needed any more.
+// Returns all but the colours. Calls forget(end), if given, when rows above `end` have been read.
 NoisyPicture FeaturesOf(const Film& film, const PixelRect& rect,
                         const std::function<void(int end)>& forget = {}) {
     const auto read = [&](int y0, int y1) {

@@ -17,16 +17,14 @@ inline constexpr uint32_t kLeastDenoisedSpp = 4;
 
 // Returns the pixels of a rectangle inside the film, which keeps its half and features. Where a
 // pixel has less than kLeastDenoisedSpp samples, one half of its colours is their mean, and the
-// other that of its neighbours; the denoiser's estimate of the error is too rough there to be used.
-// Where it has none, both are the film's first look.
+// other that of its neighbours. Where it has none, both are the film's first look.
 NoisyPicture PictureOf(const Film&, const PixelRect&);
 
 // The same for the light of groups, which keep what tells their noise. The picture reads the film,
 // which has to be there; the first look belongs to the last group.
 GroupedPicture GroupedPictureOf(const Film&, const PixelRect&);
 
-// Returns a region of the film at a lower resolution, for a quick look: each pixel is the mean of
-// 2^halvings x 2^halvings.
+// Returns a region of the film at a lower resolution: each pixel is the mean of 2^halvings a side.
 NoisyPicture ReducedPictureOf(const Film&, const PixelRect& region, int halvings);
 
 // Do the same; of all pixels, they free what the denoiser alone reads of the film, row by row: so
@@ -34,14 +32,11 @@ NoisyPicture ReducedPictureOf(const Film&, const PixelRect& region, int halvings
 NoisyPicture TakePicture(Film*, const PixelRect&);
 GroupedPicture TakeGroups(Film*, const PixelRect&);
 
-// Returns the colours alone.
 Halves ColoursOf(const Film&, const PixelRect&);
 
-// Return the features of both halves of the samples, not filtered, and the variance of the mean
-// luminance.
+// Return the unfiltered features of both halves, and the variance of the mean luminance.
 Halves FeatureHalvesOf(const Film&, const PixelRect&);
-// Returns NoisyPicture::emission: 0 in pixels with too few samples for two halves, no channels
-// where the film has no such layer.
+// Returns NoisyPicture::emission: 0 in pixels without two halves, no channels without such a layer.
 Halves EmissionOf(const Film&, const PixelRect&);
 Planes VarianceOf(const Film&, const PixelRect&);
 

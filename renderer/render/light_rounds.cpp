@@ -23,7 +23,6 @@ float Moved(float share, double variance, double cost, double ofCamera, float le
     return std::clamp(float(std::sqrt(double(share) * best)), least, 1.f);
 }
 
-// Variances of a sample, as sums over tiles by the square of their brightness.
 struct Variances {
     double camera = 0, connections = 0, paths = 0;
 };
@@ -56,8 +55,7 @@ Variances VariancesOf(const Film& film) {
     return of;
 }
 
-// Returns the part of the pixels that were active when the round began: blocks that have stopped in
-// it were.
+// Returns the part of the pixels active when the round began: also of blocks that stopped in it.
 double ActivePart(const Schedule& schedule) {
     const int first = schedule.LeastSpp();
     int64_t active = 0, all = 0;
@@ -77,7 +75,6 @@ LightRounds::LightRounds(const Scene& scene, const Film& film, const Sampler& sa
       unit(FindUnit()),
       groups(film.layers.Options().groups) {}
 
-// Returns about the mean of what light paths bring, from a few of them.
 double LightRounds::FindUnit() const {
     constexpr uint32_t kMost = 1 << 16;
     constexpr int kEnough = 256;

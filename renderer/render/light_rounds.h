@@ -30,21 +30,18 @@ struct LightRound {
 
 class LightRounds {
   public:
-    // With few connections the weights leave to other strategies all that these can find as well:
-    // only the rest makes them more.
+    // With few connections the weights leave to other strategies all that these can find.
     static constexpr BdptShares kFirst{.lightPaths = 0.3f, .connections = 0.05f};
     // Shares below which no strategy falls: it has to be seen where it would bring much.
     static constexpr BdptShares kLeast{.lightPaths = 0.05f, .connections = 0.03f};
 
-    // The scene, whose integrator is BdptIntegrator, must outlive it; of the film it is the region
-    // and the light groups.
+    // The scene, with a BdptIntegrator, must outlive it; of the film it is region and light groups.
     LightRounds(const Scene&, const Film&, const Sampler&);
     LightRounds(const LightRounds&) = delete;
     LightRounds& operator=(const LightRounds&) = delete;
 
     const LightRound& Round() const { return round; }
-    // Returns the spp at which the round ends, 0 where none has begun, and whether it is the cap
-    // that ends it there.
+    // Returns the spp at which the round ends, 0 where none has begun, and whether by the cap.
     int End() const { return round.end; }
     bool IsCutShort() const { return isCutShort; }
 
@@ -57,11 +54,9 @@ class LightRounds {
     void Begin(const Schedule&);
     // Begins this one, of which no light has been traced.
     void Begin(const LightRound&);
-    // Traces one of `parts` of its light, on all threads of the task arena. Returns false if
-    // `isCancelled` ended it.
+    // Traces one of `parts` of its light, on all threads. Returns false if `isCancelled` ended it.
     bool Trace(const std::function<bool()>& isCancelled, int part = 0, int parts = 1);
-    // The light that has been traced, to be merged where others trace the other parts: all of it
-    // and that of each light group.
+    // The light traced, to be merged where others trace other parts: all, and of each light group.
     std::vector<SplatPlane>& Planes() { return planes; }
     // With no thread at work: learns the shares from the spreads of the round, which the film then
     // forgets. If the render ends here, or is interrupted, whoever goes on has to know them.

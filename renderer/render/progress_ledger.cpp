@@ -8,7 +8,6 @@ namespace lull {
 
 namespace {
 
-// Follows the decisions so far. Of several ranks, none knows the costs of all blocks.
 std::vector<StopTrend> MakeTrends(const RenderOptions& options,
                                   const std::vector<BlockResult>& results) {
     if (!options.trend || !options.events.onProgress || options.peers) return {};

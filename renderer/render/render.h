@@ -12,7 +12,6 @@
 
 namespace lull {
 
-// A decision of a criterion on a block.
 struct BlockDecision {
     int spp;
     Decision decision;
@@ -66,14 +65,12 @@ struct RenderEvents {
 class LightRounds;
 class Peers;
 
-// Takes sample `index` of a pixel, as RenderSample() does; must depend on nothing but the sampler's
-// seed, pixel and index.
+// Takes a sample as RenderSample(); must depend on the sampler's seed, pixel and index alone.
 using SampleSource = std::function<void(Sampler&, const Vec2i& pixel, uint32_t index, PathSample*)>;
 
 // Saves the state of a render, to resume it after an interruption.
 struct Checkpointing {
-    // Called with the state, with no thread at work, every `interval` seconds and when the render
-    // is cancelled. Can be empty.
+    // Called with the state, with no thread at work, every `interval` seconds and when cancelled.
     std::function<void(const RenderState&)> write = {};
     double interval = 60;
     bool atEnd = false;  // also when every block has stopped
@@ -87,8 +84,7 @@ struct RenderOptions {
 
     // Makes each block's own stopping criterion; empty: all continue to the cap.
     CriterionMaker makeCriterion;
-    // How the numbers in their decisions go, from which progress predicts the end; nothing: it does
-    // not.
+    // How the numbers in their decisions go, by which progress predicts the end, if given.
     std::optional<RuleTrend> trend;
     // Called before every tile; true ends the render after the tiles under way. Can be empty.
     std::function<bool()> isCancelled;
@@ -96,8 +92,7 @@ struct RenderOptions {
     // Receives every tile when it has been rendered, and every block that stops. Null: none.
     Display* display = nullptr;
 
-    // The processes that share the work, each with the same scene and options (peers.h). Null: this
-    // one does all.
+    // The processes that share the work, of the same scene and options (peers.h). Null: none.
     Peers* peers = nullptr;
     // How long they render at least before tiles are dealt out by how fast they were.
     double dealInterval = 5;
@@ -138,8 +133,7 @@ struct RenderResult {
 // callbacks; throws std::invalid_argument for a display on several ranks.
 RenderResult Render(const RenderOptions&);
 
-// Returns the scene as a source of samples, with the shares of the round of light paths where there
-// are some; both must outlive it.
+// Returns the scene as a source of samples, with a round's shares, if any; both must outlive it.
 SampleSource SamplesOf(const Scene&, const PathOptions&, const LightRounds* = nullptr);
 
 }  // namespace lull

@@ -63,8 +63,7 @@ struct SessionOptions {
     RenderIdentity identity;
     // Returns the seconds until the files of the image are due. Can be empty.
     std::function<double()> clock;
-    // Waits until all ranks are about to render the same, which `what` describes completely. Can be
-    // empty.
+    // Waits until all ranks are about to render `what`. Can be empty.
     std::function<void(const std::string& what)> agree;
 };
 
@@ -90,7 +89,6 @@ class Session {
     // Returns whether this is the first or only rank, which has to do with files.
     bool Leads() const;
     Film& GetFilm() { return film; }
-    // Returns how it is rendered, and what.
     const RenderOptions& Options() const { return options.render; }
 
   private:

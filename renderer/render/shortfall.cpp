@@ -11,7 +11,6 @@ namespace lull {
 
 namespace {
 
-// Returns the noise of blocks that the rule has stopped.
 double NoiseAtStop(const std::vector<BlockResult>& blocks) {
     std::vector<double> noise;
     for (const BlockResult& b : blocks)
@@ -74,8 +73,7 @@ std::vector<CappedBlock> FindCapped(const RenderResult& result) {
     }
     if (const auto stops = PredictStops(trends, blocks, kMostCap))
         for (CappedBlock& c : capped) {
-            // A prediction that is no more than its sample count is of a block without a
-            // trend.
+            // A prediction no more than its sample count is of a block without a trend.
             const int had = blocks[size_t(c.block)].spp;
             const double spp = std::ceil((*stops)[size_t(c.block)]);
             if (spp < kMostCap && (spp > had || c.value <= c.threshold))

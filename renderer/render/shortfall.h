@@ -31,8 +31,7 @@ struct CappedBlock {
 // samples. The value of the rule is extrapolated (forecast.h).
 std::vector<CappedBlock> FindCapped(const RenderResult&);
 
-// Returns a cap at which all of them have probably stopped, above the one they had, in round
-// numbers; 0: not to be told.
+// Returns a cap in round numbers at which all of them have probably stopped; 0: not to be told.
 int CapFor(const std::vector<CappedBlock>&, int cap);
 
 // Returns the wall-clock seconds that all of them need, at the speed of the render.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <initializer_list>
 #include <vector>
 
@@ -75,7 +74,6 @@ void UseColours(const std::string& file, ExrImage* image) {
     image->channels.push_back({"B", values});
 }
 
-// Takes the first of the passes that is there.
 void UsePass(std::initializer_list<const char*> passes, const std::string& to,
              std::string_view channels, ExrImage* image) {
     if (HasAll(*image, to, channels)) return;
@@ -123,7 +121,6 @@ namespace {
 
 constexpr int kLayers = 3;  // of two ranks each
 
-// The ids of the names of all numbers that occur.
 using Ids = std::map<uint32_t, uint32_t>;
 
 // Returns the shares of a pixel by ids, the largest first.

@@ -31,8 +31,7 @@ std::string ListOfChannels(const ExrImage&);
 // Returns the hash of a name: MurmurHash3's of 32 bits for x86, with seed 0.
 uint32_t MurmurHash3(std::string_view name);
 
-// Returns the hash that stands for a name: one that, read as a float, is neither infinite, NaN nor
-// denormal.
+// Returns the hash of a name: one that, read as a float, is neither infinite, NaN nor denormal.
 uint32_t CryptomatteId(std::string_view name);
 
 // Returns six ranks of ids and coverage as channels LAYER00.R .G .B .A to LAYER02, of a member of

@@ -30,7 +30,6 @@ std::vector<float> RowsBeside(const std::vector<float>& left, const std::vector<
 
 namespace {
 
-// Returns the images of both eyes of a pair as one, the blocks of the left first.
 DenoisedImage Beside(const DenoisedImage& left, const DenoisedImage& right) {
     const int width = left.image.width;
     const auto join = [&](const std::vector<float>& a, const std::vector<float>& b, int channels) {
@@ -142,7 +141,6 @@ void AddChannels(const std::string& layer, const Planes& planes,
 template <size_t N>
 using FoundChannels = std::array<const float*, N>;
 
-// Returns channels that must be there.
 template <size_t N>
 FoundChannels<N> Channels(const ExrImage& image, const std::string& file, const std::string& layer,
                           const std::array<const char*, N>& names) {
@@ -164,7 +162,6 @@ void Copy(const FoundChannels<kColours>& channels, Planes* to) {
     for (int c = 0; c < kColours; ++c) std::copy_n(channels[size_t(c)], to->Area(), to->Plane(c));
 }
 
-// Reads the features of an image; the last is converted by `disparityOf`.
 Planes ReadFeatures(
     const ExrImage& image, const FoundChannels<kFeatures>& a, const FoundChannels<kFeatures>& b,
     float (*disparityOf)(float) = [](float d) { return d; }) {

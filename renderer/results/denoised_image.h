@@ -19,8 +19,7 @@ inline constexpr float kUnknownError = 100;  // in lightness, of pixels: all tha
 // Returns where blocks are in the region.
 std::vector<PixelRect> PlacesOf(const std::vector<Block>&, const PixelRect& region);
 
-// Denoises the picture as a whole, so that there are no seams between blocks, whatever samples they
-// have had.
+// Denoises the picture as a whole, so that there are no seams between blocks.
 template <typename Picture>
 DenoisedImage DenoiseImage(Picture picture, const PixelRect& region,
                            const std::vector<Block>& blocks, const DenoiserOptions& options = {}) {
@@ -67,8 +66,7 @@ std::vector<ExrChannel> MakeHalfChannels(const Film&, const PixelRect&);
 
 inline constexpr int kHalfChannelsBytes = 27 * 4;  // of memory a pixel, of all of them
 
-// Reads a picture from an EXR with these channels. Throws Error, with `name` in it, if any is
-// missing.
+// Reads a picture from an EXR with these channels. Throws Error, with `name`, if any is missing.
 NoisyPicture ReadPicture(const ExrImage&, const std::string& name);
 
 // Makes a picture of two EXRs that hold different samples of the same, for instance renders with

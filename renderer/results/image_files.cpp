@@ -20,7 +20,6 @@ bool MayBeHalf(const std::string& name) {
            name.starts_with("N.") || name.starts_with("noisy.") || name.starts_with("light.");
 }
 
-// Makes the header of an image of a region of the film, with channels R, G, B and spp.
 ExrImage MakeExr(const PictureOrigin& origin, const PixelRect& region, int64_t samples,
                  double seconds) {
     const auto& [scene, provenance] = origin;
@@ -66,7 +65,6 @@ ExrImage MakeExr(const PictureOrigin& origin, const Film& film, const RenderResu
     return exr;
 }
 
-// Adds a word on the tones of the PNG, and sets which channels take 16 bits.
 void ApplyTo(ExrImage* exr, const PictureFormat& wanted) {
     if (const std::string tones = TextOf(wanted.grade); !tones.empty())
         exr->attributes["pngToneMap"] = tones;
@@ -101,7 +99,6 @@ RowSource ChannelsOf(const ExrImage& exr, const RowSource& means, const RowSourc
     };
 }
 
-// Returns the rows of the image, which is never held as a whole beside its sums.
 RowSource MeansOf(const Film& film) {
     return [&film](int y, std::span<float> row) {
         const PixelRect& all = film.Region();
@@ -125,7 +122,6 @@ RowSource WithoutBackground(const RowSource& rows, bool isDenoised, const Film& 
     };
 }
 
-// Returns R, G, B of each pixel of an image.
 std::vector<float> ValuesOf(const RowSource& rows, const ExrImage& exr) {
     const size_t stride = 3 * size_t(exr.width);
     std::vector<float> values(stride * size_t(exr.height));
@@ -152,7 +148,6 @@ RowSource SppOf(const Film& film) {
     };
 }
 
-// Returns the samples of pixels of blocks that have spp[i] each.
 RowSource SppOf(const PixelRect& region, const std::vector<Block>& blocks,
                 const std::vector<int>& spp) {
     return [&](int y, std::span<float> row) {
@@ -175,14 +170,12 @@ RowSource MeansOf(const RgbImage& image) {
 
 namespace {
 
-// Returns the name of the file of an eye: a.left.png for a.png.
 std::string FileOfEye(const std::string& file, const std::string& eye) {
     const std::filesystem::path path(file);
     return (path.parent_path() / (path.stem().string() + "." + eye + path.extension().string()))
         .string();
 }
 
-// Takes one half of rows with so many values a pixel.
 RowSource HalfOf(const RowSource& rows, int width, int values, bool isRight) {
     return [=](int y, std::span<float> row) {
         std::vector<float> whole(size_t(2 * width * values));
@@ -192,7 +185,6 @@ RowSource HalfOf(const RowSource& rows, int width, int values, bool isRight) {
     };
 }
 
-// Returns the image of one eye of a pair.
 ExrImage ImageOfEye(const ExrImage& pair, const Camera& camera, const FilmSettings& film,
                     bool isRight) {
     ExrImage eye = pair;
@@ -211,7 +203,6 @@ ExrImage ImageOfEye(const ExrImage& pair, const Camera& camera, const FilmSettin
     return eye;
 }
 
-// Writes both eyes as the parts of an EXR, a PNG of each, and one of both.
 int64_t WritePair(const PictureFiles& files, const Scene& scene, const ExrImage& exr,
                   const RowSource& colours, const RowSource& spp, const RowSource& shown,
                   const PngFormat& png, ResultFiles* results) {

@@ -13,7 +13,6 @@
 
 namespace lull {
 
-// How pictures are stored.
 struct PictureFormat {
     Grade grade = {};  // of the PNG
     int pngBits = 8;
@@ -23,12 +22,10 @@ struct PictureFormat {
     bool isTransparent = false;
 };
 
-// Names the files of a picture.
 struct PictureFiles {
     std::string exr, png;
 };
 
-// Where a picture comes from.
 struct PictureOrigin {
     const Scene& scene;
     const Provenance& provenance;

@@ -16,7 +16,6 @@ namespace lull {
 
 namespace {
 
-// Calls visit(i, p) for every pixel p, the i-th row by row.
 template <typename Visit>
 void ForEachPixel(const PixelRect& region, const Visit& visit) {
     size_t i = 0;
@@ -24,7 +23,6 @@ void ForEachPixel(const PixelRect& region, const Visit& visit) {
         for (int x = region.min.x(); x < region.max.x(); ++x) visit(i++, Vec2i(x, y));
 }
 
-// Makes a channel of `value(p)`.
 template <typename Value>
 ExrChannel MakeChannel(const std::string& name, const PixelRect& region, const Value& value) {
     ExrChannel channel{.name = name, .values = std::vector<float>(size_t(region.Area()))};
@@ -32,7 +30,6 @@ ExrChannel MakeChannel(const std::string& name, const PixelRect& region, const V
     return channel;
 }
 
-// Names the numbers that occur, as JSON.
 std::string NamesOf(const FirstHitLayer& hits, uint32_t NearestHit::*number,
                     const PixelRect& region, const std::function<std::string(uint32_t)>& name) {
     std::set<uint32_t> numbers;
@@ -44,7 +41,6 @@ std::string NamesOf(const FirstHitLayer& hits, uint32_t NearestHit::*number,
     return names.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-// Returns the standard error in lightness of a pixel whose mean luminance is `mean`.
 double Noise(double squares, double mean, double count) {
     constexpr double kUnknown = 100;  // from black to white
     if (count < 2) return kUnknown;
@@ -53,7 +49,6 @@ double Noise(double squares, double mean, double count) {
     return std::min(noise, double(std::numeric_limits<float>::max()));
 }
 
-// Returns the means of a group's samples, or its first look where there are none.
 std::vector<float> MeansOf(const LightGroupLayer& layer, int group, const Film& film) {
     std::vector<float> rgb(size_t(film.Region().Area()) * 3);
     ForEachPixel(film.Region(), [&](size_t i, const Vec2i& p) {

@@ -26,8 +26,7 @@ struct FinishedFilm {
     std::function<std::string(uint32_t)> nameOfObject = {}, nameOfMaterial = {};
 };
 
-// Z where nothing was hit, as in Blender's Cycles: far away, but finite, so that compositors can
-// compute with it.
+// Z where nothing was hit, as in Blender's Cycles: finite, so that compositors can use it.
 inline constexpr float kAovFarAway = 1e10f;
 
 // Return the channels of each layer:
@@ -56,7 +55,6 @@ LayerChannels ChannelsOf(const MatteLayer&, const FinishedFilm&);
 //                    "lightGroups"
 LayerChannels ChannelsOf(const LightGroupLayer&, const FinishedFilm&);
 
-// Returns those of all layers.
 LayerChannels ChannelsOf(const FinishedFilm&);
 
 // Removes the light of samples that hit nothing, of which `background` is the sum, from the colour

@@ -32,7 +32,6 @@ Json BlockJson(const BlockResult& result, int cap, bool timeUp) {
     return json;
 }
 
-// Adds the shortfall at the deadline; it is unknown for blocks within their first pass.
 void AddShortfall(const Provenance& provenance, const RenderResult& result, Json* report) {
     std::vector<NoisyBlock> noisy = FindShortfall(provenance, result);
     const auto unknown =
@@ -46,7 +45,6 @@ void AddShortfall(const Provenance& provenance, const RenderResult& result, Json
     }
 }
 
-// Adds at which spp blocks at the cap would probably have stopped, and which cap would do.
 void AddCapped(const Provenance& provenance, const RenderResult& result, Json* report) {
     const std::vector<CappedBlock> capped = FindCapped(result);
     for (const CappedBlock& c : capped)

@@ -36,11 +36,9 @@ Savings ComputeSavings(const RenderResult&, int spp);
 // Writes a picture of the samples per pixel of each block, in false colours.
 void WriteSppMap(const std::string& file, const Provenance&, const RenderResult&);
 
-// Writes a thresholds file (stopping/rules/thresholds.h) with the row of a scene, which is given as
-// its file.
+// Writes a thresholds file (stopping/rules/thresholds.h) with the row of a scene's file.
 void WriteThresholdsOf(const std::string& file, const std::string& scene, std::vector<int> spp);
 
-// Returns the thresholds that repeat a render.
 std::vector<int> ThresholdsOf(const Provenance&, const RenderResult&);
 
 // JSON that reports have in common; for those .cpp files that write reports.
@@ -51,8 +49,7 @@ Json RectJson(const PixelRect&);
 Json ProvenanceJson(const Provenance&);
 // Lists decisions by column, which takes a tenth of the size of an object for each.
 Json DecisionsJson(const std::vector<BlockDecision>&);
-// Returns the report. `warnings` are counts by kind; `denoised` is null where the image is the mean
-// of the samples.
+// `warnings` are counts by kind; `denoised` is null where the image is the mean of the samples.
 Json ReportJson(const Provenance&, const RenderResult&, int64_t rejectedSamples,
                 const std::map<std::string, int>& warnings, const DenoisedImage*);
 

@@ -15,7 +15,6 @@
 namespace lull {
 namespace {
 
-// Runs `work` and returns the seconds it took.
 template <typename Work>
 double Timed(const Work& work) {
     const auto start = std::chrono::steady_clock::now();
@@ -52,7 +51,6 @@ void ReadView(const Description& description, const CompileOptions& options, Sce
     scene->isRightAlone = stereo.alone == Eye::Right;
 }
 
-// Returns whether a material is none, so that shadow rays of volpath pass through its surfaces.
 bool HasInterfaces(const Description& description) {
     return std::ranges::any_of(description.materials, [](const MaterialEntity& m) {
         return m.name.empty() || m.name == "none";
@@ -66,7 +64,6 @@ void ReadMedia(const Description& description, Scene* scene, Warnings& warnings)
                           (!scene->media.media.empty() || HasInterfaces(description));
 }
 
-// Returns why subpaths from lights cannot be traced; null: they can.
 const char* WhyNotBdpt(const Description& description, const CompileOptions& options,
                        const Scene& scene) {
     if (options.lightsAsPbrtV3) return "pbrt-v3's estimator is for paths from the camera";
@@ -95,8 +92,7 @@ bool HidesShapes(const Scene& scene) {
                                [](const Shape& s) { return (s.hiddenFrom & kCameraRay) != 0; });
 }
 
-// Returns the share of the picture in which the camera looks through single-sided shapes from
-// behind.
+// Returns the picture's share in which the camera looks through single-sided shapes from behind.
 double ShareOpenBehind(const Scene& scene) {
     const auto isSingleSided = [](const Shape& s) { return s.coverage && s.coverage->singleSided; };
     const std::vector<Shape>& shapes = scene.shapes.shapes;
@@ -116,8 +112,7 @@ double ShareOpenBehind(const Scene& scene) {
     return double(count) / (kSide * kSide);
 }
 
-// Returns the volumes that a point lies in: those that a ray from there leaves without having
-// entered them, the innermost first.
+// Returns the volumes about a point, the innermost first: a ray leaves them without entering.
 MediumStack VolumesAbout(const Scene& scene, const Vec3f& point) {
     constexpr int kMostHits = 1000;
     std::vector<int> left;
@@ -220,7 +215,6 @@ constexpr double kLeastFilled = 0.75;
 using Vec3d = Eigen::Vector3d;
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-// Returns the mesh's triangles with the first vertex at each place.
 Triangles Welded(const Mesh& mesh) {
     std::map<std::array<float, 3>, uint32_t> first;
     const auto weld = [&](uint32_t i) {

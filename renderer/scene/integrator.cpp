@@ -12,7 +12,6 @@ namespace {
 // Between mirrors that reflect all light, and in closed white rooms, Russian roulette ends no path.
 constexpr int kMostBounces = 100'000;
 
-// Reads the parameters that all kinds have.
 template <typename Kind>
 Kind ReadDepth(const Entity& entity, int maxDepth) {
     Kind kind;

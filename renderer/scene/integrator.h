@@ -32,7 +32,6 @@ struct BdptIntegrator {
     static const char* Name(bool) { return "bdpt"; }
 };
 
-// All kinds.
 using Integrator = std::variant<PathIntegrator, BdptIntegrator>;
 
 // Returns whether it starts paths from lights, in rounds (render/light_rounds.h).

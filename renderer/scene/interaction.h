@@ -25,7 +25,6 @@ constexpr SurfaceNeeds operator|(SurfaceNeeds a, SurfaceNeeds b) {
     return SurfaceNeeds(uint16_t(a) | uint16_t(b));
 }
 
-// A hit as the accelerator returns it.
 struct Hit {
     float t;
     float b1, b2;  // triangles: weights of the second and third vertex; curves: u and v

@@ -36,7 +36,6 @@ void AddNew(const std::string& name, Names* names) {
     if (!name.empty() && !Has(*names, name)) names->push_back(name);
 }
 
-// Returns the names of a shape's lights, the most specific first.
 Names NamesOfEmitter(const ShapeEntity& shape, const Description& description) {
     Names names;
     AddNew(LightGroupOf(*shape.areaLight), &names);
@@ -72,7 +71,6 @@ std::vector<NamedLights> ListLights(const Description& description, const Scene&
     return lights;
 }
 
-// Throws Error for the first name that no light has.
 void CheckNames(const Names& wanted, const std::vector<NamedLights>& lights) {
     Names known;
     for (const NamedLights& light : lights)
@@ -105,7 +103,6 @@ Names FirstNamesOf(const std::vector<NamedLights>& lights) {
     return names;
 }
 
-// Returns where an entity is, for those without a name.
 std::string Place(const FileLoc& loc) {
     std::string prefix = loc.Prefix();
     if (prefix.ends_with(": ")) prefix.resize(prefix.size() - 2);

@@ -38,8 +38,7 @@ std::string NameOf(const LightGroups&);
 std::string TextOf(const LightGroups&);
 
 // Return the name of an object or a material by its number (FirstHit), not 0: as the scene has it,
-// else kind, file and line. Numbers that the scene does not have, as of a checkpoint that somebody
-// has changed, give "".
+// else kind, file and line. Others, as of a checkpoint that somebody has changed, give "".
 std::string NameOfObject(uint32_t number, const Description&, const Scene&);
 std::string NameOfMaterial(uint32_t number, const Description&);
 

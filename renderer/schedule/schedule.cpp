@@ -15,7 +15,6 @@ int CountTiles(const PixelRect& r, int tileSize) {
     return CeilDiv(r.Width(), tileSize) * CeilDiv(r.Height(), tileSize);
 }
 
-// Returns the pixels of a block's tile, of all of them row by row.
 PixelRect TileAt(const PixelRect& block, int tileSize, int tile) {
     const int columns = CeilDiv(block.Width(), tileSize);
     const Vec2i min = block.min + tileSize * Vec2i(tile % columns, tile / columns);
@@ -224,7 +223,6 @@ void Schedule::Decide(int i, bool stop, double noise) {
     for (const int follower : progress[i].followers) CatchUp(follower);
 }
 
-// Returns whether the block waits for the pass of the other eye's.
 bool Schedule::IsAhead(int block) const {
     const int partner = blocks[block].partner;
     return partner >= 0 && blocks[partner].spp < blocks[block].spp;

@@ -27,8 +27,7 @@ struct ScheduleOptions {
     // Pixels from where the right eye's image of a pair follows; 0: there is one image. Both are
     // cut alike, and the two blocks of a place take their passes together and stop with the later.
     int eyeWidth = 0;
-    // For renders that are viewed in progress: the first pass is taken in steps of 1,
-    // 2, 4, ... spp.
+    // For renders viewed in progress: the first pass is taken in steps of 1, 2, 4, ... spp.
     bool inSteps = false;
     // For renders that have a clock: the next pass is that of the block with the most
     // visible noise, which minimises the largest noise at any moment, after a first pass in
@@ -39,13 +38,11 @@ struct ScheduleOptions {
 };
 
 // Returns the spp at the end of the pass that begins at `spp`, a multiple of the length of passes
-// the end of the round, or the cap. With a clock the first pass is done in steps too, in case that
-// there is no time for all of it.
+// the end of the round, or the cap. With a clock the first pass is done in steps too.
 int PassEndAfter(int spp, const ScheduleOptions&);
 // Returns whether a pass, or the first as a whole, ends at `spp`.
 bool IsPassEnd(int spp, const ScheduleOptions&);
 
-// Returns how a film is cut by the schedule.
 inline TileGrid GridOf(const ScheduleOptions& options) {
     return {options.blockSize, options.tileSize, options.eyeWidth};
 }
@@ -89,8 +86,7 @@ struct BlockStart {
     bool stopped = false;
     bool stoppedByVote = false;
     double noise = kUnknownNoise;
-    // The spp at the end of a pass that has been begun, and has to be finished though time is
-    // called; 0: none.
+    // The spp at the end of a pass that has to be finished though time is called; 0: none.
     int passEnd = 0;
     bool hasVoted = false;  // for its own stop, and waits for the other eye's
 };
@@ -155,8 +151,7 @@ class Schedule {
     // schedule was.
     void CallTime();
 
-    // Returns the samples per pixel of the block that has the fewest, of those that have not
-    // stopped; 0 if all have.
+    // Returns the fewest samples per pixel of the blocks that have not stopped; 0 if all have.
     int LeastSpp() const;
     // Returns whether all blocks that have not stopped have come to the end of the round; false if
     // all have.
@@ -169,7 +164,6 @@ class Schedule {
     int StoppedBlocks() const { return stoppedBlocks; }
     int BlocksAtCap() const { return blocksAtCap; }  // of those, not stopped by a vote
     int MedianSpp() const;
-    // Returns the samples left until every live block is at the cap.
     int64_t SamplesToCap() const;
 
   private:

@@ -10,7 +10,6 @@
 namespace lull {
 namespace {
 
-// Returns the camera's ray as a segment, where `length` is that of its direction.
 Segment SegmentFromCamera(const BdptContext& context, const Ray& ray, float length) {
     Segment segment;
     segment.ray = ray;
@@ -50,8 +49,7 @@ template <typename Use>
             use(fromLight->Light(), ConnectedLight(context, v, vertices[i]));
 }
 
-// Scatters a subpath from the camera at vertex v, and ends dim ones by Russian roulette. Returns
-// false where it ends.
+// Scatters a camera's subpath at v, and ends dim ones by Russian roulette: returns false.
 template <typename Recorder>
 [[gnu::always_inline]] inline bool GoesOn(const BdptContext& context, const SubpathVertex& v,
                                           int bounces, Segment* segment, Path* path,
@@ -71,7 +69,6 @@ template <typename Recorder>
     return true;
 }
 
-// Follows the camera's ray, and returns its radiance. `connected` receives that of connections.
 template <typename Recorder>
 [[gnu::noinline]] Rgb Follow(const BdptContext& context, const SampleStart& start,
                              Recorder& recorder, Rgb* connected) {
@@ -92,7 +89,6 @@ template <typename Recorder>
     for (int bounces = 0;; ++bounces) {
         const bool isLast = bounces >= maxDepth;
 
-        // Find the next surface, or add the light of the sky where there is none.
         Hit found;
         if (!scene.accelerator.Intersect(segment.ray, &found, context.time,
                                          bounces == 0 ? kCameraRay : kOtherRay)) {
@@ -101,7 +97,6 @@ template <typename Recorder>
             break;
         }
 
-        // Compute the interaction with the surface, and the densities of arriving there.
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
         SurfaceInteraction hit;
@@ -113,14 +108,12 @@ template <typename Recorder>
                    bounces == 0 ? context.SeenFromCamera() : context.Connected(segment.connects));
         if (!(arrival.density > 0)) break;
 
-        // Add the emission of the surface.
         if (hit.areaLight >= 0)
             find(hit.areaLight, EmittedLight(context, segment, hit, found, arrival, choice));
         if (bounces == 0 && segment.ray.d != start.ray.d) found.t /= length;
         recorder.ReachSurface(path, found, hit);
         if (isLast && !recorder.Wanted() && !(needs & kLetsThrough)) break;
 
-        // Make the BSDF, and go straight on through a pane, which is no vertex.
         SubpathVertex v(scene, hit, segment.beta, arrival);
         recorder.MeetSurface(path, found, v.hit, v.bsdf);
         if ((needs & kLetsThrough) && PassesPane(context, isLast, &v, &segment, &path, recorder)) {
@@ -129,7 +122,6 @@ template <typename Recorder>
         }
         if (isLast) break;
 
-        // Sample the light that arrives directly from lights, and connect to a subpath from one.
         if (v.Connects() && scene.lights.Count() > 0) {
             choice = scene.lights.Choice(v.hit, v.bsdf, scene.lights.PlaceOf(v.hit.p));
             int chosen;
@@ -143,7 +135,6 @@ template <typename Recorder>
                 });
         }
 
-        // Sample the direction in which the subpath goes on, unless roulette ends it.
         if (!GoesOn(context, v, bounces, &segment, &path, recorder)) break;
     }
     recorder.End(path);

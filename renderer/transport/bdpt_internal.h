@@ -46,8 +46,7 @@ struct Arrival {
     double Sum(float back) const { return (own + Sqr(double(back)) * fewer) / Sqr(density); }
 };
 
-// Returns the factor of a density by solid angle, which makes it one by area at a point of normal n
-// seen from afar.
+// Returns the factor from a density by solid angle to one by area at a point of normal n.
 inline double PerArea(const Vec3f& n, const Vec3f& d, double distance2) {
     return std::abs(double(n.dot(d))) / distance2;
 }

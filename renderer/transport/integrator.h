@@ -22,8 +22,7 @@ struct FirstHit {
     uint32_t object = 0;    // 1 + number of the shape, then of the instances; 0: none
     uint32_t material = 0;  // 1 + number of the material; 0: none
     bool found = false;     // there was one
-    // Of the sample's radiance, that of a surface that the camera's ray meets unscattered: in
-    // PathSample::features.
+    // Of the sample's radiance, that of a surface met unscattered: in PathSample::features.
     Rgb emission = Rgb::Zero();
     // Of the sample: its filter weight, and the squared distance from the pixel's centre.
     float weight = 1, offset2 = 0;
@@ -39,7 +38,6 @@ class GroupRadiance {
 
     // Clear() and Scale() are not inlined: samples without groups would have to pass by them.
     void Clear();
-    // Adds the radiance of light `index` of the scene.
     void Add(int index, const Rgb& radiance) { radiances[ofLight[size_t(index)]] += radiance; }
     // Multiplies all by `factor`. What is not finite then is black.
     void Scale(float factor);
@@ -70,7 +68,6 @@ struct BdptShares {
     float connections = 1;  // subpaths from lights to connect to, in (0, 1]
 };
 
-// How paths are traced.
 struct PathOptions {
     PathOptions(Estimator estimator) : estimator(estimator) {}
 
@@ -140,8 +137,7 @@ struct PathLog {
     PathSample sample;
 };
 
-// Takes the same sample of a scene that has a PathIntegrator as RenderSample(), and records
-// its path.
+// Takes the same sample as RenderSample(), by a PathIntegrator, and records its path.
 PathLog LogSample(const Scene&, Estimator, Sampler&, const Vec2i& pixel, uint32_t index);
 
 }  // namespace lull

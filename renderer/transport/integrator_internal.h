@@ -1,5 +1,4 @@
-// Start and end of a sample, the same for all integrators, and the function of each kind of
-// Integrator in between.
+// Start and end of a sample, the same for all integrators, and each kind's function in between.
 #pragma once
 
 #include "renderer/base/math.h"
@@ -51,7 +50,6 @@ inline float LimitOf(const Scene& scene, const Rgb& L, float luminance) {
     return component > scene.film.maxComponent ? scene.film.maxComponent / component : 1;
 }
 
-// Applies the film's white balance, if it has one.
 inline Rgb Balanced(const Scene& scene, const Rgb& L) {
     if (scene.film.colorMatrix) [[unlikely]]
         return (*scene.film.colorMatrix * L.matrix()).array();

@@ -10,13 +10,11 @@
 namespace lull {
 namespace {
 
-// Follows a ray through interfaces and panes, and multiplies the transmittances of their media.
 class Beam {
   public:
     Beam(const PathContext<Media>& context, RayKind kind, const Ray& ray, const MediumStack& media)
         : ray(ray), media(media), context(context), kind(kind) {}
 
-    // Goes on to the next surface, or to the end of the ray. Returns whether a surface is there.
     bool Advance() {
         const Scene& scene = context.scene;
         const bool isHit = scene.accelerator.Intersect(ray, &found, context.camera.time, kind);
@@ -37,7 +35,6 @@ class Beam {
         media = Media::Beyond(scene, found.shape, hit, ray.d, true, media);
         return true;
     }
-    // Goes through the surface. Returns false where no light does.
     bool GoThrough() {
         if (isPane) transmittance *= through;
         return (isInterface || isPane) && !IsBlack(transmittance);
@@ -61,8 +58,7 @@ class Beam {
 
 namespace {
 
-// Calls visit(medium, isLeft) for the surfaces of volumes that a ray to wi meets, until that
-// returns false.
+// Calls visit(medium, isLeft) for the surfaces of volumes on a ray to wi, until it returns false.
 template <typename Visit>
 void ForVolumesAhead(const Scene& scene, const SurfaceInteraction& hit, const Vec3f& wi,
                      const Visit& visit) {
@@ -207,8 +203,7 @@ namespace {
 // Chosen half of the time is the probe along the normal, which finds most.
 constexpr std::array<float, 3> kAxisShares = {0.25f, 0.25f, 0.5f};
 
-// Returns the density over the surface with which p, whose normal is n, is found by the probes of
-// all axes and channels together.
+// Returns the density by area of finding p, of normal n, by probes of all axes and channels.
 float ProbePdf(const SubsurfaceProfile& profile, const Frame& frame, const Vec3f& d,
                const Vec3f& n) {
     const Vec3f local = frame.ToLocal(d), normal = frame.ToLocal(n);

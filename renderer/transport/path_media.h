@@ -43,8 +43,7 @@ struct LightHit {
 
 // Makes the ray from a surface point to a light's point; nothing where that is in shadow. Both ends
 // are moved off their surfaces; the factor keeps the light's own surface out (pbrt-v3's
-// ShadowEpsilon). Where that or rounding turns a grazing ray to the other side of the surface, it
-// would pass through: that is in shadow.
+// ShadowEpsilon). A grazing ray that this or rounding turns to the other side is in shadow.
 [[gnu::always_inline]] inline std::optional<Ray> ShadowRay(const SurfaceInteraction& hit,
                                                            const LightSample& light) {
     if (light.isAtInfinity) return hit.SpawnRay(light.wi);
@@ -75,7 +74,6 @@ struct Vacuum {
             return ray && !context.scene.accelerator.Occluded(*ray, time);
     }
 
-    // Returns whether a ray in direction wi leaves the scene.
     static bool LeavesScene(const Context& context, const SurfaceVertex& v, const Vec3f& wi,
                             LightHit* lightHit) {
         const Ray ray = v.hit.SpawnRay(wi);
@@ -225,8 +223,7 @@ std::optional<SubsurfaceExit> SampleSubsurface(const Scene& scene, Sampler& samp
                                                const SurfaceInteraction& hit, const Bsdf& bsdf,
                                                const SubsurfaceProfile& profile, float time);
 
-// Returns how light leaves at such a point: into the outside by Fresnel's law, as if it came from
-// everywhere. Its wo is hit.ns.
+// Returns how light leaves there: by Fresnel's law, as if it came from everywhere. wo is hit.ns.
 Bsdf ExitBsdf(const SubsurfaceExit& exit, float eta);
 
 }  // namespace lull

@@ -38,8 +38,7 @@ struct NoRecorder {
     static void End(const Path&) {}
 };
 
-// Represents where a path scatters: on a surface, or in a medium. Directions point away from there,
-// unit, world.
+// Where a path scatters: on a surface, or in a medium. Directions point away, unit, world.
 
 // Returns whether both directions leave a surface of normal n on the same side.
 inline bool IsSameSide(const Vec3f& n, const Vec3f& a, const Vec3f& b) {
@@ -72,7 +71,6 @@ struct SurfaceVertex {
     std::optional<BsdfSample> Sample(const Vec2f& u, LobeSet set) const {
         return bsdf.Sample(hit.wo, u, set);
     }
-    // Returns the factor of f.
     float Cosine(const Vec3f& wi) const { return std::abs(wi.dot(hit.ns)); }
 
     // Returns the point where a ray of direction d, of any length, starts.
@@ -112,8 +110,7 @@ struct MediumVertex {
     bool IsSameSide(const Vec3f&, const Vec3f&) const { return true; }
 };
 
-// Constants of a path and, in `media`, the medium about its next ray: a
-// policy (path_media.h).
+// Constants of a path and, in `media`, that of its next ray: a policy (path_media.h).
 template <typename Media>
 struct PathContext {
     const Scene& scene;
@@ -124,7 +121,6 @@ struct PathContext {
     Media media;
 };
 
-// Carries the state of a path from one vertex to the next.
 struct Path {
     Ray ray;
     Rgb L = Rgb::Zero();     // radiance found so far

@@ -102,11 +102,9 @@ template <typename Media, typename Vertex, typename Recorder>
 
 namespace {
 
-// What a medium does with a path.
 enum class MediumEvent { Passes, Scatters, Ends };
 
-// Adds what the medium about a path emits. By itself, as the sums of other scenes are then rounded
-// alike with and without a recorder.
+// Adds what the medium about a path emits; apart, so that a recorder changes no rounding.
 template <typename Recorder>
 [[gnu::noinline]] void AddEmission(int index, const Rgb& emitted, Recorder& recorder, Path* path) {
     path->L += path->beta * emitted;
@@ -193,8 +191,7 @@ template <typename Media, typename Recorder>
         context.media.Leave(v, path->ray.d);
         return true;
     }
-    // Works on copies, as all functions that are not inlined here: anything it has a pointer to
-    // would lie in memory all along.
+    // Works on copies, as all functions not inlined here: what they point to would lie in memory.
     PathContext<Media> contextBelow = context;
     Path below = *path;
     const bool goesOn = ScatterBelow(&contextBelow, v, recorder, &below);
@@ -204,8 +201,7 @@ template <typename Media, typename Recorder>
 }
 
 // Follows a path along `ray`, the camera's, and returns its radiance. Compiled for each kind of
-// Media and Recorder, so that features which a scene does not have and nobody asks for cost
-// nothing.
+// Media and Recorder, so that what a scene does not have costs nothing.
 template <typename Media, typename Recorder>
 [[gnu::noinline]] Rgb Trace(PathContext<Media> context, const Ray& ray, Recorder& recorder) {
     const Scene& scene = context.scene;
@@ -221,12 +217,10 @@ template <typename Media, typename Recorder>
         const bool emissionCounts = path.seesLights || estimator == Estimator::Combined;
         if (onlyEmits && !(emissionCounts && scene.lights.AnyVisible())) break;
 
-        // Find the next surface.
         Hit found;
         const bool isHit = scene.accelerator.Intersect(path.ray, &found, time,
                                                        bounces == 0 ? kCameraRay : kOtherRay);
 
-        // Scatter in the medium before it, if that does.
         if constexpr (Media::kExist) {
             const MediumEvent event = FollowThroughMedium(context, isHit ? found.t : path.ray.tMax,
                                                           isLast, recorder, &path);
@@ -237,14 +231,12 @@ template <typename Media, typename Recorder>
             }
         }
 
-        // Add the light of the sky where there is no surface.
         if (!isHit) {
             path.L += path.beta * Emission(scene, estimator, path, nullptr, found, recorder);
             recorder.LeaveScene(path);
             break;
         }
 
-        // Compute the interaction with the surface, unless all that could come of it is known.
         path.lightPlace = scene.lights.PlaceOf(path.ray.o + found.t * path.ray.d);
         const Shape& shape = scene.shapes.shapes[found.shape];
         const SurfaceNeeds needs = scene.materials.Needs(shape.material);
@@ -255,13 +247,11 @@ template <typename Media, typename Recorder>
         if (bounces == 0 && (needs & kNeedsFootprint) && !path.wentThrough)
             ComputeFootprint(scene.CameraOf(context.camera), context.camera, &hit);
 
-        // Add the emission of the surface.
         if (hit.areaLight >= 0)
             path.L += path.beta * Emission(scene, estimator, path, &hit, found, recorder);
         recorder.ReachSurface(path, found, hit);
         if (endsHere) break;
 
-        // Go on behind an interface between media.
         if (needs & kIsInterface) {
             if (!context.media.GoThrough(hit, found.shape, isLast, &path)) break;
             recorder.Scatter(path, true);
@@ -269,7 +259,6 @@ template <typename Media, typename Recorder>
             continue;
         }
 
-        // Make the BSDF.
         Bsdf bsdf = scene.materials.MakeBsdf(scene.textures, &hit);
         recorder.MeetSurface(path, found, hit, bsdf);
         const SurfaceVertex v{hit, bsdf, found.shape};
@@ -283,25 +272,21 @@ template <typename Media, typename Recorder>
         if (isLast) break;
         if (estimator == Estimator::Combined) bsdf.ChooseByShare(hit.wo);
 
-        // Sample the light that arrives directly from lights.
         if (bsdf.LobeCount(LobeSet::NonSpecular) > 0 && scene.lights.Count() > 0)
             path.L += path.beta * SampleDirectLight(context, v, recorder, &path);
 
-        // Sample the direction in which the path goes on, and leave the surface.
         bool isTransmission;
         if (!Scatter(v, sampler, &path, &isTransmission)) break;
         const bool goesBelow = (needs & kScattersBelow) && isTransmission;
         if (!LeaveSurface(context, v, goesBelow, recorder, &path)) break;
         recorder.Scatter(path, isTransmission);
 
-        // End dim paths by Russian roulette.
         if (!SurvivesRoulette(context, bounces, &path)) break;
     }
     recorder.End(path);
     return path.L;
 }
 
-// Chooses the loop that the options and the recorder need.
 template <typename Media>
 Rgb TracePath(const PathContext<Media>& context, const PathOptions& options, const Ray& ray,
               PathSample* sample) {

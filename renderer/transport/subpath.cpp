@@ -6,8 +6,7 @@
 namespace lull {
 namespace {
 
-// Returns the index of refraction beyond the surface that the specular lobe has which takes wo to
-// wi; 1 if it does not refract.
+// Returns the index beyond the surface of the specular lobe from wo to wi; 1 without refraction.
 float IndexBetween(const Bsdf& bsdf, const Vec3f& wo, const Vec3f& wi) {
     constexpr float kStraight = 1 - 1e-6f;
     float index = 1;
@@ -99,7 +98,6 @@ bool SurvivesRoulette(float brightest, int bounces, float threshold, Sampler& sa
 
 namespace {
 
-// Connects vertices of a light path to the camera.
 class CameraConnector {
   public:
     CameraConnector(const BdptContext& context, std::vector<Splat>* splats)

@@ -126,7 +126,6 @@ double ContrastSensitivity(OpponentChannel channel, const GaborPatch& patch) {
 
 namespace {
 
-// Adds `weight` times row `from` to row `to`.
 void AddRow(const float* from, double weight, int width, double* to) {
     for (int x = 0; x < width; ++x) to[x] += weight * double(from[x]);
 }
@@ -181,7 +180,6 @@ int Mirrored(int i, int size) {
     return std::clamp(i < 0 ? -1 - i : i >= size ? 2 * size - 1 - i : i, 0, size - 1);
 }
 
-// A line of an image: `size` values, `stride` apart.
 template <typename Value>
 struct Line {
     Value* values;
@@ -207,7 +205,6 @@ void ExpandLine(const Line<const float>& from, const Line<float>& to) {
     }
 }
 
-// Applies `filter` to all rows and then to all columns.
 template <typename Filter>
 Plane Separably(const Plane& from, int width, int height, const Filter& filter) {
     Plane rows{width, from.height, std::vector<float>(size_t(width) * size_t(from.height))};

@@ -87,7 +87,6 @@ std::vector<double> BandFrequencies(int width, int height, double pixelsPerDegre
     return frequencies;
 }
 
-// Interpolates ContrastSensitivity() between luminances.
 class SensitivityCurve {
   public:
     SensitivityCurve(OpponentChannel channel, double frequency) {
@@ -139,7 +138,6 @@ ContrastBand TakeBand(int level, Planes* planes) {
     return band;
 }
 
-// Divides the residual of the pyramid by its mean luminance.
 ContrastBand TakeBase(Planes planes) {
     double sum = 0;
     for (const float v : planes[0].values) sum += std::max(double(v), kLeastLuminance);
@@ -149,7 +147,6 @@ ContrastBand TakeBase(Planes planes) {
     return {std::move(planes), std::vector<float>(planes[0].values.size(), mean)};
 }
 
-// Returns the sensitivity at luminances around each place, by channel.
 Planes SensitivityPlanes(double frequency, int width, int height,
                          const std::vector<float>& luminance) {
     const std::array<SensitivityCurve, kChannels> curves = {
@@ -165,7 +162,6 @@ Planes SensitivityPlanes(double frequency, int width, int height,
     return planes;
 }
 
-// Multiplies contrasts by the sensitivity: to units of the threshold.
 void ToThresholds(const Planes& sensitivity, Planes* contrast) {
     for (int c = 0; c < kChannels; ++c)
         for (size_t i = 0; i < sensitivity[c].values.size(); ++i)
@@ -176,7 +172,6 @@ float PowerOf(float base, double exponent) {
     return base > 0 ? std::pow(base, float(exponent)) : 0;
 }
 
-// Returns the masks of each channel: contrast of both pictures around a place, in any channel.
 Planes Masks(const Planes& image, const Planes& reference) {
     const int width = image[0].width, height = image[0].height;
     const std::vector<double> around = GaussianKernel(kMaskSigma, int(2 * kMaskSigma));
@@ -197,7 +192,6 @@ Planes Masks(const Planes& image, const Planes& reference) {
     return masks;
 }
 
-// Returns the difference of contrasts in units of the threshold, masked and limited.
 Planes MaskedDifference(Planes image, Planes reference) {
     for (int c = 0; c < kChannels; ++c)
         for (Planes* planes : {&image, &reference})
@@ -227,7 +221,6 @@ void CheckSize(std::span<const float> picture, int width, int height) {
         throw Error("visible difference: pictures of one size, not empty, are needed");
 }
 
-// Returns how much of each of the `size` cells of a level is in [begin, end) of the picture.
 std::vector<double> Shares(int level, int size, int begin, int end) {
     const double side = std::exp2(level);
     std::vector<double> shares;

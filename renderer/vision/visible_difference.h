@@ -98,8 +98,7 @@ struct VisibleDifference {
     std::vector<VisibleBand> bands;
 };
 
-// A reference as it is compared with pictures, from fine to coarse: contrast and sensitivity by
-// channel, at each place of a band.
+// A reference, from fine to coarse: contrast and sensitivity by channel, at each place of a band.
 struct ReferenceBand {
     double frequency = 0;  // cycles per degree
     std::array<Plane, kOpponentChannels> contrast, sensitivity;
@@ -110,8 +109,7 @@ struct VisibleReference {
     std::vector<ReferenceBand> bands;
 };
 
-// Prepares a picture of linear RGB (row-major triples) on a display. Throws Error if sizes do not
-// fit.
+// Prepares linear RGB (row-major triples) on a display. Throws Error if sizes do not fit.
 VisibleReference PrepareReference(std::span<const float> reference, int width, int height,
                                   const DisplayModel&);
 

@@ -26,7 +26,6 @@ T Load(std::span<const char> bytes, size_t at) {
     return value;
 }
 
-// Checks the objects of a heap; `bytes` end with the heap or with the file.
 void CheckHeap(std::span<const char> bytes) {
     for (size_t at = kHeaderBytes; at + kHeaderBytes <= bytes.size();) {
         const bool isFreeSpace = Load<uint16_t>(bytes, at) == 0;
@@ -44,8 +43,7 @@ void CheckHeap(std::span<const char> bytes) {
 
 // Throws std::runtime_error if an object in a global heap of the file, where texts of variable
 // length are kept, has no end: up to version 1.14 the library searches behind it for ever. Heaps
-// are found by their signature ("HDF5 File Format Specification", III.E), lengths have 8 bytes, as
-// writers have them by default.
+// are found by their signature ("HDF5 File Format Specification", III.E), lengths have 8 bytes.
 void CheckGlobalHeaps(std::FILE* file) {
     if (std::fseek(file, 0, SEEK_END) != 0) return;
     const long end = std::ftell(file);
@@ -113,7 +111,6 @@ std::shared_ptr<const int64_t> Share(hid_t id, Close close, const std::string& w
             }};
 }
 
-// Keeps the library from printing an account of its errors, which are thrown.
 void BeQuiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 std::vector<int64_t> ShapeOf(hid_t space) {

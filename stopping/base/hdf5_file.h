@@ -24,10 +24,8 @@ class Hdf5Group {
     // Creates a file in memory; Content() returns its bytes, valid until something is added.
     static Hdf5Group CreateInMemory();
     std::span<const std::byte> Content();
-    // Writes everything so far to disk.
     void Flush();
 
-    // Returns whether there is a group or an array of that name.
     bool Has(const std::string& name) const;
     Hdf5Group Group(const std::string& name) const;
     Hdf5Group MakeGroup(const std::string& name);

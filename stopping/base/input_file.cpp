@@ -128,7 +128,6 @@ std::string Text(uLong crc) {
 
 std::string SealOf(uLong crc) { return "lull seal " + Text(crc); }
 
-// Calls visit(bytes) with one part of the next `size` bytes of the file after the other.
 template <typename Visit>
 void ForEachPart(std::istream& file, uint64_t size, const Visit& visit) {
     std::array<char, 65536> buffer;

@@ -23,8 +23,7 @@ std::string ReasonNotToRead(const std::string& path);
 // REASON", where that cannot be told: the name is too long, or a folder cannot be searched.
 bool IsThere(const std::string& path);
 
-// Opens a regular file for reading, its bytes as they are. Throws std::runtime_error, "PATH:
-// REASON".
+// Opens a regular file for reading bytes. Throws std::runtime_error, "PATH: REASON".
 std::ifstream OpenInput(const std::string& path);
 
 // Returns untrusted text for a message: control and non-ASCII bytes as \xNN, and "..." in place of
@@ -100,11 +99,9 @@ std::string FileChecksum(const std::string& path);
 // Returns the seal of the content of a file, to be appended to it: a mark, and the CRC-32 of all
 // bytes before it, which any flipped bit changes. HDF5 ignores bytes after the end of its files.
 std::string SealOf(std::span<const std::byte> content);
-// Appends it.
 void Seal(std::vector<std::byte>* content);
 
-// Throws std::runtime_error, which does not name the file, if it cannot be read, or is not as it
-// was when it was sealed.
+// Throws std::runtime_error, which does not name the file, if it cannot be read or has changed.
 void CheckSeal(const std::string& path);
 // Checks the content of a file; returns it without the seal.
 std::span<const std::byte> CheckSeal(std::span<const std::byte> content);

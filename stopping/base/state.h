@@ -1,5 +1,4 @@
-// Serialises the state of a criterion, or other data, to bytes and back, in the layout of this
-// machine.
+// Serialises the state of a criterion, or other data, to bytes of this machine and back.
 #pragma once
 
 #include <cstddef>
@@ -69,7 +68,6 @@ class StateReader {
         GetAll(std::span(values));
         return values;
     }
-    // Returns how many bytes are left.
     size_t Left() const { return rest.size(); }
     // Checks that nothing is left.
     void Finish() const {

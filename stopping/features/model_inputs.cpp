@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -75,8 +76,9 @@ bool Needs(const ModelSettings& settings, Feature feature) {
 }
 
 void CheckSettings(const ModelSettings& s) {
-    auto check = [](const char* name, int value, int least, int most) {
-        if (value < least || value > most)
+    auto check = []<typename T>(const char* name, T value, std::type_identity_t<T> least,
+                                std::type_identity_t<T> most) {
+        if (!(value >= least && value <= most))
             throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) +
                                         " is not in [" + std::to_string(least) + ", " +
                                         std::to_string(most) + "]");
@@ -89,22 +91,16 @@ void CheckSettings(const ModelSettings& s) {
     const int side = int(std::lround(std::sqrt(s.m)));
     if (side * side != s.m)
         throw std::invalid_argument("m = " + std::to_string(s.m) + " is not a square number");
-    auto checkReal = [](const char* name, double value, double least, double most) {
-        if (!(value >= least && value <= most))
-            throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) +
-                                        " is not in [" + std::to_string(least) + ", " +
-                                        std::to_string(most) + "]");
-    };
     if (s.spacing == Spacing::Geometric) {
-        checkReal("ratio", s.ratio, 1.1, 16);
-        checkReal("ratio ^ (k - 1)", std::pow(s.ratio, s.k - 1), 1, 1e6);
+        check("ratio", s.ratio, 1.1, 16);
+        check("ratio ^ (k - 1)", std::pow(s.ratio, s.k - 1), 1, 1e6);
     }
-    checkReal("mask", s.visibility.mask, 1e-3, 1e9);
-    checkReal("flare", s.visibility.flare, 0, 1);
-    checkReal("nearness", s.visibility.nearness, 0, 10);
-    checkReal("peak_limit", s.peakLimit, 0, 100);
+    check("mask", s.visibility.mask, 1e-3, 1e9);
+    check("flare", s.visibility.flare, 0, 1);
+    check("nearness", s.visibility.nearness, 0, 10);
+    check("peak_limit", s.peakLimit, 0, 100);
     check("reference", s.visibility.reference, 1, 1 << 30);
-    checkReal("caution", s.caution, 1e-3, 1e3);
+    check("caution", s.caution, 1e-3, 1e3);
     if (Needs(s, Feature::VisibleDrop) && s.m != 100)
         throw std::invalid_argument("visible_drop needs m = 100");
     if (s.features.empty()) throw std::invalid_argument("a model needs at least one feature");
@@ -117,7 +113,6 @@ bool NeedsEntropies(const ModelSettings& settings) {
            std::ranges::any_of(settings.features, IsEntropy);
 }
 
-// Measures the features of the display image.
 void MeasureDisplayed(const BlockView& view, const ModelSettings& settings,
                       BlockMeasures* measures) {
     if (Needs(settings, Feature::Attributes26)) {

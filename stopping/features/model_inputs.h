@@ -28,13 +28,10 @@ enum class Feature { H, H1, H2, VisibleDrop, Attributes26 };
 std::string FeatureNames(std::span<const Feature> features);
 std::vector<Feature> ParseFeatures(const std::string& names);
 inline bool IsEntropy(Feature feature) { return feature <= Feature::H2; }
-// Returns whether a feature is the standard deviation of noise in lightness, which `caution`
-// scales.
+// Returns whether a feature is a deviation of noise in lightness, which `caution` scales.
 inline bool IsNoise(Feature feature) { return feature == Feature::VisibleDrop; }
-// Returns whether this feature is normalised over a window, as the paper does with both of its
-// features.
+// Returns whether this feature is normalised over a window, as the paper's are.
 inline bool IsNormalized(Feature feature) { return !IsNoise(feature); }
-// Returns whether there is a value for each sub-block.
 inline bool HasSubBlocks(Feature feature) { return feature != Feature::Attributes26; }
 
 // How far apart the steps of a window are: n spp, or each at `ratio` times the spp of the
@@ -57,8 +54,7 @@ struct ModelSettings {
     double ratio = 2;                 // of geometric spacing, > 1
     NoiseVisibility visibility = {};  // of visible_drop
     // Peak noise of the block (PeakNoise() in signals/lightness_noise.h), in L*, times
-    // NearnessFactor(), from which on a check is no vote to stop, whatever the network's answer; 0:
-    // none.
+    // NearnessFactor(), from which on a check is no vote to stop; 0: none.
     double peakLimit = 0;
     // Multiplies noise; not part of a model, but of how it is used.
     double caution = 1;
@@ -148,8 +144,7 @@ class BlockMemory {
         return WindowOf(inputs, settings, spp);
     }
 
-    // Write and read all that Add() has left behind. Restore() throws std::runtime_error if it is
-    // damaged.
+    // Write and read the state. Restore() throws std::runtime_error if it is damaged.
     void Save(StateWriter* writer) const;
     void Restore(StateReader* reader);
 

@@ -25,10 +25,9 @@ void Activate(Activation activation, Vector&& x) {
 
 // Returns the hidden state after each time step, one a column.
 //
-// Each step reads all recurrent weights once, so that its time is that of streaming them from
-// the cache; the products with the inputs do not depend on each other and are done in one go.
-// When the window moves on by a step, nothing of the last run can be used again: its first step,
-// from which all states follow, has left the window.
+// Each step reads all recurrent weights once, so that its time is that of streaming them from the
+// cache; the products with the inputs do not depend on each other and are done in one go. Of the
+// window before nothing can be used again: all states follow from its first step.
 Eigen::MatrixXf RunLstm(const LstmLayer& layer, const Eigen::MatrixXf& sequence) {
     const Eigen::Index u = layer.Units(), steps = sequence.cols();
     Eigen::MatrixXf gates = layer.kernel * sequence;

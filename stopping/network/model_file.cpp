@@ -45,7 +45,6 @@ class LayerReader {
         const std::vector<float> values = Read(weights, {size});
         return Eigen::Map<const Eigen::VectorXf>(values.data(), size);
     }
-    // Returns how many values the layer takes: the rows of its kernel.
     int64_t Inputs() const {
         const std::vector<int64_t> shape = group.Shape(Path("kernel"));
         return shape.empty() ? 0 : shape[0];
@@ -135,7 +134,6 @@ ModelSettings ReadSettings(const Hdf5Group& file, int timeSteps, int64_t inputs)
     return s;
 }
 
-// Writes the weights of one layer, transposed back; those of one column get one dimension.
 void WriteLayer(Hdf5Group root, const std::string& layer,
                 const std::vector<std::pair<std::string, Eigen::MatrixXf>>& weights) {
     Hdf5Group group = root.MakeGroup(layer), scope = group.MakeGroup(layer);
@@ -275,7 +273,6 @@ const char* ActivationName(Activation activation) {
     throw std::runtime_error("layer '" + layer + "': " + what);
 }
 
-// Reads a whole number from 0 to `kMostCount`. (JSON has numbers that no int can hold.)
 int ParseCount(const Json& value, const std::string& what) {
     if (!value.is_number_integer() || value < 0 || value > kMostCount)
         throw std::runtime_error(what + " " + value.dump() + " is not a whole number up to " +
@@ -320,7 +317,6 @@ KerasLayer ParseLayer(const Json& config, bool isLstm, const std::string& versio
     return layer;
 }
 
-// Takes the shape of the input, [null, time steps, values], where a layer gives one.
 void ParseShape(const Json& config, KerasModel* model) {
     for (const char* key : {"batch_input_shape", "batch_shape"}) {
         if (!config.contains(key)) continue;

@@ -22,15 +22,13 @@ struct Model {
 // reference, the real numbers ratio, mask, flare, nearness, peak_limit, and the strings spacing,
 // feature (a list with commas) and pool ("mean"). Absent ones (all, in a published model) have
 // their defaults, but k and m follow the shape of the network's input. Throws std::runtime_error
-// beginning with the path and naming the parts that are missing, not supported, of the wrong shape,
-// NaN or infinite.
+// beginning with the path and naming the parts that are missing or wrong.
 Model ReadModel(const std::string& path);
 
 // Writes a model so that ReadModel() returns it and Keras 2 can load it; a new file replaces an old
 // one only when complete. `record` says how it was trained; each of its texts (64 KiB at the most)
-// becomes an attribute of the group /lull/training. Throws std::invalid_argument for a network that
-// CheckNetwork() or settings that CheckSettings() refuse and std::runtime_error if it cannot be
-// written.
+// becomes an attribute of the group /lull/training. Throws std::invalid_argument as CheckNetwork()
+// and CheckSettings(), and std::runtime_error if it cannot be written.
 void WriteModel(const std::string& path, const Network& network, const ModelSettings& settings,
                 const std::map<std::string, std::string>& record = {});
 

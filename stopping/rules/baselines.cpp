@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "stopping/rules/rule.h"
@@ -89,7 +88,6 @@ class CyclesStatistic final : public Statistic {
     std::vector<uint8_t> active;  // 0 or 1 for each pixel; empty before the first test
 };
 
-// Returns the checks of Cycles: every 20 spp, after the sample of 0-based index k > minimum.
 Checks CyclesChecks(double threshold) {
     const int64_t least = int64_t(CyclesMinimumSpp(threshold)) + 2;
     return {.first = int((least + kCyclesSpacing - 1) / kCyclesSpacing * kCyclesSpacing),

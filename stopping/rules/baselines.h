@@ -27,10 +27,9 @@ Rule ReadLuxTile(const std::string& argument, const RuleContext& context);
 // Illumination, WSCG 2010). It estimates the error in square-root brightness. Reads both means.
 double DammertzError(const BlockView& view);
 
-// Stops a block when DammertzError() < threshold, > 0, or, `byArea`, that times
-// sqrt(block area / image area), as in the paper, whose recursive splitting so compares blocks of
-// different sizes. Our blocks are not split, and with that factor the same noise would be tolerated
-// more in a larger image.
+// Stops a block when DammertzError() < threshold, > 0, or, `byArea`, that times sqrt(block area /
+// image area), as in the paper, whose recursive splitting so compares blocks of different sizes.
+// Our blocks are not split: with it noise would be tolerated more in a larger image.
 Rule DammertzRule(double threshold, bool byArea = false);
 
 // Returns the error of a pixel as in Cycles' adaptive sampling: d / (0.0001 + g(s)), where g is
@@ -54,8 +53,7 @@ PixelErrors CyclesErrors(const BlockView& view);
 // means, clamp(x, 0, 1)^(1/2.2), as in LuxCore's tile test.
 //
 // LuxCore scales x by an exposure that it takes from the other tiles, in the order in which they
-// were finished. The scale here is 1: blocks stay independent, runs reproducible, and the image
-// is judged as it is displayed.
+// were finished. The scale here is 1: blocks stay independent, and runs reproducible.
 double LuxTileError(const BlockView& view);
 
 // Stops a block when LuxTileError() < threshold, from 32 spp on. LuxCore tests every second pass,
@@ -64,8 +62,7 @@ Rule LuxTileRule(double threshold);
 
 // Stops blocks by the noise that an observer can see in their lightness.
 
-// Returns the root of the mean of squares: the RMS of a block, from the RMS of sub-blocks that are
-// equally large. At least one value.
+// Returns the root mean square of one value or more: a block's RMS, from sub-blocks' of equal size.
 double PooledRms(std::span<const float> subBlocks);
 
 // Returns the RMS over the block of its noise in lightness, masked by texture: the pooled
@@ -78,7 +75,6 @@ double VisibleNoise(const BlockView& view);
 // pixels hold most of it: hence the votes.
 Rule LightnessNoiseRule(double threshold);
 
-// The name of the rule.
 inline constexpr const char* kLightnessNoiseName = "lnoise";
 
 // Reads the threshold T, which the context's caution divides.

@@ -20,7 +20,6 @@ namespace {
 
 constexpr uint32_t kLearnedTag = 0x324e524c;  // "LRN2"
 
-// Returns when a model votes.
 Checks VotesOf(const ModelSettings& settings, int passSpp) {
     if (passSpp == 0 && settings.spacing == Spacing::Geometric)
         return {.every = settings.n, .any = true};
@@ -65,7 +64,6 @@ class LearnedStatistic final : public Statistic {
     std::optional<double> noise;
 };
 
-// Throws std::invalid_argument.
 void CheckFits(const Model& model, int passSpp) {
     const ModelSettings& settings = model.settings;
     CheckSettings(settings);

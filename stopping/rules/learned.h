@@ -16,19 +16,17 @@ namespace lull {
 // [0, 1]; 1 where the network's values overflow, so that nonsense never stops a block.
 double NoisyProbability(const Network& network, const Eigen::MatrixXf& window);
 
-// Makes a rule that votes on the state after a pass once its window is full, and stops after
-// as many noiseless votes in a row as the model asks for. Throws std::invalid_argument if the
-// network does not fit its settings or has more than one output, or if the spp of the model
-// (n, vote_spacing) are no multiples of passSpp, so that no pass would end there. With a passSpp of
-// 0 states may come at any spp: where the steps of a window are geometric, the model checks
-// whatever comes n spp or more after its last check and votes; where they are fixed, it checks
+// Makes a rule that votes on the state after a pass once its window is full, and stops after as
+// many noiseless votes in a row as the model asks for. Throws std::invalid_argument if the network
+// does not fit its settings or has more than one output, or if the spp of the model (n,
+// vote_spacing) are no multiples of passSpp. With a passSpp of 0 states may come at any spp: by
+// geometric steps the model checks whatever comes n spp or more after its last check, by fixed ones
 // multiples of n.
 Rule LearnedRule(std::shared_ptr<const Model> model, int passSpp);
 
 // The model where none is named.
 inline constexpr const char* kDefaultModelName = "entropy";
 
-// Reads the name or the file of a model.
 Rule ReadLearned(const std::string& argument, const RuleContext& context);
 
 // Returns the file of the model that `learned:ARGUMENT` names: one that ends in .h5 or is there, or

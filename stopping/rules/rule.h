@@ -53,8 +53,7 @@ class Criterion {
 
     // Adds the block after a pass and decides. To be called once after every pass, with increasing
     // spp, whatever Need() returns, and no more once it has answered stop. Throws
-    // std::invalid_argument if the spans that Need() asks for do not have the block's size, or if
-    // spp or the size contradict earlier calls.
+    // std::invalid_argument if spans, size or spp contradict Need() or earlier calls.
     virtual Decision Observe(const BlockView& view) = 0;
 
     // Returns the noise given to a network at the last check, if it has no other input: forecasts
@@ -68,7 +67,6 @@ class Criterion {
     virtual void Restore(std::span<const std::byte> state);
 };
 
-// Position of the block of a criterion.
 struct BlockInfo {
     int index = 0;            // row-major place in the grid of blocks
     double areaFraction = 1;  // pixels of the block / pixels of the image, in (0, 1]
@@ -79,8 +77,7 @@ using CriterionMaker = std::function<std::unique_ptr<Criterion>(const BlockInfo&
 
 // Reads the arguments of stopping rules.
 
-// Parses all of `text` as a number > 0, finite. Throws std::invalid_argument with `needed`, the
-// noun of such a number.
+// Parses `text` as a finite number > 0. Throws std::invalid_argument with `needed`, its noun.
 template <typename T>
 T ParsePositive(const std::string& text, const std::string& needed) {
     T value = 0;
@@ -95,8 +92,7 @@ inline double ParseThreshold(const std::string& text) {
     return ParsePositive<double>(text, "a threshold; a number > 0 is needed");
 }
 
-// Describes the course of the number that a rule compares over the sample count, from which the
-// stops of blocks are predicted.
+// Describes the course of a rule's number over the samples, from which stops are predicted.
 
 struct Model;
 
@@ -111,12 +107,10 @@ struct RuleTrend {
     // Noise at which a network with no other input is undecided. Predictions follow the noise then,
     // as a probability is no power of the spp. 0: not known.
     double undecided = 0;
-    // Spp of the picture that noise is compared with, 0: none: it counts (1 - spp /
-    // reference)^nearness.
+    // Spp of the picture compared with, 0: none: noise counts (1 - spp / reference)^nearness.
     int reference = 0;
     double nearness = 0.5;
-    // Whether it falls more slowly where there is much noise, as falls of entropies do, and
-    // approaches the power -1/2 with less.
+    // Whether it falls more slowly where there is much noise, as falls of entropies do.
     bool saturates = false;
 };
 
@@ -179,8 +173,7 @@ class Statistic {
     // Returns the noise of the last number, if that depends on nothing else.
     virtual std::optional<double> Noise() const { return {}; }
 
-    // Write and read the state after Add(). Restore() throws std::runtime_error if it is
-    // damaged.
+    // Write and read the state. Restore() throws std::runtime_error if it is damaged.
     virtual void Save(StateWriter*) const = 0;
     virtual void Restore(StateReader*) = 0;
 };
@@ -219,8 +212,7 @@ struct Rule {
     int spacing = 0;         // spp between two states that it compares; 0: any
 
     // In place of all these, for rules that only count samples: the spp at which a block stops,
-    // known before the pass has ended. Throws std::invalid_argument for a block that the rule has
-    // no answer for.
+    // known before the pass has ended. Throws std::invalid_argument for unknown blocks.
     std::function<int(const BlockInfo&)> stopAt = {};
 };
 
@@ -272,7 +264,6 @@ std::unique_ptr<Criterion> MakeCriterion(Rule rule, const BlockInfo& block = {})
 // Returns the maker of the criteria of all blocks of an image.
 CriterionMaker CriteriaOf(Rule rule);
 
-// Context of a rule, in addition to its text.
 struct RuleContext {
     int passSpp = 20;            // spp of a pass, also of the first; 0: any (see Checks)
     int blockCount = 0;          // blocks in the image; 0: not known

@@ -15,8 +15,7 @@ namespace lull {
 
 namespace {
 
-// In the order of RuleEntry: name, argument, standard, when it stops, what it compares, whether it
-// takes caution, its reader.
+// In the order of RuleEntry.
 constexpr RuleEntry kRules[] = {
     {"learned", "[:NAME|:MODEL.h5]", nullptr,
      "when a network finds no visible noise at three consecutive checks", RuleTrend::Probability,
@@ -42,7 +41,6 @@ constexpr RuleEntry kRules[] = {
      RuleTrend::Samples, false, ReadThresholdsRule},
     {"fixed", ":N", nullptr, "at N spp", RuleTrend::Samples, false, ReadFixed}};
 
-// Joins texts as "a, b and c".
 std::string Joined(const std::vector<std::string>& texts) {
     std::string joined;
     for (size_t i = 0; i < texts.size(); ++i)

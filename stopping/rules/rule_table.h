@@ -1,5 +1,4 @@
-// Lists the stopping rules: their names, descriptions and readers. Help and documents have them
-// from here.
+// Lists the stopping rules: names, descriptions and readers, also for help and documents.
 #pragma once
 
 #include <span>
@@ -18,19 +17,16 @@ struct RuleEntry {
     std::string_view stops;
     RuleTrend::Kind compares;  // kind of its number
     bool takesCaution;         // whether it measures visible noise, which caution scales
-    // Returns all but the rule's text, and the kind and votes of its trend. Throws as ParseRule()
-    // does.
+    // Returns all but the rule's text, and its trend's kind and votes. Throws as ParseRule().
     Rule (*read)(const std::string& argument, const RuleContext& context);
 };
 
 std::span<const RuleEntry> RuleTable();
 
-// The rule where none is asked for.
 inline constexpr const char* kDefaultRule = "learned";
 
-// Reads a stopping rule, NAME[:ARGUMENT], and the files it names. Throws std::invalid_argument
-// for a bad rule and std::runtime_error for a bad file; the message has the fault and the
-// remedy.
+// Reads a stopping rule, NAME[:ARGUMENT], and the files it names. Throws std::invalid_argument for
+// a bad rule and std::runtime_error for a bad file; the message has fault and remedy.
 Rule ParseRule(const std::string& text, const RuleContext& context = {});
 
 // Returns the entry of a text NAME[:ARGUMENT]; null if there is no such rule.

@@ -28,7 +28,6 @@ std::vector<std::string> Split(const std::string& line) {
     return fields;
 }
 
-// Parses one line; throws std::invalid_argument with the reason.
 ThresholdsRow ParseRow(const std::string& line) {
     const std::vector<std::string> fields = Split(line);
     if (fields.empty() || fields[0].empty())
@@ -104,7 +103,6 @@ bool IsSmall(const BlockRect& block, int smallestSide) {
     return std::min(block.width, block.height) < smallestSide;
 }
 
-// Returns the largest of the eight neighbours; -1 if there is none.
 int LargestNeighbour(const BlockGrid& grid, int block) {
     const int rows = int(grid.blocks.size()) / grid.columns;
     const int x = block % grid.columns, y = block / grid.columns;
@@ -142,7 +140,6 @@ BlockGrid CutIntoBlocks(int width, int height, int side, int smallestSide) {
 
 namespace {
 
-// Chooses the row of a thresholds file: the one asked for, else the scene's, else the only one.
 const ThresholdsRow& ChooseRow(const std::vector<ThresholdsRow>& rows, const std::string& path,
                                const std::string& name, const std::string& sceneName) {
     auto find = [&](const std::string& wanted) {

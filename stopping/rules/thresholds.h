@@ -17,9 +17,8 @@ struct ThresholdsRow {
     std::vector<int> spp;  // at least one, each >= 0
 };
 
-// Reads `name;t0;t1;...;` line by line; the last semicolon may be missing, empty lines are
-// skipped. Throws std::runtime_error beginning with "file:line: " for anything else, or a name
-// that comes twice.
+// Reads `name;t0;t1;...;` line by line; the last semicolon may be missing, empty lines are skipped.
+// Throws std::runtime_error "file:line: ..." for anything else, or a name that comes twice.
 std::vector<ThresholdsRow> ReadThresholds(const std::string& path);
 std::vector<ThresholdsRow> ReadThresholds(std::istream& in, const std::string& fileName);
 

@@ -41,7 +41,6 @@ PaddedImage Reflected(std::span<const double> image, int width, int height) {
     return padded;
 }
 
-// The weights of a pixel, of those beside it and of the next.
 struct Taps {
     double w0, w1, w2;
 
@@ -59,7 +58,6 @@ Taps GaussianTaps(int size, double sigma) {
     return {1 / sum, w1 / sum, w2 / sum};
 }
 
-// Filters along the rows and then along the columns.
 void Smooth(const PaddedImage& image, const Taps& taps, PaddedImage* rows,
             std::span<double> filtered) {
     for (int y = -kReach; y < image.height + kReach; ++y) {
@@ -97,7 +95,6 @@ std::vector<std::pair<int, int>> MedianNetwork(int n) {
     return needed;
 }
 
-// Filters many pixels at once, each in a lane of its own.
 template <int Size>
 void Median(const PaddedImage& image, std::span<double> filtered) {
     static const std::vector<std::pair<int, int>> network = MedianNetwork(Size * Size);
@@ -123,8 +120,7 @@ void Median(const PaddedImage& image, std::span<double> filtered) {
         }
 }
 
-// `squares` is the square of `image`; `mean` and `variance` are memory to use, of the size of
-// `filtered`.
+// `squares` is image^2; `mean` and `variance` are memory to use, of the size of `filtered`.
 void Wiener(const PaddedImage& image, const PaddedImage& squares, int size, PaddedImage* rows,
             std::span<double> mean, std::span<double> variance, std::span<double> filtered) {
     Smooth(image, MeanTaps(size), rows, mean);
@@ -152,7 +148,6 @@ void CheckImage(std::span<const double> lightness, int width, int height) {
         throw std::invalid_argument("attributes of a value that is not finite");
 }
 
-// Returns mean and standard deviation; 0 where they overflow.
 std::pair<double, double> Moments(std::span<const double> values) {
     double sum = 0, squares = 0;
     for (const double v : values) sum += v;

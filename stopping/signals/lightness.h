@@ -17,8 +17,7 @@ namespace lull {
 // Clamps a linear component to the range of a display, [0, 1]; 0 for NaN.
 inline float Displayed(float x) { return x > 0 ? std::min(x, 1.f) : 0; }
 
-// Returns the linear value, in [0, 1], of a component in [0, 1] that follows the sRGB transfer
-// curve.
+// Returns the linear value of a component in [0, 1] that follows the sRGB transfer curve.
 double DecodeSrgb(double v);
 
 // Returns the same of all 8-bit components.

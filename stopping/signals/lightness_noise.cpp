@@ -34,7 +34,6 @@ LightnessSlope<float> DisplayedLightness(float y) {
     return {std::min(100.f, at.lightness), at.slope};
 }
 
-// Answers the sums of rectangles of an image.
 class SumTable {
   public:
     // `value(i)` is for pixel i, row-major.
@@ -51,7 +50,6 @@ class SumTable {
         }
     }
 
-    // Returns the sum over [x0, x1) x [y0, y1).
     double Sum(int x0, int x1, int y0, int y1) const {
         const double* top = &sums[size_t(y0) * stride];
         const double* bottom = &sums[size_t(y1) * stride];
@@ -63,8 +61,7 @@ class SumTable {
     std::vector<double> sums;
 };
 
-// Calls use(i, x0, x1, y0, y1) for each pixel i with the square window around it, clipped at the
-// borders of the block.
+// Calls use(i, x0, x1, y0, y1) for each pixel i with the window around it, clipped by the block.
 template <typename Use>
 void ForWindows(int width, int height, int radius, const Use& use) {
     size_t i = 0;
@@ -79,8 +76,7 @@ void ForWindows(int width, int height, int radius, const Use& use) {
 std::vector<float> Texture(const std::vector<float>& lightness, const std::vector<float>& weights,
                            int width, int height) {
     const SumTable counts(width, height, [&](size_t i) { return double(weights[i]); });
-    // Subtract some value of the block: the variance is then exactly zero where all are equal, and
-    // loses less to rounding elsewhere.
+    // Subtract some value of the block: variances are then exactly 0 where all are equal.
     const float origin = lightness[0];
     std::vector<double> smooth(lightness.size());
     const SumTable plain(width, height,
@@ -101,7 +97,6 @@ std::vector<float> Texture(const std::vector<float>& lightness, const std::vecto
     return texture;
 }
 
-// Collects sums over the pixels of a sub-block.
 struct PixelSums {
     int count = 0;
     double lightness = 0, squaredLightness = 0, texture = 0;

@@ -49,13 +49,11 @@ double PeakNoise(const LightnessNoise& pixels);
 // is even. Pixels without noise count neither as such nor as texture.
 double LocalPeakNoise(const LightnessNoise& pixels, int width, int height);
 
-// Returns the larger of both from the peak noise of sub-blocks of equal size, taken as
-// neighbourhoods; 0 for none.
+// Returns the larger of both from the peak noise of equal sub-blocks, as neighbourhoods; 0: none.
 double PeakOf(std::span<const float> subBlocks);
 
 // Returns the peak noise of sub-blocks from root mean squares alone, as if noise were bell-shaped
 // in each: 3^(1/4) of the masked half noise. Below the true one where few pixels have most of it.
-// All have the same length.
 std::vector<float> BellShapedPeaks(std::span<const float> noise, std::span<const float> maskedNoise,
                                    std::span<const float> halfNoise);
 

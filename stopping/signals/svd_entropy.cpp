@@ -45,8 +45,7 @@ SvdEntropy ComputeSvdEntropy(const MatrixView& matrix) {
     const double largest = matrix.cwiseAbs().maxCoeff();
     if (largest == 0) return {};
 
-    // Scale so that no square overflows or vanishes. (The reciprocal of a subnormal would
-    // overflow.)
+    // Scale so that no square overflows or vanishes (as reciprocals of subnormals).
     const Eigen::MatrixXd scaled = matrix / largest;
     Eigen::VectorXd squares = SquaredSingularValues(scaled);
     std::sort(squares.begin(), squares.end(), std::greater<>());
@@ -113,7 +112,6 @@ double Fall(const EntropyState& from, const EntropyState& to, std::span<const do
     return sum * sum;
 }
 
-// Returns the derivative of lightness at a luminance, but for a constant.
 double Slope(double luminance) { return std::pow(std::max(luminance, kLinearLuminance), -2 / 3.0); }
 
 }  // namespace
@@ -127,8 +125,7 @@ double RateOfFall(const EntropyState& oldest, const EntropyState& before, const 
                   std::span<const double> weights) {
     const double early = Fall(oldest, before, weights), late = Fall(before, now, weights);
     if (!(early > 0 && late > 0)) return 1;
-    // With u, v the ratios of the spp, early / late = v^a (u^a - 1) / (v^a - 1), which grows with
-    // a.
+    // Of ratios u, v of the spp, early / late = v^a (u^a - 1) / (v^a - 1) grows with a.
     const double u = double(before.spp) / oldest.spp, v = double(now.spp) / before.spp;
     auto ratio = [&](double a) {
         return std::pow(v, a) * (std::pow(u, a) - 1) / (std::pow(v, a) - 1);

@@ -25,7 +25,6 @@ namespace lull {
 
 // Remembers those states of a block that later ones are compared with.
 
-// Numbers of a block at some spp.
 template <typename Real>
 struct BlockState {
     int spp = 0;
@@ -139,8 +138,7 @@ using MatrixView =
 // if a value is not finite.
 SvdEntropy ComputeSvdEntropy(const MatrixView& matrix);
 
-// Returns where `parts` pieces of [0, length) begin and, at the end, `length`; their sizes differ
-// by at most one.
+// Returns where `parts` pieces of [0, length) begin, and `length`; sizes differ by one at most.
 std::vector<int> SplitEvenly(int length, int parts);
 
 // Computes the entropies of the count x count pieces of a block, row-major, where count^2 is
@@ -149,8 +147,7 @@ std::vector<int> SplitEvenly(int length, int parts);
 std::vector<SvdEntropy> SubBlockEntropies(std::span<const double> lightness, int width, int height,
                                           int subBlocks);
 
-// Computes the same from the lightness of a block as an 8-bit display shows it. Reads the mean
-// only. Also throws as CheckView() does.
+// Computes the same from a block's mean in lightness of an 8-bit display. Throws as CheckView().
 std::vector<SvdEntropy> PictureEntropies(const BlockView& view, int subBlocks);
 
 // Measures noise by its contribution to the SVD-entropy of a picture: an entropy alone says little,
@@ -198,8 +195,7 @@ double RateOfFall(const EntropyState& oldest, const EntropyState& before, const 
 // entropy up or down, and rare events raise it when they occur: both count as noise.)
 std::vector<double> EntropyDrop(const EntropyState& before, const EntropyState& now, double rate);
 
-// Mean and standard deviation of the displayed lightness of sub-blocks, row-major, in
-// [0, 100].
+// Mean and deviation of the displayed lightness of sub-blocks, row-major, in [0, 100].
 struct SubBlockLightness {
     std::vector<float> mean, deviation;
 };
@@ -213,8 +209,7 @@ SubBlockLightness MeasureLightness(const BlockView& view, int subBlocks);
 // for the 0.05 of sRGB 0.3 in black, 0.6 at L = 25, 0.9 at 65.
 double FlareFactor(double lightness, double flare);
 
-// Returns (1 - spp / reference)^nearness: the part of noise that counts at `spp`; 0 from the
-// reference on.
+// Returns (1 - spp / reference)^nearness: the part of noise that counts; 0 from the reference on.
 double NearnessFactor(int spp, const NoiseVisibility& visibility);
 
 // Returns the visible noise of each sub-block, drop * L * FlareFactor(L) / (1 + d / mask) *

@@ -109,7 +109,6 @@ namespace {
 
 constexpr int kPatience = 100;  // milliseconds between two questions whether to give up
 
-// Waits until the socket can be written to. Returns an errno, 0 for success.
 int WaitToWrite(int socket, const std::function<bool()>& giveUp) {
     for (;;) {
         pollfd wanted{socket, POLLOUT, 0};
@@ -120,7 +119,6 @@ int WaitToWrite(int socket, const std::function<bool()>& giveUp) {
     }
 }
 
-// Returns an errno, 0 for success.
 int Connect(int socket, const addrinfo& address, const std::function<bool()>& giveUp) {
     if (connect(socket, address.ai_addr, address.ai_addrlen) == 0) return 0;
     if (errno != EINPROGRESS) return errno;

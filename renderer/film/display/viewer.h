@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <span>
@@ -66,11 +65,9 @@ class Connection {
     // Connects, or says in `why` why not. Looking up a name can take as long as the system allows;
     // during the rest, `giveUp` is polled every tenth of a second.
     bool Open(const DisplayAddress&, const std::function<bool()>& giveUp, std::string* why);
-    // Sends all bytes. Returns false if the connection is lost or `giveUp` returns true; it is then
-    // closed.
+    // Sends all bytes. Returns false, and closes, if the connection is lost or giveUp() is true.
     bool Send(std::span<const std::byte> bytes, const std::function<bool()>& giveUp,
               std::string* why);
-    // Returns whether the server is still there.
     bool IsAlive();
     void Close();
 
@@ -90,8 +87,7 @@ namespace lull::tev {
 std::vector<std::byte> CreateImage(const std::string& name, int width, int height,
                                    std::span<const std::string> channels);
 
-// Changes a rectangle of it, whose upper left corner is (x, y). `values` are row-major, the
-// adjacent channels of a pixel.
+// Changes a rectangle of it from (x, y) on. `values` are row-major, channels side by side.
 std::vector<std::byte> UpdateImage(const std::string& name, std::span<const std::string> channels,
                                    int x, int y, int width, int height,
                                    std::span<const float> values);

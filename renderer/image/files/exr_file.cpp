@@ -55,7 +55,6 @@ std::vector<std::string> NamesOf(const Imf::Header& header) {
     return names;
 }
 
-// Returns why the part cannot be read, "" if it can.
 std::string ProblemOf(const Imf::Header& header) {
     if (header.hasType() && Imf::isDeepData(header.type())) return "deep images are not supported";
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
@@ -64,7 +63,6 @@ std::string ProblemOf(const Imf::Header& header) {
     return "";
 }
 
-// Returns chromaticities as text, "" for Rec. 709.
 std::string OtherPrimaries(const Imf::Chromaticities& given) {
     constexpr float kSlack = 0.005f;  // usual figures have two to four digits
     const Imf::Chromaticities usual;
@@ -124,7 +122,6 @@ struct ExrFile::Parts {
         uint64_t position = 0;
     };
 
-    // Where a channel is.
     struct Place {
         int part;
         std::string name;
@@ -165,7 +162,6 @@ struct ExrFile::Parts {
         });
     }
     const Imf::Header& Header() const { return file.header(part); }
-    // Returns the views, first that of the picture; none where they have no names.
     std::vector<std::string> Views() const {
         std::vector<std::string> views;
         if (Imf::hasMultiView(Header())) views = Imf::multiView(Header());
@@ -197,7 +193,6 @@ struct ExrFile::Parts {
         const auto found = places.find(channel);
         return found == places.end() ? Place{part, channel} : found->second;
     }
-    // Returns whether the file has the channel, of this type.
     bool Has(const std::string& name, Imf::PixelType type) const {
         const auto found = places.find(name);
         return found != places.end() && file.header(found->second.part)
@@ -242,7 +237,6 @@ std::optional<std::array<float, 8>> ExrFile::Chromaticities() const {
                       c.blue.x, c.blue.y, c.white.x, c.white.y};
 }
 
-// Reads rows `first` to `last` of the data window, by their numbers in the file.
 void ExrFile::ReadRows(TexelType type, size_t count, int first, int last, char* texels) {
     Imath::Box2i window = parts->Header().dataWindow();
     window.min.y = first;

@@ -15,7 +15,6 @@
 
 namespace lull {
 
-// Returns whether bytes begin like an EXR.
 bool IsExr(std::span<const std::byte> bytes);
 
 // An EXR of which only the header has been read.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -68,7 +67,6 @@ struct Channel {
     }
 };
 
-// The colours of a layer, and its alpha; "": it has none.
 struct LayerColours {
     std::string layer;
     std::array<std::string, 4> names;
@@ -217,8 +215,6 @@ void CheckExrHeader(std::span<const std::byte> file) {
     bytes.Take(4);  // the signature
     constexpr uint32_t kHasManyParts = 0x1000;
     const bool hasMany = bytes.Integer() & kHasManyParts;
-    // A header for each part, of which the last of many is empty, and in each: name, type, size and
-    // value of attributes, and an empty name.
     bool isEmpty = false;
     do {
         isEmpty = true;

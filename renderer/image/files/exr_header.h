@@ -40,7 +40,6 @@ void Convert(const Eigen::Matrix3f& matrix, size_t channels, size_t pixels, T* t
 // Z, A, then all others.
 void SortChannels(std::vector<std::string>* names);
 
-// Returns whether "layer.name" is alpha.
 bool IsAlpha(const std::string& name);
 
 // Returns whether R, G and B, in no layer, are among the channels.

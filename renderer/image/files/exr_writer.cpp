@@ -101,14 +101,12 @@ Imf::Header MakeHeader(const ExrImage& image) {
 // 16 rows are compressed together, and several such on all threads.
 constexpr int kStrip = 64;
 
-// Returns a value in 16 bits, and counts it if these cannot hold it.
 Half Clamped(float v, int64_t* clamped) {
     if (std::abs(v) <= kLargestHalf) return Half(v);
     ++*clamped;
     return Half(std::isnan(v) ? 0 : std::copysign(kLargestHalf, v));
 }
 
-// Returns how many values of 16 bits were clamped.
 template <typename File>
 int64_t WriteRows(const ExrImage& image, const RowSource& rows, File* file) {
     const size_t count = image.channels.size(), row = size_t(image.width) * count;
@@ -159,7 +157,6 @@ void CheckSize(const std::string& path, const ExrImage& image) {
                                          image.height, image.channels.size()));
 }
 
-// Calls write(stream), which returns how many values were clamped.
 template <typename Write>
 int64_t WriteStream(const std::string& path, const Write& write) {
     FileStream stream(path);

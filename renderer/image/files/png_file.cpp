@@ -23,7 +23,6 @@ namespace {
 
 constexpr size_t kPngSignature = 8;
 
-// Owns libpng's state of a file, and the read position.
 struct Reading {
     std::span<const std::byte> bytes;  // that are left
     PngError error;
@@ -86,7 +85,6 @@ class PngFile final : public ImageFile {
   private:
     size_t Row() const { return size_t(shape.width) * size_t(shape.channels); }
 
-    // Reads rows of all channels, 8 or 16 bits each, one under the other.
     void ReadRows(png_bytep rows) {
         png_structp png = reading.png;
         const int height = shape.height;
@@ -122,11 +120,9 @@ namespace {
     throw Error("cannot write \"{}\": {}", path, reason);
 }
 
-// Takes the bytes of a PNG, in order.
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
-// Writes RGB rows of 8 or 16 bits. Errors of the sink are kept, as no exception may pass through
-// libpng.
+// Writes RGB rows of 8 or 16 bits. Errors of the sink are kept: none may pass through libpng.
 class PngWriter {
   public:
     PngWriter(const std::string& path, ByteSink sink)
@@ -210,7 +206,6 @@ class PngWriter {
     png_infop info;
 };
 
-// Returns the component as an integer of all bits of T.
 template <typename T>
 T EncodeSrgb(float linear) {
     constexpr float kMost = std::numeric_limits<T>::max();
@@ -225,7 +220,6 @@ T EncodeLinear(float value) {
     return T(kMost * std::clamp(value > 0 ? value : 0, 0.f, 1.f) + 0.5f);
 }
 
-// Returns the colours of R, G, B, A divided by alpha; transparent pixels are black.
 void DivideByAlpha(std::span<const float> rgba, std::span<float> rgb) {
     for (size_t i = 0; i < rgb.size(); ++i) {
         const float* pixel = &rgba[i / 3 * 4];
@@ -233,7 +227,6 @@ void DivideByAlpha(std::span<const float> rgba, std::span<float> rgb) {
     }
 }
 
-// Encodes a row of linear RGB, or RGBA.
 template <typename T>
 void EncodeRow(const PngFormat& format, std::span<float> linear, T* to) {
     const size_t components = format.hasAlpha ? 4 : 3, width = linear.size() / components;
@@ -252,7 +245,6 @@ void EncodeRow(const PngFormat& format, std::span<float> linear, T* to) {
         for (size_t i = 3; i < linear.size(); i += 4) to[i] = EncodeLinear<T>(linear[i]);
 }
 
-// Writes linear RGB, or RGBA. Some rows are encoded at a time, on all threads.
 template <typename T>
 void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
                const PngFormat& format) {
@@ -274,7 +266,6 @@ void WriteRows(PngWriter* writer, const RowSource& rows, int width, int height,
     writer->End();
 }
 
-// Writes encoded pixels.
 void WriteRows(PngWriter* writer, std::span<const uint8_t> srgb, int width, int height,
                bool isSmallest) {
     writer->WriteHeader(width, height, 8, PNG_COLOR_TYPE_RGB, {}, isSmallest);
@@ -282,7 +273,6 @@ void WriteRows(PngWriter* writer, std::span<const uint8_t> srgb, int width, int 
     writer->End();
 }
 
-// Writes a file through `write(writer)`.
 template <typename Write>
 void WriteFile(const std::string& path, const Write& write) {
     AtomicFile file(path);

@@ -14,7 +14,6 @@ namespace lull {
 
 // Calls libpng, which leaves its functions by longjmp() if something is wrong.
 
-// The last error message of libpng.
 struct PngError {
     char message[128] = "";
 };
@@ -27,8 +26,7 @@ struct PngError {
 }
 inline void OnPngWarning(png_structp, png_const_charp) {}
 
-// Calls `call`, which calls libpng; returns false if that gives up. As it is then left midway,
-// `call` must own nothing.
+// Returns false if libpng, called by `call`, gives up: left midway then, `call` must own nothing.
 template <typename Call>
 bool TryPng(png_structp png, const Call& call) {
     if (setjmp(png_jmpbuf(png))) return false;
@@ -36,7 +34,6 @@ bool TryPng(png_structp png, const Call& call) {
     return true;
 }
 
-// Returns whether bytes begin like a PNG.
 bool IsPng(std::span<const std::byte> bytes);
 
 // Opens a PNG: less than 8 bits become 8, palettes RGB, and transparent colours an alpha channel. A

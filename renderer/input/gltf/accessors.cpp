@@ -15,7 +15,6 @@ namespace {
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
               kUnsignedInt = 5125;  // 5126 is float
 
-// Where the elements of an array lie; `bytes` is null where they are all zero.
 struct Elements {
     const unsigned char* bytes = nullptr;
     size_t stride = 0;
@@ -48,7 +47,6 @@ T Load(const unsigned char* bytes) {
     return value;
 }
 
-// Returns one component; normalised ones as the specification says (3.11).
 float Component(const unsigned char* bytes, int type, bool normalized) {
     const auto scaled = [normalized](auto v) {
         constexpr auto kMost = float(std::numeric_limits<decltype(v)>::max());

@@ -13,7 +13,6 @@ namespace lull {
 // are no valid ones (3.7.2.1): some exporters leave the property out.
 bool Normalizes(const tinygltf::Model&, const std::string& attribute);
 
-// Values of an accessor, `components` numbers each.
 struct GltfArray {
     int components = 0;
     std::vector<float> values;
@@ -23,8 +22,7 @@ struct GltfArray {
 
 // Reads an accessor of any type of component, with its sparse values in place; integers that are
 // normalised, or all with `normalizes`, become 0 to 1 or -1 to 1. Throws Error where it has fewer
-// than `least` or more than `most` components, or reaches beyond its buffer. Numbers may be not
-// finite.
+// than `least` or more than `most` components, or reaches beyond its buffer.
 GltfArray ReadNumbers(const GltfDocument&, int accessor, int least, int most,
                       bool normalizes = false);
 // Reads the same. Throws Error where a number is not finite, too.

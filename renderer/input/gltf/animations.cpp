@@ -30,7 +30,6 @@ struct Keys {
     }
 };
 
-// Reads keys of `components` numbers each; 0: any number of scalars.
 Keys ReadKeys(const GltfDocument& document, const tinygltf::AnimationSampler& sampler,
               int components) {
     Keys keys{ReadFloats(document, sampler.input, 1, 1).values, {}, 0, sampler.interpolation};
@@ -63,7 +62,6 @@ Eigen::ArrayXd Slerp(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b, double t)
     return (std::sin((1 - t) * angle) * from + std::sin(t * angle) * to) / std::sin(angle);
 }
 
-// Evaluates an animation sampler (appendix C of the specification).
 Eigen::ArrayXd Evaluate(const Keys& keys, double seconds, bool isRotation) {
     const bool isCubic = keys.interpolation == "CUBICSPLINE";
     const size_t value = isCubic ? 1 : 0;
@@ -84,7 +82,6 @@ Eigen::ArrayXd Evaluate(const Keys& keys, double seconds, bool isRotation) {
            (3 * t2 - 2 * t3) * keys.Value(k + 1, 1) + length * (t3 - t2) * keys.Value(k + 1, 0);
 }
 
-// Returns the numbers of the animations that pose the scene, in their order.
 std::vector<size_t> Choose(const GltfDocument& document, const std::string& wanted) {
     std::vector<std::string> names;
     for (const tinygltf::Animation& animation : document.model.animations)
@@ -96,7 +93,6 @@ std::vector<size_t> Choose(const GltfDocument& document, const std::string& want
     return all;
 }
 
-// Sets the property of a node that a channel, at `loc`, animates.
 void PoseChannel(double seconds, const tinygltf::Animation& animation,
                  const tinygltf::AnimationChannel& channel, const FileLoc& loc,
                  GltfDocument* document, Warnings& warnings) {
@@ -118,10 +114,9 @@ void PoseChannel(double seconds, const tinygltf::Animation& animation,
 }
 
 // Gives all nodes that an animation moves the transforms and weights that it has at a time in
-// seconds, as if the file held these; before its first key and after its last one it stands still.
-// `wanted` is the name or the number, from 0, of an animation; empty: all together, with a warning
-// if some move the same, of which the first counts. Throws Error if there is none of that name, or
-// for keys that are wrong.
+// seconds; before its first key and after its last one it stands still. `wanted` is the name or the
+// number, from 0, of an animation; empty: all together, with a warning if some move the same, of
+// which the first counts. Throws Error if there is none of that name, or for keys that are wrong.
 void PoseAt(double seconds, const std::string& wanted, GltfDocument* document, Warnings& warnings) {
     std::map<std::pair<int, std::string>, size_t> posed;  // by which animation
     std::set<size_t> contradicting;
@@ -183,7 +178,6 @@ std::vector<GltfNode> PoseNodes(const GltfOptions& options, GltfDocument* docume
 
 namespace {
 
-// A set of four joints and weights for each vertex.
 struct Influences {
     GltfArray joints, weights;
 };
@@ -222,7 +216,6 @@ Eigen::Matrix3d ForNormals(const Eigen::Matrix3d& m) {
     return m.determinant() < 0 ? Eigen::Matrix3d(-c) : c;
 }
 
-// Replaces a direction by its image at unit length, unless that has none.
 void Turn(const Eigen::Matrix3d& m, float* direction) {
     Eigen::Map<Vec3f> d(direction);
     const Eigen::Vector3d turned = m * d.cast<double>();

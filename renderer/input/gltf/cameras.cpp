@@ -61,7 +61,6 @@ void SetCamera(const char* projection, double x, double y, const FileLoc& loc,
     film.Int("yresolution", kHeight);
 }
 
-// Takes the vertical field of view in radians, and the aspect or 0.
 void SetPerspective(double fov, double aspect, const FileLoc& loc, Description* description) {
     const double tangent = std::tan(fov / 2);
     SetCamera("perspective", aspect * tangent, tangent, loc, description);

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "renderer/input/description.h"
@@ -21,9 +20,8 @@ std::vector<Vec3f> OutlineOf(const std::vector<float>& points);
 // Finds from where a camera that looks in one direction sees all points just so.
 class Framing {
   public:
-    // `azimuth` is in degrees around the vertical, 0 from +z, 90 from +x; `elevation` in
-    // degrees above the horizon. `tangents` are of half the field of view, horizontally and
-    // vertically.
+    // `azimuth` is in degrees around the vertical, 0 from +z, 90 from +x; `elevation` above the
+    // horizon. `tangents` are of half the field of view, horizontally and vertically.
     Framing(double azimuth, double elevation, const std::array<double, 2>& tangents);
 
     void Extend(const Vec3f& point);
@@ -34,8 +32,7 @@ class Framing {
   private:
     Eigen::Matrix3d axes;  // right, up, back
     std::array<double, 2> tangents;
-    // How far points go along the normals of the picture's four sides, not of unit length: left and
-    // right, below and above.
+    // How far points go along the sides' normals, not unit: left and right, below and above.
     std::array<std::array<double, 2>, 2> reach;
     double nearest, farthest;  // along back
 };
@@ -45,9 +42,8 @@ class Framing {
 std::optional<Framing> FramingFor(const GltfDocument&, const std::vector<GltfNode>&,
                                   const GltfOptions&);
 
-// Sets camera and film: as framed, to the camera that the options name, or to the first one of the
-// scene. The height is 800 pixels. Throws Error for a camera that is not there or that sees
-// nothing.
+// Sets camera and film: as framed, to the camera that the options name, or to the scene's first.
+// The height is 800 pixels. Throws Error for a camera that is not there or sees nothing.
 void SetView(const GltfDocument&, const std::vector<GltfNode>&, const std::optional<Framing>&,
              const GltfOptions&, Description*);
 

@@ -30,7 +30,6 @@ std::unique_ptr<draco::Mesh> DecodeMesh(const FileLoc& loc, const unsigned char*
     }
 }
 
-// Adds an accessor with a buffer of its own, packed. Returns its index.
 template <typename T>
 int AddAccessor(const std::vector<T>& values, int componentType, int type, size_t count,
                 tinygltf::Model* model) {
@@ -51,7 +50,6 @@ int AddAccessor(const std::vector<T>& values, int componentType, int type, size_
     return int(model->accessors.size()) - 1;
 }
 
-// Returns an attribute as floats; integers that the file calls normalised become 0 to 1 or -1 to 1.
 std::vector<float> ValuesOf(const FileLoc& loc, const draco::Mesh& mesh,
                             const draco::PointAttribute& attribute,
                             const tinygltf::Accessor& accessor, bool normalizes) {
@@ -135,7 +133,6 @@ constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 // Sixteen bytes take at least two bits.
 constexpr size_t kMaxCompression = 100;
 
-// Decodes `count` elements of `stride` bytes. Returns 0 if it can.
 int Decode(const std::string& mode, unsigned char* out, size_t count, size_t stride,
            const unsigned char* bytes, size_t size) {
     if (mode == "ATTRIBUTES") return meshopt_decodeVertexBuffer(out, count, stride, bytes, size);
@@ -157,7 +154,6 @@ void CheckLayout(const FileLoc& loc, const std::string& mode, const std::string&
                     count, stride, mode, filter);
 }
 
-// Decodes a view of `byteLength` bytes. Returns the stride of its attributes, 0 for indices.
 size_t DecodeView(const tinygltf::Model& model, const tinygltf::Value& e, const FileLoc& loc,
                   size_t byteLength, std::vector<unsigned char>* decoded) {
     const auto whole = [&](const char* name) {

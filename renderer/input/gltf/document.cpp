@@ -54,7 +54,6 @@ uint32_t LittleEndian(const char* bytes) {
 
 bool IsBinary(std::string_view bytes) { return bytes.starts_with("glTF"); }
 
-// Returns the JSON of a file; of a .glb that is its first chunk.
 std::string_view JsonOf(const std::string& file, std::string_view bytes) {
     if (!IsBinary(bytes)) return bytes;
     if (bytes.size() < kGlbHeader + kChunkHeader)
@@ -74,7 +73,6 @@ std::string_view JsonOf(const std::string& file, std::string_view bytes) {
     return bytes.substr(kGlbHeader + kChunkHeader, length);
 }
 
-// Returns the data of a .glb behind its JSON of `jsonBytes`; empty: there are none.
 std::string_view DataOf(const std::string& file, std::string_view bytes, size_t jsonBytes) {
     if (!IsBinary(bytes)) return {};
     const std::string_view rest = bytes.substr(kGlbHeader + kChunkHeader + jsonBytes);
@@ -90,8 +88,7 @@ std::string ProblemOf(const std::string& extension) {
 }
 
 // Warns of extensions that objects have and `listed` lacks: some exporters do not list all that
-// they write. Throws Error where one that counts is no object, which the library drops. The depth
-// of the value has been bounded.
+// they write. Throws Error where one that counts is no object, which the library drops.
 void CheckUnlisted(const std::string& file, const std::string& path, const nlohmann::json& value,
                    const std::vector<std::string>& listed, Warnings& warnings) {
     if (value.is_object() && value.contains("extensions") && value.at("extensions").is_object())
@@ -156,8 +153,7 @@ std::vector<Bytes> TakeBuffers(const std::filesystem::path& folder, std::string_
     return buffers;
 }
 
-// Gives the data URIs of images a media type that the library knows: it takes others for names of
-// files, or loses their data.
+// Gives data URIs of images a media type that the library knows: it misreads or loses others.
 void UnifyImages(nlohmann::json* root) {
     if (!root->contains("images")) return;
     for (nlohmann::json& image : root->at("images")) {
@@ -191,7 +187,6 @@ Callbacks FileCallbacks(std::vector<Bytes>* buffers) {
     return callbacks;
 }
 
-// Keeps images as they are encoded.
 bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int,
                const unsigned char* bytes, int size, void*) {
     image->image.assign(bytes, bytes + size);
@@ -199,7 +194,6 @@ bool KeepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int
     return true;
 }
 
-// Writes names with their numbers: 0 "red", 1 "blue"; "none" where there are none.
 std::string NumberedNames(const std::vector<std::string>& names) {
     std::string list;
     for (size_t i = 0; i < names.size(); ++i)

@@ -22,12 +22,10 @@ struct GltfDocument {
     FileLoc At(const std::string& path) const;
 };
 
-// Returns a property of our own in the `extras` of a camera, a light, a material or a node; null:
-// there is none.
+// Returns a property of our own in `extras`; null: there is none.
 const tinygltf::Value* OwnValue(const tinygltf::Value& extras, const std::string& name);
 
-// Returns whether a property of our own is true, in the `extras` of the object at the JSON pointer
-// `path`. Throws Error.
+// Returns whether one is true, in the object at the JSON pointer `path`. Throws Error.
 bool OwnFlag(const GltfDocument&, const tinygltf::Value& extras, const std::string& name,
              const std::string& path);
 

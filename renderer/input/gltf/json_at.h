@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
@@ -164,7 +163,6 @@ struct JsonAt {
             f(one);
         });
     }
-    // Calls f with the values of an object.
     template <typename F>
     void ForEachValue(const std::string& name, const F& f) const {
         if (!Has(name)) return;
@@ -176,7 +174,6 @@ struct JsonAt {
     bool HasExtension(const std::string& name) const {
         return Has("extensions") && Member("extensions").Has(name);
     }
-    // Calls f with an extension that the object has.
     template <typename F>
     void Extension(const std::string& name, const F& f) const {
         if (!Has("extensions")) return;

@@ -1,4 +1,3 @@
-// Compiles the library.
 #include "renderer/input/gltf/library.h"
 
 #include <fstream>

@@ -6,7 +6,6 @@
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #define TINYGLTF_NO_FS
-// Debian's libdraco exports a copy of this library, built with other settings; ours must not be
-// confused with it.
+// Debian's libdraco exports a copy of this library, built otherwise: ours has another name.
 #define tinygltf lull_tinygltf
 #include <tiny_gltf.h>

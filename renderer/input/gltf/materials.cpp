@@ -15,7 +15,6 @@ Rgb ColorOf(const std::vector<double>& values, const Rgb& otherwise) {
     return Eigen::Array3d(values[0], values[1], values[2]).cast<float>();
 }
 
-// Returns an extension of a material, an empty object where it has none.
 const tinygltf::Value& Extension(const tinygltf::Material& material, const std::string& name) {
     static const tinygltf::Value none{tinygltf::Value::Object()};
     const auto found = material.extensions.find(name);
@@ -76,7 +75,6 @@ int AddMedium(const tinygltf::Value& volume, const FileLoc& loc, Description* de
     return int(description->media.size()) - 1;
 }
 
-// Makes the area light of a material that emits L.
 Entity EmissionOf(const Rgb& L, bool twoSided, const std::optional<TextureRef>& texture, int uvSet,
                   const FileLoc& loc) {
     Entity light{"diffuse", {}, loc};

@@ -7,7 +7,6 @@
 #include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "renderer/input/description.h"
 #include "renderer/input/gltf/document.h"
@@ -23,15 +22,13 @@ struct GltfTextureUse {
     std::string path;  // the JSON pointer of the use
 };
 
-// Read a use, from the core specification's texture slots or from an extension's: `owner` is the
-// object that may have a member `name`.
+// Read a use, from the core specification's slots or an extension's: `owner` may have a `name`.
 GltfTextureUse ReadTextureUse(const tinygltf::TextureInfo&, const std::string& path);
 GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo&, const std::string& path);
 GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
                               const std::string& path);
 
-// The part of an image that a texture reads: its colours, sRGB-encoded or not, or one channel as it
-// is.
+// What a texture reads of an image: its colours, sRGB-encoded or not, or one channel as it is.
 enum class GltfTexels { EncodedColor, LinearColor, Red, Green, Alpha };
 
 // Adds textures and embedded images to a description, each once.
@@ -40,8 +37,7 @@ class GltfTextures {
     GltfTextures(const GltfDocument& document, Description* description)
         : document(document), description(description) {}
 
-    // Returns the texture; nothing if the use names none, or, with a counted warning, one without
-    // an image.
+    // Returns the texture; nothing if the use names none, or, with a warning, one without image.
     std::optional<TextureRef> Add(const GltfTextureUse& use, GltfTexels texels, Warnings& warnings);
     // Returns which of TEXCOORD_0 and 1 the textures use that were added since the last call.
     std::array<bool, 2> TakeUvSets() { return std::exchange(uvSets, {}); }
@@ -72,7 +68,6 @@ struct GltfMaterial {
 // Adds materials to a description, each once.
 class GltfMaterials {
   public:
-    // `solidGlass`: see GltfOptions.
     GltfMaterials(const GltfDocument& document, bool solidGlass, Description* description)
         : document(document),
           solidGlass(solidGlass),

@@ -42,7 +42,6 @@ bool SaysVisible(const tinygltf::Node& node) {
     return found->second.Get("visible").Get<bool>();
 }
 
-// Returns the nodes that no other has as a child.
 std::vector<int> Roots(const tinygltf::Model& model) {
     if (!model.scenes.empty()) {
         const int scene = std::max(model.defaultScene, 0);
@@ -234,7 +233,6 @@ void AddSphere(const tinygltf::Light& source, const Rgb& intensity, double radiu
     description->shapes.push_back(std::move(sphere));
 }
 
-// Returns a number of our own, 0 for none.
 double OwnNumber(const tinygltf::Light& light, const std::string& name) {
     const tinygltf::Value* value = OwnValue(light.extras, name);
     return value ? value->GetNumberAsDouble() : 0;
@@ -246,7 +244,6 @@ double RadiusOf(const tinygltf::Light& light, const FileLoc& loc) {
     return *radius;
 }
 
-// Returns the name of an image of the light's directions; empty: it shines evenly.
 std::string ProfileOf(const tinygltf::Light& light, const FileLoc& loc) {
     const tinygltf::Value* profile = OwnValue(light.extras, "profile");
     if (!profile) return "";
@@ -268,7 +265,6 @@ void AddProfile(const std::string& profile, LightEntity* light) {
     ParameterWriter(&light->parameters, light->loc).String("mapname", profile);
 }
 
-// Returns the angle across a directional light, degrees.
 double AngleOf(const tinygltf::Light& light, const FileLoc& loc) {
     const double angle = OwnNumber(light, "angle");
     const auto across = InRange(angle, 0, std::numbers::pi);
@@ -276,7 +272,6 @@ double AngleOf(const tinygltf::Light& light, const FileLoc& loc) {
     return *across * 180 / std::numbers::pi;
 }
 
-// Returns the node's transform without its scale, which is not that of lights.
 Mat4d WithoutScale(const Mat4d& m) {
     Mat4d rigid = m;
     for (int i = 0; i < 3; ++i)

@@ -40,7 +40,6 @@ Mat4d MatrixOf(const Eigen::Vector3d& translation, const Eigen::Vector4d& rotati
 
 // Finds the materials that a glTF file has under other names (KHR_materials_variants).
 
-// Lists the names of a file's variants, in its order.
 std::vector<std::string> VariantNames(const GltfDocument&);
 
 // Gives all primitives the materials that they have in the variant of that name or number, from 0;

@@ -14,8 +14,7 @@
 namespace lull {
 namespace {
 
-// Adds the morph targets of an attribute, each by its weight (3.7.2.2). A tangent's sign, or an
-// alpha, that a target lacks stays.
+// Adds morph targets of an attribute by weight (3.7.2.2). Signs and alphas that they lack stay.
 void AddTargets(const GltfDocument& document, const FileLoc& loc,
                 const tinygltf::Primitive& primitive, const std::string& name,
                 const std::vector<double>& weights, GltfArray* array) {
@@ -40,8 +39,7 @@ void AddTargets(const GltfDocument& document, const FileLoc& loc,
     }
 }
 
-// Reads an attribute of `least` to `most` components, one a vertex, and morphs it; nothing where it
-// is absent.
+// Reads an attribute of `least` to `most` components a vertex, and morphs it; nothing where absent.
 GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
                         const tinygltf::Primitive& primitive, const std::string& name, int least,
                         int most, const std::vector<double>& weights, size_t vertexCount,
@@ -61,7 +59,6 @@ GltfArray ReadAttribute(const GltfDocument& document, const FileLoc& loc,
     return array;
 }
 
-// Gives colours an alpha.
 std::vector<float> WithAlpha(GltfArray colors) {
     if (colors.components == 4) return std::move(colors.values);
     std::vector<float> values;
@@ -73,7 +70,6 @@ std::vector<float> WithAlpha(GltfArray colors) {
     return values;
 }
 
-// Turns strips and fans into triangles (3.7.2.1); the order of their corners tells the front side.
 std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
     if (mode == TINYGLTF_MODE_TRIANGLES || v.size() < 3) {
         v.resize(v.size() / 3 * 3);
@@ -90,7 +86,6 @@ std::vector<uint32_t> Triangles(std::vector<uint32_t> v, int mode) {
     return triangles;
 }
 
-// Returns whether all tangents have a direction, and one that is not the normal's.
 bool AreTangential(const GltfTriangles& t) {
     for (size_t i = 0; 4 * i < t.tangents.size(); ++i) {
         const Eigen::Map<const Vec3f> tangent(&t.tangents[4 * i]), normal(&t.normals[3 * i]);
@@ -249,7 +244,6 @@ Vec3f Unit(const Vec3f& v) {
 
 Vec3f Tangential(const Vec3f& v, const Vec3f& n) { return Unit(v - n * n.dot(v)); }
 
-// Copies vertex `from` to the end of all arrays.
 uint32_t CopyVertex(uint32_t from, GltfTriangles* t) {
     const auto copy = [&](std::vector<float>* values, size_t components) {
         if (values->empty()) return;
@@ -267,8 +261,7 @@ uint32_t CopyVertex(uint32_t from, GltfTriangles* t) {
 
 using TangentSums = std::unordered_map<Corner, Vec3f, HashCorner>;
 
-// Sums up the tangents of the triangles around each corner. `mirrored` tells the side of each
-// triangle.
+// Sums up the tangents of the triangles around each corner. `mirrored` tells the triangles' sides.
 TangentSums SumTangents(const GltfTriangles& t, int uvSet, std::vector<bool>* mirrored) {
     TangentSums sums;
     for (size_t i = 0; i < mirrored->size(); ++i) {
@@ -289,8 +282,7 @@ TangentSums SumTangents(const GltfTriangles& t, int uvSet, std::vector<bool>* mi
     return sums;
 }
 
-// Gives each vertex the side of the first triangle that has it, and a copy to the others. Returns
-// the sides.
+// Gives each vertex the side of its first triangle, and a copy to the others. Returns the sides.
 std::vector<bool> SplitSides(const std::vector<bool>& mirrored, GltfTriangles* t) {
     constexpr uint32_t kNone = ~0u;
     std::vector<std::array<uint32_t, 2>> copies(t->VertexCount(), {kNone, kNone});

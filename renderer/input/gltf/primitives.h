@@ -11,8 +11,7 @@
 
 namespace lull {
 
-// A primitive as triangles; all arrays but the indices are flat, with the given numbers per
-// vertex.
+// A primitive as triangles; arrays have the given numbers per vertex.
 struct GltfTriangles {
     std::vector<float> positions;  // 3
     std::vector<float> normals;    // 3; none: flat shading

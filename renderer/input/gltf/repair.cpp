@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-// Returns a member of an object; null where there is none.
 json* Member(json* value, const char* name) {
     if (!value->is_object()) return nullptr;
     const auto found = value->find(name);
@@ -24,7 +23,6 @@ json* Extension(json* owner, const char* name) {
     return extensions ? Member(extensions, name) : nullptr;
 }
 
-// Calls f(element, index) for the objects in an array that is a member.
 template <typename F>
 void ForEachObject(json* owner, const char* name, const F& f) {
     json* array = Member(owner, name);
@@ -36,8 +34,7 @@ void ForEachObject(json* owner, const char* name, const F& f) {
 bool IsZero(const json* value) { return value && value->is_number() && value->get<double>() == 0; }
 
 // Returns what a member of an object stands for that is as good as absent: null; numbers of which
-// one is null, as JSON writes NaN; -1 for no index; an empty text; [] for no members. Null: it is
-// none.
+// one is null, as JSON writes NaN; -1 for no index; an empty text; []. Null: it is none.
 const char* NothingIn(const std::string& name, const json& value) {
     constexpr const char* kIndices[] = {
         "bufferView", "camera", "index",   "indices", "inverseBindMatrices",
@@ -79,7 +76,6 @@ void EraseNothings(const std::string& file, const std::string& path, json* value
     }
 }
 
-// Returns an index, which may be written as 4.0.
 std::optional<size_t> IndexOf(const json& value) {
     if (!value.is_number()) return {};
     const auto n = value.get<double>();
@@ -87,7 +83,6 @@ std::optional<size_t> IndexOf(const json& value) {
     return size_t(n);
 }
 
-// Collects the numbers that members of this name have or hold, at any depth.
 void Collect(const json& value, const std::string& name, std::set<size_t>* numbers,
              bool isWithin = false) {
     for (const auto& [key, member] : value.items()) {
@@ -165,7 +160,6 @@ class Repair {
         const json* positions = attributes ? Member(attributes, "POSITION") : nullptr;
         return positions && IsEmpty(*positions);
     }
-    // Leaves out members that are accessors without elements.
     void LeaveOutEmpty(json* owner, const FileLoc& loc) {
         if (!owner || !owner->is_object()) return;
         for (auto it = owner->begin(); it != owner->end();)

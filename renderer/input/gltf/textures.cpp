@@ -36,8 +36,7 @@ GltfTextureUse UseOf(const Info& info, const std::string& path) {
     return use;
 }
 
-// Returns the extension of such a file of images, by its first bytes or by its declared
-// type.
+// Returns the extension of such a file, by its first bytes or by its declared type.
 std::string TypeOf(const tinygltf::Image& image) {
     const auto startsWith = [&](std::string_view bytes) {
         return std::string_view(reinterpret_cast<const char*>(image.image.data()),

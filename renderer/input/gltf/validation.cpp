@@ -88,7 +88,6 @@ void CheckAccessor(const JsonAt& o) {
     sparse.Member("indices").OneOfNumbers("componentType", {5121, 5123, 5125});
 }
 
-// Returns how many variants of its materials the file has.
 size_t CountVariants(const json& root) {
     const json::json_pointer variants("/extensions/KHR_materials_variants/variants");
     return root.contains(variants) ? root.at(variants).size() : 0;

@@ -23,14 +23,12 @@ nlohmann::json ParseGltfJson(const std::string& file, std::string_view text);
 //     and lights without a type; a spot without angles has the usual ones.
 // Silently: accessors, views and buffers without a byte, images that nothing shows, and buffers
 // that nothing reads, whose files may be missing, or that only stand for data compressed by
-// meshopt, stand for a byte of 0; primitives compressed by Draco have no indices; cameras clip
-// nothing.
+// meshopt, stand for a byte of 0; those compressed by Draco have no indices; cameras clip nothing.
 void RepairGltfJson(const std::string& file, nlohmann::json* root, Warnings& warnings);
 
 // Throws Error with `file` and the JSON pointer of the first violation of the specification: types,
 // indices between the top-level arrays, enumerations, numbers that fit no float, data URIs that are
-// not base64. Warns of factors beyond their range. Writes whole numbers such as 4.0 as 4 where the
-// specification has integers.
+// not base64. Warns of factors beyond their range. Writes 4.0 as 4 where integers belong.
 void CheckGltfJson(const std::string& file, nlohmann::json* root, Warnings& warnings);
 
 }  // namespace lull

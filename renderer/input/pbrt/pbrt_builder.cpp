@@ -51,7 +51,6 @@ Description PbrtBuilder::Finish() {
     return std::move(description);
 }
 
-// Reports a name that nothing defines, unless an error before may be the reason.
 void PbrtBuilder::SubstituteName(const std::string& problem, const std::string& substitute) {
     if (!hasFailed) warnings.Substitute(loc, problem, substitute);
 }
@@ -82,7 +81,6 @@ void PbrtBuilder::CloseImports() {
     }
 }
 
-// Reports a name that is defined once more, which pbrt-v4 refuses.
 void PbrtBuilder::NameAgain(const char* what, const std::string& name) {
     if (IsV4())
         throw Error(loc, "{} \"{}\" is there already; pbrt-v4 takes each name once", what,
@@ -147,13 +145,11 @@ void PbrtBuilder::WorldBegin() {
 
 void PbrtBuilder::CheckScopes(const std::string& end) {
     if (!scopes.empty())
-        throw Error(loc, end + " where the " + ScopeName(int(scopes.back().kind)) +
-                             "Begin of line " + std::to_string(scopes.back().loc.line) +
-                             " is still open");
+        throw Error(loc, "{} where the {}Begin of line {} is still open", end,
+                    ScopeName(int(scopes.back().kind)), scopes.back().loc.line);
     if (currentObject >= 0)
-        throw Error(loc, end + " where the ObjectBegin of line " +
-                             std::to_string(description.objects[currentObject].loc.line) +
-                             " is still open");
+        throw Error(loc, "{} where the ObjectBegin of line {} is still open", end,
+                    description.objects[currentObject].loc.line);
 }
 
 void PbrtBuilder::EndWorld() {
@@ -262,7 +258,6 @@ void PbrtBuilder::ReverseOrientation() { state.reverseOrientation = !state.rever
 
 namespace {
 
-// Returns whether a curve makes one shape with that before it.
 bool IsStrandOf(const ShapeEntity& last, const ShapeEntity& next) {
     const auto same = [&](const auto& read) {
         return read(last.parameters) == read(next.parameters);
@@ -277,7 +272,6 @@ bool IsStrandOf(const ShapeEntity& last, const ShapeEntity& next) {
            });
 }
 
-// Adds a shape, or makes it a strand of the last one.
 void AddShape(ShapeEntity shape, std::vector<ShapeEntity>* shapes) {
     if (!shapes->empty() && IsStrandOf(shapes->back(), shape))
         shapes->back().strands.push_back(std::move(static_cast<Entity&>(shape)));

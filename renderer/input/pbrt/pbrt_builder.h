@@ -3,7 +3,6 @@
 
 #include <array>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -98,7 +97,6 @@ class PbrtBuilder {
     std::array<double, N> ReadNumbers();
     Mat4d ReadMatrix();
     Entity ReadEntity();  // as it stands
-    // Returns it in the terms of the Description.
     Entity Translated(EntityKind kind, Entity entity);
     template <typename T>
     T ReadAs(EntityKind kind) {

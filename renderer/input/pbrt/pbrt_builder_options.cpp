@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 #include <utility>
 
@@ -116,9 +115,8 @@ void PbrtBuilder::Option() {
                                            "wavefront"};
     const std::string given = ReadString("the name of an option");
     lexer.Take();  // its value, one word
-    std::string name;
-    for (const char c : given)
-        if (c != '_' && c != '-') name += char(std::tolower(static_cast<unsigned char>(c)));
+    std::string name = LowerCase(given);
+    std::erase_if(name, [](char c) { return c == '_' || c == '-'; });
     if (std::ranges::count(kKnown, name) == 0)
         throw Error(loc, "Option \"" + Printable(given) + "\" is unknown");
     if (name != "seed") warnings.Add(loc, "Option \"" + name + "\" has no effect");

@@ -82,9 +82,7 @@ constexpr std::pair<std::string_view, const char*> kExtensions[] = {
 // Returns the format of a file, and the remedy, if its name or first bytes are of a known format or
 // not text at all; "" if it may be a pbrt scene.
 std::string ForeignFormat(std::string_view name, std::string_view bytes) {
-    std::string lower(name);
-    std::ranges::transform(lower, lower.begin(),
-                           [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string lower = LowerCase(std::string(name));
     for (const auto& [extension, what] : kExtensions)
         if (lower.ends_with(extension)) return what;
     for (const auto& [magic, what] : kFormats)
@@ -126,8 +124,7 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     source.canonical = std::filesystem::canonical(file, ignored).string();
     for (const Source& open : sources)
         if (open.canonical == source.canonical)
-            throw Error(loc,
-                        "'" + Printable(file, 4096) + "' includes itself; remove this Include");
+            throw Error(loc, "'{}' includes itself; remove this Include", Printable(file, 4096));
     if (inclusions[source.canonical]++ > 0)
         repeatedBytes += std::max(source.contents.size, kLeastBytes);
     if (repeatedBytes > kMostRepeatedBytes)
@@ -138,8 +135,7 @@ void PbrtLexer::Open(const std::string& file, const FileLoc& loc) {
     const bool isWide = !WideEncoding(bytes).empty();
     const std::string_view text = isWide ? bytes : CleanText(bytes, loc);
     if (const std::string format = ForeignFormat(file, text); !format.empty())
-        throw Error(loc,
-                    "'" + Printable(file, 4096) + "' is not a pbrt scene file: it is " + format);
+        throw Error(loc, "'{}' is not a pbrt scene file: it is {}", Printable(file, 4096), format);
     source.begin = source.pos = text.data();
     source.end = text.data() + text.size();
     sources.push_back(std::move(source));
@@ -221,9 +217,8 @@ void PbrtLexer::ReadString(Token* token) {
     for (;; ++s.pos) {
         if (s.pos == s.end || *s.pos == '\n' || *s.pos == '\r')
             throw Error(token->loc,
-                        "the string that begins with \"" +
-                            Printable({begin, size_t(std::min<ptrdiff_t>(s.pos - begin, 40))}) +
-                            "\" has no closing quote on its line");
+                        "the string that begins with \"{}\" has no closing quote on its line",
+                        Printable({begin, size_t(std::min<ptrdiff_t>(s.pos - begin, 40))}));
         if (s.pos - begin > kLongestString)
             throw Error(token->loc, "a string is longer than " + std::to_string(kLongestString) +
                                         " characters; is a quote missing?");

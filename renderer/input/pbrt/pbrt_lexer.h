@@ -24,8 +24,7 @@ struct Token {
 std::string Describe(const Token& token);
 
 // Reads tokens from a stack of files: where an included file ends, the including one continues.
-// Every function throws Error for invalid tokens: unterminated strings, stray control
-// characters.
+// Every function throws Error for invalid tokens.
 class PbrtLexer {
   public:
     explicit PbrtLexer(const std::string& file);
@@ -37,7 +36,6 @@ class PbrtLexer {
     size_t Depth() const { return sources.size(); }
     // Begins again at the start of the first file.
     void Rewind();
-    // Returns the files that were read.
     std::vector<std::string> Files() const;
 
     Token Take();
@@ -45,8 +43,7 @@ class PbrtLexer {
 
     // Take the next token if it is a number and return whether it was; T is float, double or int.
     // An int may be written as a float; *cut is set where that loses a fraction. Throw Error at a
-    // malformed number or one beyond the range of T. They never leave the current file, and copy
-    // nothing: most of a scene's text is numbers.
+    // malformed number or one beyond the range of T. They never leave the current file.
     bool TakeNumber(float* value);
     bool TakeNumber(double* value);
     bool TakeNumber(int* value, bool* cut);

@@ -13,8 +13,7 @@
 namespace lull {
 namespace {
 
-// Bounds the parameters of a directive: each is compared with all others, and real ones have a
-// few dozen at most.
+// Bounds the parameters of a directive, each compared with all others; real ones have dozens.
 constexpr size_t kMostParameters = 1000;
 
 enum class Encoding { Plain, Rgb, Xyz, Blackbody, Sampled };
@@ -62,7 +61,6 @@ struct Declaration {
     std::string name;
 };
 
-// Splits "type name", where blanks may stand before, between and after.
 Declaration ReadDeclaration(const Token& token, PbrtVersion version) {
     std::string_view rest = token.text;
     const auto takeWord = [&rest] {
@@ -86,7 +84,6 @@ Declaration ReadDeclaration(const Token& token, PbrtVersion version) {
     return {known, std::string(name)};
 }
 
-// Reads one value, or many in brackets, into `values`; take(T*) reads one if it is there.
 template <typename T, typename Take>
 void ReadValues(PbrtLexer& lexer, const Token& owner, const char* what, std::vector<T>* values,
                 const Take& take) {
@@ -134,7 +131,6 @@ std::vector<std::string> ReadStrings(PbrtLexer& lexer, const Token& owner) {
     return values;
 }
 
-// Reads booleans, quoted as pbrt-v3 writes them, or bare as pbrt-v4 does.
 std::vector<int> ReadBools(PbrtLexer& lexer, const Token& owner, PbrtVersion version,
                            Warnings& warnings) {
     std::vector<int> values;
@@ -177,7 +173,6 @@ void Append(const Rgb& rgb, std::vector<float>* values) {
     values->insert(values->end(), {rgb.x(), rgb.y(), rgb.z()});
 }
 
-// Reads a file of a spectrum, for which pbrt-v3 takes black if it is not there.
 Rgb SpectrumOfFile(const std::string& path, const FileLoc& loc, Warnings& warnings) {
     if (ReasonNotToRead(path).empty()) return LoadSpectrum(path, loc, &warnings);
     try {
@@ -201,7 +196,6 @@ std::vector<float> ReadSpectrumFiles(PbrtLexer& lexer, const Token& owner,
     return values;
 }
 
-// Turns the numbers of a spectrum parameter into RGB triplets.
 std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding, const Token& owner,
                                    Warnings& warnings) {
     std::vector<float> values;
@@ -225,7 +219,6 @@ std::vector<float> ConvertSpectrum(std::vector<float> given, Encoding encoding, 
     return values;
 }
 
-// Turns triplets of pbrt-v4's colour space into linear sRGB.
 std::vector<float> ConvertRgb(std::vector<float> values, const Mat3f& rgbFromColorSpace,
                               const Token& owner) {
     for (size_t i = 0; i + 2 < values.size(); i += 3) {
@@ -241,13 +234,11 @@ std::vector<float> ConvertRgb(std::vector<float> values, const Mat3f& rgbFromCol
 std::vector<float> ReadFloatsOf(const TypeName& type, PbrtLexer& lexer, const Token& owner) {
     std::vector<float> values = ReadFloats(lexer, owner);
     if (values.size() % type.multiple != 0)
-        throw Error(owner.loc, "parameter " + Describe(owner) + " has " +
-                                   std::to_string(values.size()) + " numbers, no multiple of " +
-                                   std::to_string(type.multiple));
+        throw Error(owner.loc, "parameter {} has {} numbers, no multiple of {}", Describe(owner),
+                    values.size(), type.multiple);
     return values;
 }
 
-// Reads a spectrum as it stands, and rgb as linear sRGB.
 void ReadSpectrumV4(const TypeName& type, PbrtLexer& lexer, const Token& owner,
                     const Mat3f& rgbFromColorSpace, Parameter* parameter) {
     switch (type.encoding) {
@@ -306,8 +297,7 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context,
                 parameter.values = ReadFloatsOf(type, lexer, owner);
         }
         if (parameters.All().size() == kMostParameters)
-            throw Error(owner.loc, "a directive has more than " + std::to_string(kMostParameters) +
-                                       " parameters");
+            throw Error(owner.loc, "a directive has more than {} parameters", kMostParameters);
         const bool isAgain = std::ranges::any_of(parameters.All(), [&](const Parameter& p) {
             return p.type == parameter.type && p.name == parameter.name;
         });

@@ -1,7 +1,6 @@
 // Keeps the state that a scene file changes: transforms, and names with scopes.
 #pragma once
 
-#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -42,7 +41,6 @@ class ScopedNames {
 // Which transforms of a pair the directives change.
 enum ActiveTransforms { kStartTime = 1, kEndTime = 2, kAllTimes = 3 };
 
-// The kinds of entity of a scene.
 enum class EntityKind {
     Camera,
     Film,
@@ -88,8 +86,7 @@ Parameters ReadParameters(PbrtLexer& lexer, ParameterContext& context,
                           const Mat3f& rgbFromColorSpace, Warnings& warnings);
 
 // Make the matrices of the directives, in pbrt-v3's conventions; angles in degrees. LookAt maps
-// world to camera space (left-handed, looking along +z). Throw Error at `loc` if there is no such
-// transform.
+// world to camera space (left-handed, looking along +z). Throw Error at `loc` if there is none.
 Mat4d TranslateMatrix(double x, double y, double z);
 Mat4d ScaleMatrix(double x, double y, double z, const FileLoc& loc);
 Mat4d RotateMatrix(double degrees, const Eigen::Vector3d& axis, const FileLoc& loc);

@@ -27,8 +27,7 @@ struct V4Context {
 // and parameters, with what pbrt-v4 has for those of pbrt-v3, and for what is not supported.
 Entity TranslateV4(const V4Context& context, Entity entity);
 
-// Throws Error for a kind of film, camera, sampler or material that pbrt-v3 alone has, with that of
-// pbrt-v4.
+// Throws Error for a kind of film, camera, sampler or material that pbrt-v3 alone has.
 void RefuseKindOfV3(std::string_view directive, std::string_view kind, const FileLoc& loc);
 
 // Sets what pbrt-v4 renders where a directive is absent.
@@ -37,8 +36,7 @@ void SetV4Defaults(Description* description);
 // Takes the exposure time, which the camera has, into the film's scale.
 void SetExposureOfV4(Description* description);
 
-// Adds those parameters of Attribute whose names an entity does not have itself; it need not use
-// them.
+// Adds the parameters of Attribute that an entity does not have itself; it need not use them.
 void AddPresets(const Parameters& presets, Parameters* parameters);
 
 // Spectra become linear sRGB: by what they are spectra of, as rendering by wavelengths would show
@@ -67,8 +65,7 @@ bool IsNamedSpectrum(const std::string& name);
 
 // Each throws Error at `loc` where the spectrum is of another thing by its name.
 
-// Returns the colour of emitted light, of luminance 1 but for RGB, as pbrt-v4 has it. Parts below 0
-// are black.
+// Returns the colour of emitted light, of luminance 1 but for RGB. Parts below 0 are black.
 Rgb RgbOfLight(const V4Spectrum&, const FileLoc& loc);
 // Returns that of a reflectance, or of a coefficient of absorption or scattering.
 Rgb RgbOfSurface(const V4Spectrum&, const FileLoc& loc);
@@ -105,8 +102,7 @@ class V4Reader {
     // Warns of a flag that is set and has no effect.
     void Warn(const std::string& what) const { context.warnings.Add(from.loc, what); }
     [[noreturn]] void Fail(const std::string& why) const { throw Error(from.loc, why); }
-    // Copy a parameter of the type, or a texture, if there is one, under another name if one is
-    // given.
+    // Copy a parameter of the type, or a texture, if there is one, under the other name if given.
     void Copy(ParameterType type, const char* name, const char* to);
     void Copy(ParameterType type, std::initializer_list<const char*> names);
     void CopyFloat(const char* name, const char* to = nullptr);
@@ -117,7 +113,6 @@ class V4Reader {
     // Copies a texture, or writes the spectrum of a surface, if there is one.
     void CopySurface(const char* name, const char* to);
 
-    // Adds a spectrum texture of an image to the description.
     TextureRef AddImage(const std::string& file, bool isData) const;
 
     const FileLoc& Loc() const { return from.loc; }

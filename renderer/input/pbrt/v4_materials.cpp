@@ -12,7 +12,6 @@
 namespace lull {
 namespace {
 
-// Reads roughness; of names that begin with `prefix` where that is given.
 void CopyRoughness(V4Reader* in, const std::string& prefix = "") {
     const std::string both = prefix + "roughness";
     for (const char* axis : {"u", "v"}) {
@@ -44,7 +43,6 @@ void CopyIndex(V4Reader* in, const char* name, float otherwise) {
     in->write.Float(name, index);
 }
 
-// Reads eta and k of a conductor, or its reflectance, of names that begin with `prefix`.
 void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflectance) {
     if (const TextureRef* texture = in->given.GetTexture(reflectance)) {
         in->write.Texture("reflectance", *texture);
@@ -66,7 +64,6 @@ void CopyConductor(V4Reader* in, const std::string& prefix, const char* reflecta
     }
 }
 
-// Reads the layer between a coat and its base.
 void CopyLayer(V4Reader* in) {
     in->write.Float("thickness", in->given.GetFloat("thickness", 0.01f));
     in->Ignore({"g", "maxdepth", "nsamples"});
@@ -111,7 +108,6 @@ void CopyHair(V4Reader* in) {
     in->CopySurface("sigma_a", "sigma_a");
 }
 
-// Reads the maps of the shading normal, which all but mixtures and interfaces have.
 void CopyTilt(V4Reader* in) {
     const std::string map = in->given.GetString("normalmap", "");
     // Where both are given the normal map counts.
@@ -122,7 +118,6 @@ void CopyTilt(V4Reader* in) {
     in->Ignore({"displacement"});
 }
 
-// Reads the parameters of a kind but its tilt. Returns its name in the Description.
 std::string CopyKind(V4Reader* in) {
     const std::string& kind = in->Name();
     if (kind == "diffuse") {
@@ -208,7 +203,6 @@ namespace {
 
 constexpr float kDegree = kPi / 180;
 
-// Returns the light's colour times its "scale".
 Rgb Color(const V4Reader& in, const char* name) {
     return in.Light(name, Rgb::Ones()) * in.given.GetFloat("scale", 1);
 }
@@ -227,7 +221,6 @@ void CopySpot(V4Reader* in) {
     in->Copy(ParameterType::Point3, {"from", "to"});
 }
 
-// Reads a light whose beam an image shapes; the image is named in the file's terms.
 void CopyImageLight(V4Reader* in) {
     const std::string file = in->given.GetString("filename", "");
     if (file.empty()) in->Fail(fmt::format("LightSource \"{}\" needs a \"filename\"", in->Name()));

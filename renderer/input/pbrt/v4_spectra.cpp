@@ -91,7 +91,6 @@ auto* FindNamed(const Table& table, std::string_view name) {
     return static_cast<decltype(&table[0])>(nullptr);
 }
 
-// Returns the metal's eta or k of that name.
 std::optional<Rgb> FindMetal(std::string_view name) {
     if (!name.starts_with("metal-")) return {};
     const size_t end = name.rfind('-');

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string_view>
-
 #include "renderer/input/pbrt/v4.h"
 #include "stopping/base/input_file.h"
 
@@ -17,7 +14,6 @@ void CopyMapping(V4Reader* in) {
     in->Copy(ParameterType::Vector3, {"v1", "v2"});
 }
 
-// Copies a texture parameter of the texture's own type.
 void CopyOperand(V4Reader* in, const char* name, bool isSpectrum, float otherwise,
                  const char* to = nullptr) {
     if (!to) to = name;
@@ -45,8 +41,7 @@ void CopyImage(V4Reader* in, bool isSpectrum) {
     if (!isSpectrum) in->write.String("channel", "mean or alpha");
 }
 
-// Multiplies a texture by another. The factor of an image is multiplied with its texels, before
-// they are inverted.
+// Multiplies a texture by another. An image's factor is that of its texels, before inversion.
 Entity TranslateScale(V4Reader& in, bool isSpectrum, const std::string& owner) {
     const TextureRef* texture = in.given.GetTexture("tex");
     const int index = !texture ? -1 : isSpectrum ? texture->spectrumIndex : texture->floatIndex;
@@ -207,7 +202,6 @@ Entity TranslatePatches(V4Reader& in) {
     return in.Finish("trianglemesh", "Shape \"bilinearmesh\"");
 }
 
-// Reads the opacity, which is by chance.
 void CopyAlpha(V4Reader* in) {
     const float alpha = in->given.GetFloat("alpha", 1);
     if (const TextureRef* texture = in->given.GetTexture("alpha"))

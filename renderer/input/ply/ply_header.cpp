@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
-#include <utility>
 
 #include "renderer/files/file_io.h"
 
@@ -139,7 +138,6 @@ double TwiceArea(const Point& a, const Point& b, const Point& c) {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-// Returns the corners in the polygon's mean plane, where they turn left about it.
 std::vector<Point> Flattened(std::span<const uint32_t> vertices, std::span<const Vec3f> positions) {
     const auto at = [&](size_t i) -> Eigen::Vector3d {
         return positions[vertices[i % vertices.size()]].cast<double>();
@@ -163,7 +161,6 @@ bool IsConvex(const std::vector<Point>& p) {
     return true;
 }
 
-// Returns whether corner k of those that are left can be cut off.
 bool IsEar(const std::vector<Point>& p, const std::vector<size_t>& left, size_t k) {
     const size_t n = left.size(), before = left[(k + n - 1) % n], here = left[k],
                  after = left[(k + 1) % n];

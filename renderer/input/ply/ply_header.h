@@ -51,7 +51,6 @@ auto WithTypeOf(PlyType type, const Use& use) {
     }
 }
 
-// Returns the bytes of a value in binary files.
 inline int PlyTypeSize(PlyType type) {
     return WithTypeOf(type, [](auto value) { return int(sizeof(value)); });
 }

@@ -28,7 +28,6 @@ constexpr const char* kOptionsOfPictures[] = {
     "--images",  "--human",   "--stop",   "--caution", "--quality", "--block",
     "--viewing", "--threads", "--output", "--report",  "--quiet",   "--json-progress"};
 
-// Returns the results; `rendered` are the images that come from the scene, if there is one.
 std::vector<NamedFile> OutputsOf(const CompareOptions& options,
                                  const std::vector<std::string>& rendered) {
     std::vector<NamedFile> outputs = {{"-o", options.output + ".compare.json"},
@@ -40,7 +39,6 @@ std::vector<NamedFile> OutputsOf(const CompareOptions& options,
     return outputs;
 }
 
-// Returns the input files, without those of the scene.
 std::vector<NamedFile> InputsOf(const CompareOptions& options) {
     std::vector<NamedFile> inputs = {{"--automatic", options.automatic},
                                      {"--human", options.human},
@@ -50,14 +48,12 @@ std::vector<NamedFile> InputsOf(const CompareOptions& options) {
     return inputs;
 }
 
-// Compares images from files.
 ExitCode CompareFiles(CompareOptions options) {
     if (options.reference.empty() || (options.automatic.empty() && options.human.empty()))
         throw Error(
             "compare: a scene is missing, or images: --reference and --automatic or --human");
     if (!options.human.empty() && !IsImageFile(options.human))
-        throw Error("--human " + options.human +
-                    ": thresholds need a scene; without one, an image");
+        throw Error("--human {}: thresholds need a scene; without one, an image", options.human);
     options.output = BeginningOfNames(options.output, "lull");
     CheckOutputs(OutputsOf(options, {}), InputsOf(options));
     const std::optional<FileLock> lock = LockOutput(options.output + ".compare.json");
@@ -87,7 +83,6 @@ std::vector<ComparedImage> ReadImagesBeside(const CompareOptions& options,
     return images;
 }
 
-// A scene that is ready, and the rules to be compared on it.
 struct Compared {
     Compared(const CompareOptions& options, MpiJob* ranks)
         : options(options), render(options.render, ranks) {
@@ -107,7 +102,6 @@ MonitoredRule MakeRule(const std::string& name, const Rule& rule) {
     return {name, rule.text, rule.smallestSide, CriteriaOf(rule)};
 }
 
-// Adds the rule of people, and that of denoised images, where they are asked for.
 void AddOtherRules(Compared* compared) {
     const CompareOptions& options = compared->options;
     if (!options.human.empty() && !IsImageFile(options.human)) {
@@ -129,7 +123,6 @@ void AddCurveRules(Compared* compared) {
         compared->rules.push_back(MakeRule(text, compared->render.ReadRule("--curves", text)));
 }
 
-// Checks all that can be wrong before the work begins.
 std::unique_ptr<Compared> Prepare(const CompareOptions& given, MpiJob* ranks) {
     auto compared = std::make_unique<Compared>(given, ranks);
     const CompareOptions& options = compared->options;
@@ -157,7 +150,6 @@ std::unique_ptr<Compared> Prepare(const CompareOptions& given, MpiJob* ranks) {
     return compared;
 }
 
-// Returns how to render, once for all images.
 SessionOptions MakeOptions(Compared* compared) {
     const CompareOptions& options = compared->options;
     const bool hasPage = !options.report.empty();
@@ -214,7 +206,6 @@ ResultFiles WriteImages(const Compared& compared) {
     return results;
 }
 
-// Takes all images from a render, adds those that were read, and measures them.
 void AddImages(const MonitoredRender& monitored, Compared* compared) {
     const CompareOptions& options = compared->options;
     ComparisonReport* report = &compared->report;
@@ -246,7 +237,6 @@ void VerifyAll(Compared* compared) {
     }
 }
 
-// Completes the report, and writes all files.
 void WriteResults(const RenderResult& result, Compared* compared) {
     const CompareOptions& options = compared->options;
     const RenderJob& render = compared->render;
@@ -262,7 +252,6 @@ void WriteResults(const RenderResult& result, Compared* compared) {
     WriteComparison(options, report, WriteImages(*compared));
 }
 
-// The ranks share the render that all images come from; the first does the rest.
 ExitCode CompareRenders(CompareOptions options, MpiJob* ranks) {
     RenderSettings& settings = options.render;
     SetWording(settings, ranks);

@@ -115,7 +115,6 @@ void AddCompareOptions(CLI::App& app, CompareOptions* o) {
 
 namespace {
 
-// Returns the automatic rule, and that of people where there is one.
 std::vector<PictureRule> RulesOf(const CompareOptions& options, const PictureFolder& folder) {
     const ScheduleOptions& schedule = options.render.schedule;
     RuleContext context{.passSpp = PassOfPictures(folder.Spp()),

@@ -65,13 +65,11 @@ void AddOptions(CLI::App& app, Options* o) {
     app.footer(kFooter);
 }
 
-// A picture that is measured.
 struct Source {
     std::string viewpoint, file;
     int spp = 0;  // 0: not known
 };
 
-// Returns the pictures in the order of their spp; those without are first, as they were given.
 std::vector<Source> SourcesOf(const Options& options) {
     std::vector<Source> sources;
     for (const std::string& file : options.pictures)
@@ -115,7 +113,6 @@ std::string PlaceFields(const PixelRect& rect) {
     return fmt::format("{},{},{},{}", rect.min.x(), rect.min.y(), rect.Width(), rect.Height());
 }
 
-// Returns where sub-block i of a block lies.
 PixelRect SubBlockRect(const PixelRect& block, int subBlocks, int i) {
     const int side = int(std::lround(std::sqrt(subBlocks)));
     const std::vector<int> x = SplitEvenly(block.Width(), side),

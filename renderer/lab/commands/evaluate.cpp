@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <iterator>
 
 #include "renderer/commands/command.h"
@@ -169,7 +168,6 @@ std::vector<EvaluatedRule> EvaluateFiles(const Options& options) {
     return rules;
 }
 
-// Reads data sets, and records folders of pictures.
 std::vector<ViewpointRecording> ReadViewpoints(const Options& options) {
     std::vector<ViewpointRecording> viewpoints = ReadDatasets(options.datasets);
     for (const std::string& images : options.images)
@@ -204,7 +202,6 @@ std::vector<EvaluatedRule> EvaluateRecordings(const Options& options) {
                              .grid = options.scoring.grid});
 }
 
-// Reads the recordings of the one viewpoint that answers are to.
 ViewpointRecording ReadViewpoint(const Options& options) {
     std::vector<ViewpointRecording> viewpoints = ReadViewpoints(options);
     for (const std::string& name : options.without)
@@ -263,7 +260,6 @@ ExitCode RunEvaluate(const Options& options) {
     return kDone;
 }
 
-// Throws a usage error if there is nothing to judge, or nothing to judge it on.
 void CheckUsage(const CLI::App& app, const Options& options) {
     const bool runs = options.rivals || !options.rules.empty();
     if (!options.answers.empty()) {

@@ -97,7 +97,6 @@ std::vector<int> LimitsOf(const Options& options, size_t blocks,
     return limits;
 }
 
-// Writes to a new data set where that of the file cannot be written. Throws Error then.
 ExitCode Write(const ViewpointRecording& viewpoint, const Options& options) {
     ResultFiles results;
     WriteRecording(viewpoint, options.output, MessagesOf(options.render), &results);
@@ -105,7 +104,6 @@ ExitCode Write(const ViewpointRecording& viewpoint, const Options& options) {
     return kDone;
 }
 
-// Returns whether nothing is left to record, and tells it.
 bool IsAllThere(const std::vector<int>& limits, const Options& options) {
     if (std::ranges::any_of(limits, [](int limit) { return limit > 0; })) return false;
     MessagesOf(options.render)

@@ -1,5 +1,4 @@
-// `lull study`: observers mark visible noise, and `--collect` computes human thresholds from their
-// answers.
+// `lull study`: observers mark visible noise, of which `--collect` computes human thresholds.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -113,7 +112,6 @@ void AddOptions(CLI::App& app, Options* s) {
     app.footer(kFooter);
 }
 
-// Throws CLI::ValidationError for options that do not fit together.
 void CheckOptions(const CLI::App& app, const Options& s) {
     if (s.output.empty()) throw CLI::ValidationError("--output", "is required");
     const bool hasScene = !s.render.scene.file.empty();
@@ -227,7 +225,6 @@ void Tell(const Collected& collected) {
                           observer.answers.observer, observer.doubts);
 }
 
-// Prints how far the thresholds of a viewpoint can be relied on.
 void SayCertainty(const CollectedViewpoint& viewpoint) {
     PrintToStderr("lull: {}: {} observer{}\n", viewpoint.name, viewpoint.observers,
                   viewpoint.observers == 1 ? "" : "s");
@@ -238,8 +235,7 @@ void SayCertainty(const CollectedViewpoint& viewpoint) {
             viewpoint.name, fewest, fewest == 1 ? "" : "s", kEnoughAnswers);
 }
 
-// Returns the files of single answers with their contents; with more than one viewpoint each has
-// its own.
+// Returns the files of single answers with their contents; each of several viewpoints has its own.
 std::map<std::string, std::string> SingleAnswers(const Collected& collected,
                                                  const std::string& base) {
     std::map<std::string, std::string> files;

@@ -15,13 +15,11 @@ namespace lull {
 
 namespace {
 
-// The row of a table.
 struct Row {
     std::string rule, viewpoint, setting;
     Scores scores;
 };
 
-// Makes the rows of a rule: one for each viewpoint, and one for all of them.
 std::vector<Row> MakeRows(const EvaluatedRule& rule, const ScoreOptions& options) {
     std::vector<Row> rows;
     for (const ViewpointOutcome& viewpoint : rule.viewpoints)
@@ -43,7 +41,6 @@ std::string RankText(std::optional<double> correlation) {
     return correlation ? fmt::format("{:.2f}", *correlation) : "-";
 }
 
-// Prints a table whose first column is the rule or the viewpoint.
 void PrintRows(std::FILE* out, const std::string& label, std::string Row::*first,
                const std::vector<Row>& rows, const ScoreOptions& options) {
     size_t width = label.size(), settingWidth = std::string("setting").size();

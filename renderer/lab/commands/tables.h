@@ -11,8 +11,7 @@
 
 namespace lull {
 
-// Prints a table of the rules over all viewpoints and, if `each`, one of each rule before, with a
-// row a viewpoint.
+// Prints a table of the rules over all viewpoints and, if `each`, one of each rule before.
 void PrintEvaluation(std::FILE* out, const std::vector<EvaluatedRule>& rules,
                      const ScoreOptions& options, bool each);
 
@@ -33,8 +32,7 @@ std::string CurvesCsv(const std::vector<EvaluatedRule>& rules);
 // Prints which answers counted, a table of the rules and, if `each`, one of the blocks before.
 void PrintAnswerScores(std::FILE* out, const AnswerScores& scores, bool each);
 
-// Returns the table of the rules as a CSV file with a head line. Undefined fields are
-// empty.
+// Returns the table of the rules as CSV with a head line. Undefined fields are empty.
 std::string AnswerScoresCsv(const AnswerScores& scores);
 
 // Prints a comparison for people.

@@ -66,7 +66,6 @@ Examples:
 
 Exit codes: 0 success, 1 input or environment error, 2 usage error, 130 interrupted.)";
 
-// Adds an option whose text is parsed by a function that throws std::invalid_argument.
 template <typename T>
 void AddNames(CLI::App& app, const std::string& names, T (*parse)(const std::string&), T* value,
               const std::string& help, const std::string& standard) {
@@ -206,8 +205,7 @@ void AddTrainOptions(CLI::App& app, TrainOptions* o) {
     app.footer(kFooter);
 }
 
-// Completes defaults that depend on other options. Throws CLI::ValidationError for contradictory
-// options.
+// Completes defaults that depend on other options. Throws CLI::ValidationError.
 void CompleteTrainOptions(TrainOptions* o) {
     if (o->plan.datasets.empty() && o->isPreset) {  // which then lists its values
         o->listsValues = true;
@@ -233,7 +231,6 @@ void CompleteTrainOptions(TrainOptions* o) {
     plan.settings.voteSpacing = plan.settings.n;
 }
 
-// Returns the values of a plan as options, one a line.
 std::string ValuesText(TrainingPlan plan) {
     CLI::App app;
     AddSettings(app, &plan.settings);
@@ -249,7 +246,6 @@ std::string ValuesText(TrainingPlan plan) {
            flag("class-weights", plan.training.balanceClasses);
 }
 
-// Returns the recordings and thresholds that a training reads.
 std::vector<NamedFile> InputsOf(const TrainingPlan& plan) {
     std::vector<NamedFile> inputs = {{"--human", plan.human}};
     for (const std::string& file : plan.datasets) inputs.push_back({"DATASET.h5", file});
@@ -261,7 +257,6 @@ class TrainingPrinter {
   public:
     explicit TrainingPrinter(ProgressStyle style) : style(style) {}
 
-    // Begins a training, said to be about `about` (which may be empty), that stands at `progress`.
     void Begin(const std::string& about, const TrainingProgress& progress) {
         name = about;
         start = std::chrono::steady_clock::now();
@@ -272,7 +267,6 @@ class TrainingPrinter {
         return style != ProgressStyle::Silent && SecondsSince(start) >= nextReport;
     }
     void Print(const TrainingProgress& progress);
-    // Prints the last state, and ends the line.
     void Finish(const TrainingProgress& progress);
 
   private:
@@ -308,7 +302,6 @@ void TrainingPrinter::Finish(const TrainingProgress& progress) {
     std::fflush(stderr);
 }
 
-// Shows a training.
 TrainingEvents PrintTo(TrainingPrinter* printer, const Messages& messages, const BlockSplit& split,
                        bool quiet) {
     return {

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <set>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"
+#include "renderer/files/file_io.h"
 #include "renderer/image/image_io.h"
 #include "renderer/results/channel_names.h"
 #include "renderer/results/denoised_image.h"
@@ -18,12 +18,6 @@
 namespace lull {
 
 namespace {
-
-std::string ExtensionOf(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::ranges::transform(extension, extension.begin(), [](char c) { return std::tolower(c); });
-    return extension;
-}
 
 bool IsTiff(const std::string& path) {
     const std::string extension = ExtensionOf(path);
@@ -71,7 +65,6 @@ void MoveTo(const PixelRect& window, ComparedFile* file) {
     file->region = window;
 }
 
-// Joins the views of a pair, as lull renders them. Throws Error for other views.
 void JoinViews(const std::string& path, ExrImage* exr) {
     const bool isLeftFirst = exr->views[0] == "left";
     const std::string other = isLeftFirst ? "right" : "left";
@@ -96,7 +89,6 @@ void JoinViews(const std::string& path, ExrImage* exr) {
 
 bool IsPlaced(const ComparedFile& file) { return !file.image.isDisplay; }
 
-// Moves images to the window of the picture if they have data of different regions.
 void UseOneWindow(std::vector<ComparedFile>* files) {
     const auto first = std::ranges::find_if(*files, IsPlaced);
     const auto isElsewhere = [&](const ComparedFile& file) {

@@ -13,8 +13,7 @@ struct ComparedFile {
     bool isPair = false;     // of two eyes, the right one's beside the left one's
 };
 
-// Returns whether a file has an image's extension: .exr, or .png, .jpg, .jpeg, .tif and .tiff, in
-// any case.
+// Returns whether a file has an image's extension: .exr, or that of a display image, in any case.
 bool IsImageFile(const std::string& path);
 
 // Returns whether a file has the extension of a display image: .png, .jpg, .jpeg, .tif or .tiff.

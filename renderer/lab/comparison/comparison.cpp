@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "renderer/base/clocks.h"
-#include "renderer/base/error.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"
 #include "stopping/base/parallel.h"
@@ -26,7 +25,6 @@ std::vector<float> LightnessErrorMap(const RgbImage& image, const RgbImage& refe
     return error;
 }
 
-// Copies a block's rows into an image; `channels` values a pixel.
 void Paste(std::span<const float> block, const PixelRect& rect, int channels, int imageWidth,
            std::vector<float>* image) {
     const size_t row = size_t(rect.Width()) * channels;
@@ -46,7 +44,6 @@ Snapshot SnapshotOf(const Film& film, const PixelRect& rect, int spp) {
     return {.mean = view.mean, .noise = ComputeLightnessNoise(block).noise};
 }
 
-// Renders blocks from their first sample to `spp` each, and leaves out those where it is 0.
 void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Film* film) {
     RenderState state;
     RenderOptions options;
@@ -69,7 +66,6 @@ void RenderBlocks(const MonitoredRender& render, const std::vector<int>& spp, Fi
     Render(options);
 }
 
-// Makes an image of the right size, black, with the noise known.
 ComparedImage EmptyImage(const PixelRect& region, const std::string& name,
                          const std::string& rule) {
     ComparedImage image;
@@ -90,7 +86,6 @@ void PasteSnapshot(const Snapshot& snapshot, const PixelRect& rect, const PixelR
         Paste(snapshot.noise, local, 1, region.Width(), &image->noise);
 }
 
-// Denoises the image of the samples that its blocks took.
 void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blocks,
                     ComparedImage* image) {
     const PixelRect& region = render.options.film->Region();
@@ -110,7 +105,6 @@ void DenoiseSamples(const MonitoredRender& render, const std::vector<Block>& blo
     image->noise.clear();
 }
 
-// Leaves only the figures of the display image.
 void ForgetLinear(ComparedImage* image) {
     const auto forget = [](ErrorFigures* figures) {
         figures->rmse = figures->relMse = std::numeric_limits<double>::quiet_NaN();
@@ -149,7 +143,6 @@ Comparison BeginComparison(const PixelRect& region, const ScheduleOptions& sched
 
 namespace {
 
-// Compares an image with the reference; of a pair, each eye's by itself.
 std::vector<ErrorMaps> CompareEyes(const Comparison& comparison, const RgbImage& image) {
     const RgbImage& reference = comparison.images.back().image;
     if (comparison.eyeWidth == 0) return {CompareImages(image, reference, comparison.display)};
@@ -181,7 +174,6 @@ ErrorFigures FiguresOf(const std::vector<ErrorMaps>& maps) {
             .visibleDifference = std::max(a.visibleDifference, b.visibleDifference)};
 }
 
-// Sets all figures by the reference, and their maps.
 void SetFigures(const Comparison& comparison, ComparedImage* image) {
     const std::vector<ErrorMaps> maps = CompareEyes(comparison, image->image);
     image->figures = FiguresOf(maps);
@@ -280,8 +272,7 @@ ComparedImage TakeImage(const MonitoredRender& render, const std::vector<Monitor
         return voter < 0 ? RuleStop() : render.histories[size_t(voter)].stops[index];
     };
 
-    // Find the sample count of each block, in a pair that of the later; images that were not kept
-    // are rendered again.
+    // Find the samples of each block, of a pair's later; images not kept are rendered again.
     std::vector<int> again(blocks.size(), 0);
     for (size_t i = 0; i < blocks.size(); ++i) {
         const BlockResult& whole = render.result.blocks[i];

@@ -19,7 +19,6 @@ struct BlockCost {
     bool isEstimated = false;  // from the block's seconds per sample, as not all of it was rendered
 };
 
-// An image and all that is measured of it.
 struct ComparedImage {
     std::string name;  // automatic, human, reference, or as the user calls it
     std::string rule;  // empty: not known
@@ -51,8 +50,7 @@ struct Comparison {
     PixelRect Local(size_t block) const;
 };
 
-// Returns the pixels of a part of a picture of that width, R, G, B, row by row, as a BlockView has
-// them.
+// Returns the pixels of a part of a picture of that width, R, G, B, row by row.
 template <typename Value>
 std::vector<Value> CutPixels(const std::vector<Value>& rgb, int width, const PixelRect& rect) {
     std::vector<Value> pixels;
@@ -73,11 +71,9 @@ Comparison BeginComparison(const PixelRect& region, const ScheduleOptions&);
 // differ in size.
 void Measure(Comparison*);
 
-// Returns the number of blocks with a visible difference above kVisibilityThreshold. The image must
-// have figures.
+// Returns how many blocks have a visible difference above kVisibilityThreshold; needs figures.
 int CountVisibleBlocks(const ComparedImage&);
 
-// Sum of the costs of the blocks.
 struct TotalCost {
     int64_t samples = 0;
     double seconds = 0, ruleSeconds = 0;
@@ -124,8 +120,7 @@ struct EstimateError {
 };
 EstimateError CompareEstimates(const ComparedImage& image, const ComparedImage& atCap);
 
-// One render of a rule's image by itself, to measure the cost and savings of the rule on a number
-// of threads.
+// One render of a rule's image by itself, to measure the rule's cost and savings on some threads.
 struct Verification {
     int threads = 0;
     double wallSeconds = 0;  // of the render
@@ -134,14 +129,11 @@ struct Verification {
     bool samePixels = false;
 };
 
-// Returns the cost of a render of a rule alone, whose result is `film`, and whether its image is
-// the one that TakeImage() gave.
+// Returns the cost of a render of a rule alone, to `film`, and whether TakeImage() gave the same.
 Verification VerificationOf(const RenderResult&, const Film& film, const ComparedImage& taken);
 
-// Measures error against effort: for fixed samples per pixel, and for stopping rules over a range
-// of their settings.
+// Measures error against effort: of fixed sample counts, and of rules over a range of settings.
 
-// One point of a curve.
 struct CurvePoint {
     std::string rule, setting;  // "dammertz", "0.02"; "fixed", "64"
     double spp = 0;             // mean samples per pixel
@@ -154,8 +146,7 @@ struct CurvePoint {
 // pass to the cap, each about 1.5 times the last, all ends of passes.
 std::vector<int> FixedLadder(int passLength, int cap);
 
-// Returns the rules that are measured, as texts: "fixed:N" for the ladder, and each rule with one
-// setting over a range of it.
+// Returns the measured rules: "fixed:N" for the ladder, and rules with one setting over its range.
 std::vector<std::string> CurveRules(int passLength, int cap);
 
 // Returns a point for each rule: for the first of them, whose images the comparison begins with, by

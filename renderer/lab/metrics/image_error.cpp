@@ -47,7 +47,6 @@ double MeanOf(const std::vector<float>& map, int width, const PixelRect& rect) {
     return count > 0 ? sum / double(count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-// Decodes 8-bit sRGB values.
 std::vector<float> LinearValues(std::span<const uint8_t> srgb) {
     const std::array<double, 256>& linear = DecodeSrgb8();
     std::vector<float> values;
@@ -115,7 +114,6 @@ double RootMeanSquare(std::span<const float> noise, int width, const PixelRect& 
     return std::sqrt(sum / double(rect.Area()));
 }
 
-// Averages jumps.
 struct Jumps {
     std::span<const float> noise;
     int width;
@@ -138,7 +136,6 @@ struct Jumps {
     double Mean() const { return count > 0 ? sum / count : 0; }
 };
 
-// Adds the border between two blocks of which the second is to the right of the first or below.
 void AddBorder(const PixelRect& a, const PixelRect& b, Jumps* jumps) {
     const auto deepEnough = [](int sideA, int sideB) { return std::min(sideA, sideB) >= kDepth; };
     if (a.max.x() == b.min.x() && a.min.y() == b.min.y() && deepEnough(a.Width(), b.Width()))
@@ -167,8 +164,7 @@ Seams MeasureSeams(std::span<const float> noise, int width, std::span<const Pixe
 
 namespace {
 
-// Returns the luma less half of its range: variances are differences of large numbers, which
-// lose the less the smaller these are.
+// Returns the luma less half of its range, as variances are differences of squares.
 std::vector<float> CentredLuma(std::span<const uint8_t> srgb) {
     std::vector<float> luma;
     luma.reserve(srgb.size() / 3);
@@ -218,7 +214,6 @@ using Triple = std::array<double, 3>;
 // The names of the constants are the paper's.
 constexpr double qc = 0.7, pc = 0.4, pt = 0.95, w = 0.082, qf = 0.5;
 
-// One colour at each pixel, a plane a component.
 using ColourPlanes = std::array<std::vector<float>, 3>;
 
 constexpr double kXyzFromRgb[3][3] = {{0.4123866, 0.3575915, 0.1804505},
@@ -234,7 +229,6 @@ Triple Apply(const double (&m)[3][3], const Triple& v) {
     return result;
 }
 
-// White, divided by which X, Y and Z are relative.
 const Triple& White() {
     static const Triple white = Apply(kXyzFromRgb, {1, 1, 1});
     return white;
@@ -293,8 +287,7 @@ std::vector<float> FilterByContrast(const std::vector<float>& plane, int width, 
     return result;
 }
 
-// Returns L*a*b* of linear RGB, with a* and b* scaled by L* / 100, as colours differ less in the
-// dark (Hunt).
+// Returns L*a*b* of linear RGB, a* and b* times L* / 100: colours differ less in the dark (Hunt).
 Triple HuntLab(const Triple& rgb) {
     Triple l = Apply(kXyzFromRgb, rgb);
     for (int c = 0; c < 3; ++c) l[c] = LightnessAt(l[c] / White()[c]).lightness;
@@ -332,12 +325,10 @@ std::vector<Triple> SeenColours(const ColourPlanes& planes, int width, int heigh
     return colours;
 }
 
-// How strong edges and points are at each pixel.
 struct Features {
     std::vector<float> edges, points;
 };
 
-// Scales positive values to a sum of 1, and negative ones to a sum of -1.
 void BalanceSigns(std::vector<double>& kernel) {
     double positive = 0, negative = 0;
     for (const double k : kernel) (k > 0 ? positive : negative) += k;

@@ -43,13 +43,11 @@ struct ErrorFigures {
 ErrorFigures Average(const ErrorMaps&, const PixelRect& rect);
 ErrorFigures Average(const ErrorMaps&);
 
-// Measures whether borders of blocks are visible: the noise level jumps where blocks stop at
-// different spp.
+// Measures whether borders of blocks are visible: noise jumps where blocks stop at different spp.
 
-// Mean jumps of the noise level: the difference of the root mean squares of the noise in the
-// 10 pixels to either side of a line, over 20 pixels of its length. Where the noise is even, only
-// the spread of the estimate remains; `inside` says how much that and the picture itself
-// contribute.
+// Mean jumps of the noise level: the difference of the root mean squares of the noise in the 10
+// pixels to either side of a line, over 20 pixels of its length. Even noise leaves the spread of
+// the estimate; `inside` says how much that and the picture contribute.
 struct Seams {
     double border = 0;  // across the borders between blocks
     double inside = 0;  // across the middle lines of the blocks, both ways

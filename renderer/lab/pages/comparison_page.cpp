@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
-
 #include "renderer/base/error.h"
 #include "renderer/files/file_io.h"
 #include "renderer/image/image_io.h"
@@ -87,7 +85,6 @@ Json ImageJson(const Comparison& comparison, const ComparedImage& image) {
     return json;
 }
 
-// Compares the automatic image with the human one, block by block and in all.
 Json AgainstHuman(const Comparison& comparison) {
     const ComparedImage *automatic = comparison.Find("automatic"),
                         *human = comparison.Find("human");
@@ -111,7 +108,6 @@ Json AgainstHuman(const Comparison& comparison) {
             {"savedSeconds", Saved(a.seconds + a.ruleSeconds, h.seconds)}};
 }
 
-// Returns the saving in time as a fraction of that in samples, on each number of threads.
 Json VerificationJson(const ComparisonReport& report, const Verification& v) {
     Json json = {
         {"threads", v.threads},       {"wallSeconds", v.wallSeconds},
@@ -252,7 +248,6 @@ Json DescribeStudy(const Study& study, const StudySettings& settings) {
     return json;
 }
 
-// Returns the pictures of a block in base64, as the list that the page reads when it needs them.
 std::string PicturesScript(const Study& study, size_t i) {
     const StudyBlock& block = study.blocks[i];
     Json list = Json::array();
@@ -262,7 +257,6 @@ std::string PicturesScript(const Study& study, size_t i) {
                        JsonForScript(list));
 }
 
-// Returns the contents of the page's <script> of that id; empty if it has none.
 std::string_view ScriptText(std::string_view page, const std::string& id) {
     const std::string open = fmt::format("<script type=\"application/json\" id=\"{}\">", id);
     const size_t begin = page.find(open);

@@ -9,7 +9,6 @@
 
 namespace lull {
 
-// Contents of a report of a comparison.
 struct ComparisonReport {
     Comparison comparison;
     std::optional<Provenance> provenance;    // of the renders; none for images from files
@@ -44,14 +43,12 @@ struct StudySettings {
 std::string MakeStudyPage(const Study&, const StudySettings&);
 
 // Returns the data of a study's page, with the pictures of the blocks at the last level in
-// "references", as data URIs. Throws Error beginning with the path for anything that is not such a
-// page.
+// "references", as data URIs. Throws Error beginning with the path for anything else.
 Json ReadStudyPage(const std::string& path);
 
 // Writes the page of the observers' answers.
 
-// Returns the page. `study` is the result of ReadStudyPage() for the viewpoint, or null: then there
-// are tables, but no image.
+// `study` is the result of ReadStudyPage(), or null: then there are tables, but no image.
 std::string MakeCollectedPage(const Collected&, const Json& study);
 
 }  // namespace lull

@@ -22,7 +22,6 @@ namespace lull {
 
 namespace {
 
-// Reads the number whose digits begin at `at`; 0 if it is none that an spp can be.
 int NumberAt(const std::string& text, size_t at) {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), value);
@@ -52,7 +51,6 @@ std::map<int, std::string> FindFiles(const std::string& folder) {
     return found;
 }
 
-// Names a viewpoint after the folder of its pictures.
 std::string NameOfFolder(const std::string& folder) {
     const std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
     return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
@@ -68,8 +66,7 @@ std::vector<int> PictureFolder::Spp() const {
 
 int SppInName(const std::string& name) {
     const std::string stem = std::filesystem::path(name).stem().string();
-    std::string lower = stem;
-    for (char& c : lower) c = char(std::tolower(uint8_t(c)));
+    const std::string lower = LowerCase(stem);
     if (const size_t at = lower.rfind("spp"); at != std::string::npos) {
         const auto isSeparator = [](char c) {
             return c == '-' || c == '_' || c == '.' || c == ' ';
@@ -188,7 +185,6 @@ void Paste(const RgbImage& from, const PixelRect& rect, RgbImage* to) {
     }
 }
 
-// A rule at work on all blocks of the pictures.
 class RuleOnPictures {
   public:
     RuleOnPictures(PictureRule given, const PictureFolder& folder, ScheduleOptions schedule)
@@ -241,7 +237,6 @@ class RuleOnPictures {
         }
     }
 
-    // Returns the image, whose blocks have all stopped.
     ComparedImage End() {
         for (const int spp : stops) image.costs.push_back({.spp = spp});
         return std::move(image);

@@ -24,9 +24,8 @@ struct PictureFolder {
     PixelRect Region() const { return {{0, 0}, {width, height}}; }
 };
 
-// Returns the number that the name of a picture (without folder) gives as its spp:
-// "room-40spp.png", "spp40.exr" or, where no name says spp, the last number, as in
-// "room_00040.png"; 0 if there is none.
+// Returns the spp in a picture's name (without folder): "room-40spp.png", "spp40.exr" or, where
+// none says spp, the last number, as in "room_00040.png"; 0 if there is none.
 int SppInName(const std::string& name);
 
 // Finds all files of a folder but those whose names begin with a dot, and reads the size of the
@@ -46,8 +45,7 @@ RgbImage ReadPicture(const PictureFolder&, int spp);
 bool IsDisplayPicture(const PictureFolder&, int spp);
 
 // Returns the spp of a pass at whose ends the pictures are, if they are a recording's
-// (IsRecorded(): each pass up to 400 spp, at least every second one after), or 0: they are at any
-// spp.
+// (IsRecorded(): each pass up to 400 spp, at least every second one after), or 0: at any spp.
 int PassOfPictures(const std::vector<int>& spp);
 
 // Measures the SVD-entropies of a picture, of its blocks and of their sub-blocks.
@@ -87,10 +85,9 @@ struct PictureComparison {
 };
 
 // Shows the pictures, which come at the spp of the folder, to all rules; their context had the pass
-// of PassOfPictures(). Each block is taken from the picture at which the rule stopped it, or
-// the first that has as many spp as a rule that counts them says, or the last. Blocks too small for
-// a rule follow their neighbour. Reads a picture only where it is needed. Throws Error, also for a
-// rule that compares halves of the samples, which pictures do not have. Call Measure() for figures.
+// of PassOfPictures(). Each block is taken from the picture at which the rule stopped it, or the
+// first that has as many spp as a rule that counts them says, or the last. Blocks too small for a
+// rule follow their neighbour. Throws Error, also for a rule that compares halves of the samples.
 PictureComparison ComparePictures(const PictureFolder&, const ScheduleOptions&,
                                   std::vector<PictureRule> rules);
 

@@ -18,7 +18,6 @@ namespace lull {
 
 namespace {
 
-// Returns how many samples it takes to bring each block to the pass that reaches its limit.
 int64_t SamplesUpTo(const std::vector<int>& limits, const std::vector<Block>& blocks,
                     const ScheduleOptions& schedule) {
     int64_t samples = 0;
@@ -30,7 +29,6 @@ int64_t SamplesUpTo(const std::vector<int>& limits, const std::vector<Block>& bl
     return samples;
 }
 
-// Returns the state of a render that has not begun, with the blocks left out that have no limit.
 RenderState Beginning(const std::vector<Block>& blocks, const std::vector<int>& limits) {
     RenderState state;
     state.criteria.resize(blocks.size());

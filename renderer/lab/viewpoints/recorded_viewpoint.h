@@ -19,8 +19,7 @@ std::string CheckViewpointName(const std::string& name);
 std::vector<ViewpointRecording> ReadDatasetIfThere(const std::string& path);
 
 // Adds a recording to the data set of a file, or makes it. Concurrent processes wait for each
-// other, announced by onWait(), and no recording is lost. Throws Error and
-// std::runtime_error.
+// other, announced by onWait(). Throws Error and std::runtime_error.
 void AddToDatasetFile(const ViewpointRecording&, const std::string& path,
                       const std::function<void()>& onWait);
 
@@ -32,8 +31,7 @@ ViewpointRecording MakeViewpoint(const std::string& name, const ScheduleOptions&
 void AddBlock(size_t i, BlockRecording recording, const BlockResult&, ViewpointRecording*);
 
 // Returns the spp at which each block's recording ends: `cap` for those `chosen` by number, or for
-// all if none is chosen; 0 for blocks that are not recorded. Throws Error for a number that does
-// not exist.
+// all if none is chosen; 0 for others. Throws Error for a number that does not exist.
 std::vector<int> RecordingLimits(size_t blockCount, const std::vector<int>& chosen, int cap);
 
 // Ends the recording of each block at `past` times its threshold in the file `human`, where that
@@ -41,11 +39,10 @@ std::vector<int> RecordingLimits(size_t blockCount, const std::vector<int>& chos
 void LimitByHuman(const std::string& human, const std::string& viewpoint, double past,
                   std::vector<int>* limits);
 
-// Renders the blocks that have a limit, each to the pass that reaches it, from the start or
-// from the film and state of an interrupted recording with the same limits, and adds the
-// records to the viewpoint; nothing if it was cancelled. The options have no rule; progress is
-// reported towards the limits. Of several ranks, the first has the recordings. Throws as
-// Render() does.
+// Renders the blocks that have a limit, each to the pass that reaches it, from the start or from
+// the film and state of an interrupted recording with the same limits, and adds the records to the
+// viewpoint; nothing if it was cancelled. The options have no rule; progress is reported towards
+// the limits. Of several ranks, the first has the recordings.
 RenderResult RecordBlocks(RenderOptions, const std::vector<int>& limits, ViewpointRecording*);
 
 // Records the pictures of another renderer, for rules to learn from and to be judged on.
@@ -61,9 +58,8 @@ struct PictureRecordingOptions {
 ViewpointRecording DescribePictures(const PictureFolder&, int blockSize);
 
 // Returns the recording of all pictures, a record each, without measurements of half buffers
-// (AddPicture()). Blocks with a side below kSmallestVotingSide are left out, as rules do not check
-// them, and so are those with a limit of 0. Shares the blocks between threads. Throws Error, also
-// if no block is left.
+// (AddPicture()). Blocks with a side below kSmallestVotingSide are left out, and so are those with
+// a limit of 0. Throws Error, also if no block is left.
 ViewpointRecording RecordPictures(const PictureFolder&, const PictureRecordingOptions&);
 
 }  // namespace lull

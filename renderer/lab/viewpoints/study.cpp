@@ -167,7 +167,6 @@ void PictureLadder::Restore(std::span<const std::byte> state) {
 
 namespace {
 
-// Returns those of `available` that are nearest to the levels of a ladder.
 std::vector<int> ChooseLevels(const std::vector<int>& available, int count, double ratio) {
     const int low = available.front(), cap = available.back();
     std::vector<double> wanted;

@@ -27,8 +27,7 @@ std::vector<int> LadderByRatio(int pass, int cap, double ratio);
 std::vector<int> LadderByCount(int pass, int cap, int count);
 
 // Continues to the last level and keeps a picture at each; `pictures`, which must outlive it,
-// receives them in the order of the levels. Shows all passes to `companion` too, if there is one: a
-// recorder of the same samples.
+// receives them in the order of the levels. Shows all passes to `companion` too, if any.
 class PictureLadder final : public Criterion {
   public:
     PictureLadder(std::vector<int> levels, std::unique_ptr<Criterion> companion,
@@ -66,8 +65,7 @@ struct Study {
 // pictures. Answers to one study say nothing about another.
 std::string StudyId(const Study&);
 
-// Returns the root of the mean squared difference in lightness (0 to 100) between a block at a
-// level and the reference.
+// Returns the RMS of a block's difference in lightness (0 to 100) from the reference at a level.
 double NoiseOf(const StudyBlock&, size_t level);
 
 // Makes a study of the pictures of another renderer: of those nearest to the levels of a ladder of
@@ -76,15 +74,13 @@ Study MakeStudy(const PictureFolder&, int blockSize, int count, double ratio);
 
 // Makes the pictures of a study by rendering them.
 
-// Returns a study without its pictures. Blocks are placed within `region`, which becomes the whole
-// image.
+// Returns a study without its pictures. Blocks are within `region`, which becomes the image.
 Study BeginStudy(const std::string& viewpoint, const PixelRect& region, std::vector<int> levels,
                  const std::vector<Block>& blocks, const RenderIdentity&);
 
 // Renders all blocks to the cap, the study's last level, and fills in their pictures; records the
-// same samples for learning in `viewpoint`, unless that is null. Starts from nothing or from where
-// an interrupted render of the same study left film and state. The options have no rule. If it was
-// cancelled, the study is not complete. Throws as Render() does.
+// same samples for learning in `viewpoint`, unless that is null. Starts from film and state of an
+// interrupted render of the same study, if any. The options have no rule.
 RenderResult RenderStudy(RenderOptions, Study*, ViewpointRecording* viewpoint);
 
 }  // namespace lull

@@ -129,7 +129,6 @@ class Follower {
             0, Pack(RankWord::Part, part, MeansOf(tiles, needs[size_t(block)], *options.film)));
     }
 
-    // Sends pixels that have changed since the last time, or may have.
     void SendPixels() {
         for (int i = 0; i < int(touched.size()); ++i) {
             const bool isUnderWay = !schedule.BlockAt(i).stopped;

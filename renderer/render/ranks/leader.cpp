@@ -119,7 +119,6 @@ class Leader {
             rounds.Learn(film);
     }
 
-    // Traces a rank's part, and gives signs of life meanwhile.
     void TracePart(int part) {
         std::atomic<bool> isDone = false;
         rank.Enqueue([&] {
@@ -135,7 +134,6 @@ class Leader {
         executor.Quiesce();
     }
 
-    // Takes the light that a rank has traced.
     void Merge(int from) {
         for (const std::vector<std::byte>& message : splats[from]) {
             StateReader reader(message);
@@ -158,7 +156,6 @@ class Leader {
             executor.nextCheckpoint = Seconds() + options.checkpoints.interval;
     }
 
-    // Deals out the tiles by `deal`, with all pixels here and nobody at work.
     void Deal(const std::vector<BlockResult>& blocks) {
         const std::vector<int> before = schedule.Share().deal;
         schedule.Restart(StartsOf(blocks, options), {0, std::exchange(deal, {})});
@@ -185,7 +182,6 @@ class Leader {
         Deal(blocks);
     }
 
-    // Returns whether pixels lack samples of passes that were decided on.
     bool IsBehind(const Block& block) const {
         for (int y = block.pixels.min.y(); y < block.pixels.max.y(); ++y)
             for (int x = block.pixels.min.x(); x < block.pixels.max.x(); ++x)
@@ -203,7 +199,6 @@ class Leader {
         for (int i = 0; i < int(parts.size()); ++i) missing.push_back(PartCount(i));
     }
 
-    // Decides on another deal, where it gains enough.
     void ThinkOfDeal() {
         if (Seconds() < nextDeal || schedule.TimeCalled()) return;
         std::lock_guard lock(partsMutex);
@@ -245,7 +240,6 @@ class Leader {
 
     int NextSpp(int spp) const { return PassEndAfter(spp, schedule.Unlocked().Options()); }
 
-    // Returns the spp from which the pass that ends at `spp` > 0 began.
     int PassStart(int spp) const {
         int start = 0;
         for (int end = 0; (end = NextSpp(start)) < spp;) start = end;
@@ -277,7 +271,6 @@ class Leader {
         }
     }
 
-    // Brings everything to rest, and all pixels here.
     void Gather(bool undo) {
         quiet.clear();  // now: a rank that is idle answers before Exchange() returns
         collected.clear();
@@ -293,8 +286,7 @@ class Leader {
         executor.ledger.SetSamples(samplesGathered);
     }
 
-    // Waits until all others have said a word. Who cancels a render may do so because one of them
-    // has died, so that it is asked then.
+    // Waits until all others have said a word, or the render is cancelled, as if one has died.
     void Await(const std::set<int>& heard) {
         const auto isAwaited = [&](int other) {
             return !channel.HasGivenUp(other) && !heard.contains(other);
@@ -309,7 +301,6 @@ class Leader {
         }
     }
 
-    // Gives up who has given no sign of life for too long.
     void WatchOthers() {
         const double least = options.rankPatience / 12;
         double patience = executor.IsCancelled() ? least : options.rankPatience;

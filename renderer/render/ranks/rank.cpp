@@ -185,7 +185,6 @@ void RankChannel::Exchange(const Handler& handle) {
         Wait();
 }
 
-// Returns whether there was anything.
 bool RankChannel::Send() {
     std::vector<std::pair<int, std::vector<std::byte>>> posted;
     {
@@ -228,7 +227,6 @@ void RankChannel::Wait() {
 
 namespace {
 
-// Copies a row-major tile to its place in a row-major block.
 const float* PutTile(const float* from, const PixelRect& tile, const PixelRect& block, float* to) {
     for (int y = tile.min.y(); y < tile.max.y(); ++y, from += 3 * tile.Width())
         std::copy_n(from, 3 * tile.Width(),

@@ -53,7 +53,6 @@ enum class RankWord : uint8_t {
     Alive
 };
 
-// Decision on a block.
 struct AnswerMessage {
     int block;
     bool stop;
@@ -71,8 +70,7 @@ struct PartMessage {
 
 inline constexpr const char* kDamagedMessage = "a message of a rank is damaged";
 
-// Returns a message of the word and these values. Vectors are read by StateReader::GetVector();
-// functions append bytes themselves.
+// Returns a message of the word and these values; functions append bytes themselves.
 template <typename... Values>
 std::vector<std::byte> Pack(RankWord word, const Values&... values) {
     StateWriter writer;
@@ -90,13 +88,11 @@ std::vector<std::byte> Pack(RankWord word, const Values&... values) {
 std::vector<std::byte> PackSplats(int plane, const SplatPlane&);
 std::vector<std::byte> PackPixels(int block, const std::vector<PixelRect>& tiles, const Film&);
 
-// Read the number of a block, below `blocks`, and sums of these tiles into the film. Throw
-// std::runtime_error for other bytes.
+// Read the number of a block, below `blocks`, and sums of tiles. Throw std::runtime_error.
 int GetBlock(StateReader&, size_t blocks);
 void GetPixels(StateReader&, const std::vector<PixelRect>& tiles, Film*);
 
-// Returns the means of tiles, pixel by pixel, then the half means if they are wanted; nothing where
-// the sums are to be sent.
+// Returns the means of tiles, then the half means if wanted; nothing where sums are to be sent.
 std::vector<float> MeansOf(const std::vector<PixelRect>& tiles, ViewNeed, const Film&);
 // Puts them where they are in a view of `block`. Throws std::runtime_error if the sizes differ.
 void PutMeans(const std::vector<float>& values, const std::vector<PixelRect>& tiles,
@@ -124,7 +120,6 @@ class RankChannel {
     // arrived, or waits a little if there is neither. Throws the exception of Fail().
     using Handler = std::function<void(int from, RankWord, StateReader&)>;
     void Exchange(const Handler& handle);
-    // Waits until all messages have left.
     void Flush() { peers.Flush(); }
 
     // Pings the ranks, and reports those that do not answer to `onSilence`.
@@ -142,7 +137,6 @@ class RankChannel {
   private:
     using Clock = std::chrono::steady_clock;
 
-    // State of another rank.
     struct Life {
         Clock::time_point heard = Clock::now();
         std::optional<Clock::time_point> asked;  // since it was heard
@@ -183,8 +177,7 @@ class RankSpeeds {
   public:
     explicit RankSpeeds(int ranks) : efforts(size_t(ranks)) {}
 
-    // `seconds` are those that the rank's threads took for their tiles, as clocks have it, divided
-    // by the number of its threads.
+    // `seconds` are those that the rank's threads took for their tiles, by the number of threads.
     void Add(int rank, int64_t samples, double seconds);
     void Forget();
 
@@ -201,8 +194,7 @@ class RankSpeeds {
 };
 
 // Returns how many times as fast all ranks together would be if the tiles were dealt out by their
-// speeds rather than by `deal`, which goes at the pace of the rank that has most to do for its
-// speed. At least 1.
+// speeds rather than by `deal`, which goes at the pace of the slowest. At least 1.
 double GainOfDealing(const std::vector<double>& speeds, const std::vector<int>& deal);
 
 // Has an executor, whose tasks are done by the threads of the arena, and a channel, by which the
@@ -231,7 +223,6 @@ class Rank {
 };
 
 // Run a render as rank 0, which decides, and as another; the arena has no place for the caller.
-// There is no display.
 RenderResult LeadRanks(const RenderOptions&, tbb::task_arena*);
 RenderResult FollowRanks(const RenderOptions&, tbb::task_arena*);
 

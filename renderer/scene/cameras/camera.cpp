@@ -116,8 +116,7 @@ std::array<float, 4> ReadScreen(const Entity& entity, const Vec2i& resolution) {
         if (screen[0] == screen[1] || screen[2] == screen[3])
             throw Error(entity.loc, "\"screenwindow\" has no extent");
     }
-    // lull's own, of glTF's cameras: the least window of the image's aspect that shows -x to x and
-    // -y to y.
+    // lull's own, of glTF's cameras: the least window that shows -x to x and -y to y.
     if (const auto fit = params.GetFloats(ParameterType::Float, "screenfit"); !fit.empty()) {
         if (fit.size() != 2 || !(fit[0] >= 0) || !(fit[1] > 0))
             throw Error(entity.loc, "\"screenfit\" needs two values: x >= 0, y > 0");
@@ -190,7 +189,6 @@ LensSystem ReadLenses(const Description& description, const FilmSettings& film,
     return LensSystem(settings, threads);
 }
 
-// Sets the plane, or the angles, that the image is seen through, and the thin lens.
 void ReadPlane(const Entity& entity, const Vec2i& resolution, Camera* camera) {
     const Parameters& params = entity.parameters;
     const std::array<float, 4> screen = ReadScreen(entity, resolution);

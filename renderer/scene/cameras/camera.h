@@ -109,8 +109,7 @@ Camera CameraOfEye(const Camera&, const Stereo&, Eye);
 // (0, 180), a transform that cannot be inverted, or lenses as LoadLens and LensSystem say.
 Camera MakeCamera(const Description&, const FilmSettings&, Warnings&, int threads = 0);
 
-// Bounds how far from the world's origin rays begin, or lie the points that they are aimed at. It
-// may be infinite.
+// Bounds how far from the world's origin rays begin or are aimed at; may be infinite.
 double Farthest(const Camera&, const FilmSettings&);
 
 // Returns the transforms that EXR headers carry: worldToCamera and worldToNDC (pbrt's). The latter
@@ -118,7 +117,6 @@ double Farthest(const Camera&, const FilmSettings&);
 Mat4d WorldToCamera(const Camera&);
 std::optional<Mat4d> WorldToNdc(const Camera&, const FilmSettings&);
 
-// How a point is seen.
 struct CameraView {
     Vec2f film;           // pixels, of the whole image and beyond
     Vec3f lens;           // the point on the lens
@@ -131,8 +129,7 @@ inline bool SeesPoints(const Camera& camera) {
     return camera.projection == Projection::Perspective && !camera.Clips();
 }
 
-// Returns how such a camera sees the point p, `lens` and `time` as in CameraSample; nothing if it
-// is behind.
+// Returns how such a camera sees p, `lens` and `time` as in CameraSample; nothing if it is behind.
 std::optional<CameraView> ViewOf(const Camera&, const Vec3f& p, const Vec2f& lens, float time);
 
 // Returns the pixels per sr about the direction d of a ray of such a camera.

@@ -10,7 +10,6 @@
 namespace lull {
 namespace {
 
-// Sets the pixels to be rendered.
 void SetCrop(const Entity& entity, const FilmOverrides& overrides, FilmSettings* film) {
     std::array<float, 4> crop = {0, 1, 0, 1};
     if (const auto window = entity.parameters.GetFloats(ParameterType::Float, "cropwindow");
@@ -54,10 +53,8 @@ float Mitchell(float x, float b, float c) {
 
 float Sinc(float x) { return std::abs(x) < 1e-5f ? 1 : std::sin(kPi * x) / (kPi * x); }
 
-// The filter's function of x along an axis, and of the radius of that axis.
 using AxisFunction = std::function<float(float, float)>;
 
-// Makes that of a filter other than a box. Throws Error for others.
 AxisFunction MakeAxisFunction(const Entity& entity) {
     const Parameters& params = entity.parameters;
     if (entity.name == "gaussian") {
@@ -73,8 +70,7 @@ AxisFunction MakeAxisFunction(const Entity& entity) {
     if (entity.name == "triangle")
         return [](float x, float r) { return std::max(0.f, r - std::abs(x)); };
     if (entity.name == "sinc") {
-        // As in pbrt-v3 the window has its own width, tau, and not the radius: beyond tau its
-        // lobes come back.
+        // As in pbrt-v3 the window has its own width, tau: beyond it lobes come back.
         const float tau = params.GetFloat("tau", 3);
         if (!(tau > 0)) throw Error(entity.loc, "the sinc filter's \"tau\" has to be positive");
         return [=](float x, float) { return Sinc(x) * Sinc(x / tau); };

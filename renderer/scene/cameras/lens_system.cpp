@@ -36,8 +36,7 @@ bool MeetSphere(double radius, double center, const Vector3d& origin, const Vect
     return true;
 }
 
-// Refracts d, which it makes unit; `eta` is the index here over that beyond. False where all light
-// is reflected.
+// Refracts d, made unit; `eta` is the index here over that beyond. False where all is reflected.
 bool Refract(double eta, const Vector3d& n, Vector3d* d) {
     d->normalize();
     const double cosine = -n.dot(*d);
@@ -63,7 +62,6 @@ bool Pass(const LensInterface& interface, double z, double eta, Vector3d* o, Vec
     return interface.radius == 0 || Refract(eta, n, d);
 }
 
-// Returns i with its digits in base b behind the point in reverse order.
 float RadicalInverse(int b, int i) {
     double result = 0, place = 1;
     for (; i > 0; i /= b) result += (i % b) * (place /= b);
@@ -119,7 +117,6 @@ void PassLens(const LensInterface& lens, double z, double eta, LensBundle* rays,
     }
 }
 
-// Moves those that pass to the front.
 void Keep(const Passes& passes, LensBundle* rays) {
     size_t kept = 0;
     for (size_t i = 0; i < rays->count; ++i) {

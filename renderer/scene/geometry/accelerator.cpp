@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "renderer/base/hash.h"
 #include "renderer/scene/geometry/accelerator_internal.h"
 #include "renderer/scene/geometry/shape.h"
+#include "stopping/base/hash.h"
 
 namespace lull {
 
@@ -44,7 +44,6 @@ bool Accelerator::Occluded(const Ray& ray, float time) const {
     return r.tfar < 0;
 }
 
-// Builds the acceleration structure.
 namespace {
 
 // Receives every error of Embree, so that its calls need not be checked one by one.
@@ -53,13 +52,11 @@ void ReportEmbreeError(void*, RTCError, const char* message) {
                 message ? message : "unknown error");
 }
 
-// Returns whether a ray meets the side of a mesh that its vertices' order turns away.
 bool IsFromBehind(const Shape& shape, const RTCRay& ray, const RTCHit& hit) {
     const Vec3f front = std::get_if<Mesh>(&shape.geometry)->EmitterAt(hit.primID).n;
     return front.dot(Vec3f(ray.dir_x, ray.dir_y, ray.dir_z)) > 0;
 }
 
-// Returns whether a ray passes a mesh, by its kind or by the mesh's coverage.
 bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     if (IsHidden(user, ray)) return true;
     const Shape& shape = user.shapes->shapes[user.shape];
@@ -73,7 +70,6 @@ bool IsUncovered(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     return share <= 0 || (share < 1 && NumberOf(ray, hit) >= share);
 }
 
-// Returns whether alpha cuts out the place of a hit.
 template <bool isShadow>
 bool IsCutOut(const ShapeUser& user, const RTCRay& ray, const RTCHit& hit) {
     const Shape& shape = user.shapes->shapes[user.shape];
@@ -91,8 +87,7 @@ bool IsBehindSingleSided(const ShapeUser& user, const RTCRay& ray, const RTCHit&
     return (ray.id & kCameraRay) && IsFromBehind(user.shapes->shapes[user.shape], ray, hit);
 }
 
-// A filter of Embree, which rejects hits. Like the callbacks it is called with one ray at a time,
-// as rays are traced.
+// A filter of Embree, which rejects hits. It is called with one ray at a time.
 template <auto Rejects>
 void FilterBy(const RTCFilterFunctionNArguments* args) {
     if (Rejects(*static_cast<const ShapeUser*>(args->geometryUserPtr),
@@ -110,7 +105,6 @@ void MovingBounds(const RTCBoundsFunctionArguments* args) {
     *args->bounds_o = PaddedBounds(user.bounds[args->timeStep]);
 }
 
-// Finds the ray as the instance sees it at the ray's time; false where it cannot be traced there.
 bool IntoMoving(const MovingUser& user, const RTCRay& r, RTCRay* inner) {
     const Instance& instance = user.shapes->instances[user.instance];
     const Ray ray =

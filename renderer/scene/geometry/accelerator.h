@@ -15,8 +15,7 @@ class Accelerator {
     Accelerator& operator=(Accelerator&&) noexcept;
 
     // Builds over the shapes, on as many threads as RunWithThreads() allows. `shapes` and
-    // `textures` must outlive the accelerator and stay where they are. Throws Error when memory
-    // runs out.
+    // `textures` must outlive it and stay where they are. Throws Error when memory runs out.
     Accelerator(const ShapeTable& shapes, const TextureTable& textures);
 
     // Finds the nearest hit in (0, ray.tMax) at `time`, from 0 where the shutter opens to 1.

@@ -149,8 +149,7 @@ std::optional<ShapeHit> IntersectCovered(const ShapeUser& user, uint32_t geometr
     return {};
 }
 
-// The rays that pass a shape: none, those that it is hidden from, or also some where parts are
-// missing.
+// The rays that pass a shape: none, those it is hidden from, or also some where it has holes.
 enum class Passing { None, Hidden, Uncovered };
 
 // Returns where a ray meets a primitive that `args` of a callback name, unless it passes.

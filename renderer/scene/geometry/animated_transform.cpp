@@ -49,8 +49,7 @@ AnimatedTransform::Parts AnimatedTransform::Decompose(const Mat4d& m) {
         r = next;
         if (change < 1e-14) break;
     }
-    // A mirror is no rotation; pbrt-v3 leaves it there, and its images between the ends are then
-    // not of a motion from one to the other.
+    // A mirror is no rotation; pbrt-v3 leaves it there, and shows no motion between the ends then.
     if (r.determinant() < 0) r = -r;
     return {m.topRightCorner<3, 1>(), Eigen::Quaterniond(r).normalized(), r.transpose() * linear};
 }

@@ -123,8 +123,7 @@ struct Shape {
     Bounds3f WorldBounds() const;
 };
 
-// Returns the probability, in [0, 1], that a ray hits the shape at this point of a triangle. The
-// shape is a mesh with coverage.
+// Returns the probability that a ray hits a mesh with coverage at this point of a triangle.
 inline float CoverageAt(const Shape& shape, const TextureTable& textures, const Vec3f& p,
                         uint32_t triangle, float b1, float b2) {
     const Coverage& coverage = *shape.coverage;

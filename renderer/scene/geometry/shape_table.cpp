@@ -16,7 +16,6 @@ void CheckReach(const Bounds3f& bounds, const FileLoc& loc, const std::string& w
                     what, kFarthest);
 }
 
-// Carries an interaction from the space of an object into the world.
 void Place(const Instance& instance, SurfaceInteraction* hit) {
     // The transform itself is rounded to float where rays go through it, so its error counts with
     // the size of the summands (pbrt 3rd ed., 3.9.4).
@@ -108,8 +107,7 @@ void ShapeTable::LimitReach(std::span<const FileLoc> placesOfInstances) {
     }
 }
 
-// Gives an instance the motion that the description has for it, or the place where it is all the
-// time that the shutter is open.
+// Gives an instance its motion in the description, or the place where it is all the time.
 void ShapeTable::AddMotion(const Description& description, const InstanceEntity& entity,
                            const Shutter& shutter, Instance* instance, Warnings& warnings) {
     const auto& [startTime, endTime] = description.transformTimes;

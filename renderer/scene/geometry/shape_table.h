@@ -34,8 +34,7 @@ struct ShapeTable {
 
     // Makes every shape, loading meshes. Unknown kinds and meshes that cannot be read are left out
     // as a substitute. Zero-area triangles are dropped with a counted warning. Errors of shapes are
-    // kept in the warnings: broken geometry, and points beyond kFarthest; throws Error for
-    // instances. Lights are given to shapes later.
+    // kept in the warnings; throws Error for instances. Lights come later.
     ShapeTable(const Description&, const TextureTable&, Warnings&);
     ShapeTable() = default;
 

@@ -20,14 +20,12 @@ constexpr float kTolerance = 0.02f;
 // sampled, which shading normals cause, need it.
 constexpr float kLeast = 0.1f;
 
-// Returns the texel beside that of a cell, on the side of the cell, of n in a ring or a row.
 int NeighbourOf(int cell, int n, Wrap wrap) {
     const int beside = cell / 2 + (cell % 2 == 0 ? -1 : 1);
     return wrap == Wrap::Repeat ? (beside + n) % n : std::clamp(beside, 0, n - 1);
 }
 
-// A square soft box: where it hangs, in degrees, to the right of the camera and above the horizon,
-// half its width, and how bright it is.
+// A square soft box: degrees to the right of the camera and above the horizon, half its width.
 struct SoftBox {
     float azimuth, elevation, halfWidth, radiance;
 };
@@ -59,7 +57,6 @@ float RadianceOf(const SoftBox& box, const Vec3f& w) {
     return box.radiance * SmoothStep((1 - std::max(x, y)) / kEdge);
 }
 
-// Returns latitude-longitude coordinates of a unit vector of light space, each in [0, 1].
 Vec2f CoordinatesOf(const Vec3f& w) {
     const float phi = std::atan2(w.y(), w.x());
     return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi),
@@ -91,8 +88,7 @@ int Blacken(const Rgb& L, Image* image) {
     return count;
 }
 
-// Returns the direction, unit, of a point of the square, and the sine of its colatitude; 1 of equal
-// areas.
+// Returns the unit direction of a point of the square, and its colatitude's sine; 1 of equal areas.
 Vec3f DirectionOf(MapProjection projection, const Vec2f& st, float* sine) {
     *sine = 1;
     if (projection == MapProjection::EqualArea) return DirectionOfEqualAreaSquare(st);
@@ -133,7 +129,6 @@ float IlluminanceOf(const EnvironmentMap& map, int width, int height) {
     return float(4 * kPi * sum / solidAngle);
 }
 
-// Returns the steradians that an area of the square shows, where DirectionOf() finds this sine.
 float SolidAnglePerArea(MapProjection projection, float sine) {
     return projection == MapProjection::EqualArea ? 4 * kPi : 2 * kPi * kPi * sine;
 }
@@ -363,8 +358,7 @@ float InfiniteLight::Stretch(const Vec3f& w) const {
     return stretch / (length * length * length);
 }
 
-// Used only by the choice of lights by power; the mean over the map is the topmost mip level of
-// pbrt-v3.
+// For the choice of lights by power; the map's mean is the topmost mip level of pbrt-v3.
 Rgb InfiniteLight::Power() const {
     return kPi * Sqr(worldRadius) * (map ? map->MeanTexel() : constant);
 }

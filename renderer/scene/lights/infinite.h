@@ -80,8 +80,7 @@ Image MakeStudio();
 
 // Surrounds the scene with radiance: constant, or an image whose brightness guides the sampling
 // (pbrt 3rd ed., 14.2.4). It is in latitude-longitude form, or, if "equalarea" allows for that and
-// it is square, of equal areas. "illuminance" of an image is that of its upper half, twice so, as
-// in pbrt-v4.
+// it is square, of equal areas. "illuminance" is twice that of the upper half, as in pbrt-v4.
 class InfiniteLight {
   public:
     static constexpr LightType kType = LightType::Infinite;

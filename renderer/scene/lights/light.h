@@ -46,7 +46,6 @@ inline LightType TypeOf(const Light& light) {
     return Visit(light, []<typename L>(const L&) { return L::kType; });
 }
 
-// Returns whether rays can find the light.
 inline bool IsVisible(const Light& light) {
     const AreaLight* area = std::get_if<AreaLight>(&light);
     return area ? !area->isHidden : TypeOf(light) == LightType::Infinite;

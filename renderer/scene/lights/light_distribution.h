@@ -21,10 +21,9 @@ struct Receiver {
     bool isTwoSided = true;  // light from behind counts as well: the surface transmits
 };
 
-// A binary tree over lights (Conty Estevez and Kulla 2018), as pbrt-v4's BVH light sampler. At
-// each node one of the children is chosen by the most that it could contribute, given its box, the
-// cone of its normals and its power. A light that the bounds exclude has probability 0: it
-// contributes nothing.
+// A binary tree over lights (Conty Estevez and Kulla 2018), as pbrt-v4's BVH light sampler. At each
+// node one of the children is chosen by the most that it could contribute, given its box, the cone
+// of its normals and its power. Lights that the bounds exclude are never chosen.
 class LightHierarchy {
   public:
     // Takes the bounds of all lights; one with power 0 is never chosen by its bounds. Each light of
@@ -84,12 +83,10 @@ struct LightProbes {
     Numbers b0, b1;               // the same as SampleUniformTriangle(u)
 };
 
-// Returns the sum over the places, world, of luminance over density of a sample each, without
-// visibility.
+// Returns the sum over the places of luminance over density of a sample each, without visibility.
 float Contribution(const Light& light, const LightProbes& probes,
                    const LightProbes::Places& places);
 
-// Divides a box into voxels.
 struct VoxelGrid {
     // One voxel, in which every point lies.
     VoxelGrid() = default;
@@ -113,8 +110,7 @@ struct VoxelGrid {
     Vec3f voxelsPerUnit = Vec3f::Zero();
 };
 
-// The probabilities of choosing each light: as running sums, the last of which is 1, or as
-// those of a hierarchy for a receiver.
+// The probabilities of choosing each light: running sums up to 1, or a hierarchy for a receiver.
 class LightChoice {
   public:
     explicit LightChoice(std::span<const float> sums) : sums(sums) {}
@@ -149,8 +145,7 @@ class LightChoice {
     Receiver receiver;
 };
 
-// Follows pbrt-v3's light sampling strategies; "spatial", with a table for every voxel of the
-// scene, is its default.
+// Follows pbrt-v3's light sampling strategies; "spatial", a table for each voxel, is its default.
 class LightDistribution {
   public:
     // Chooses by fixed nonnegative weights, one per light.
@@ -172,8 +167,7 @@ class LightDistribution {
         return LightChoice(sums);
     }
 
-    // Starts to load the table of a voxel, which is usually far away in memory: its first sums and
-    // the last one, which Lookup() looks at.
+    // Starts to load what Lookup() reads of a voxel's table, usually far away in memory.
     void Prefetch(size_t voxel) const {
         const float* table = tables + voxel * lightCount;
         lull::Prefetch(table);
@@ -189,8 +183,7 @@ class LightDistribution {
     static constexpr int kMaxVoxels = 64;  // along the longest axis
     static constexpr int kLocks = 64;
 
-    // Makes the table of the voxel, unless another thread has by now. Separate, as Lookup() would
-    // be too long to be inlined with it.
+    // Makes the voxel's table, unless another thread has. Apart, so that Lookup() can be inlined.
     template <typename Contribution>
     [[gnu::noinline]] void MakeTable(size_t voxel, const Contribution& contribution,
                                      std::span<float> sums) const {
@@ -211,8 +204,7 @@ class LightDistribution {
     int lightCount = 0;
     VoxelGrid grid;
     std::unique_ptr<const LightProbes> probes;  // null: fixed weights
-    // One table after another, voxels in x, y, z order. Only pages of voxels that paths visit take
-    // memory.
+    // One table after another, voxels in x, y, z order. Only pages that paths visit take memory.
     LazyZeros memory;
     float* tables = nullptr;
     mutable std::array<std::mutex, kLocks> locks;

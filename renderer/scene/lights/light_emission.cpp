@@ -5,7 +5,6 @@ namespace {
 
 constexpr float kUniformSphere = 1 / (4 * kPi);
 
-// A cone of directions about an axis.
 struct Cone {
     Vec3f axis = Vec3f::UnitZ();
     float cosAngle = -1;
@@ -57,7 +56,6 @@ float OnwardDensity(const AreaLight& light, const Vec3f& n, const Vec3f& w) {
     return spread->Has(n, w) ? density / Sqr(spread->sine) : 0;
 }
 
-// Samples the hemisphere about n, or both, by the cosine, up to the angle of this sine.
 Vec3f SampleAboutNormal(const Vec3f& n, bool twoSided, float sine, Vec2f u) {
     float side = 1;
     if (twoSided) {
@@ -69,7 +67,6 @@ Vec3f SampleAboutNormal(const Vec3f& n, bool twoSided, float sine, Vec2f u) {
     return frame.FromLocal(SampleCosineHemisphere(u, sine)).normalized();
 }
 
-// Samples a direction from a point with normal n with OnwardDensity().
 Vec3f SampleOnward(const AreaLight& light, const Vec3f& n, const Vec2f& u) {
     if (const auto* spot = std::get_if<SpotCone>(light.profile)) return ConeOf(*spot).Sample(u);
     const auto* spread = std::get_if<Spread>(light.profile);

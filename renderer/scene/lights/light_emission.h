@@ -16,7 +16,6 @@ struct EmissionDensity {
     float onward = 0;
 };
 
-// Light that leaves a light.
 struct EmittedRay {
     int light;
     // Of lights at infinity the point is on a disk that faces the scene, outside of it.
@@ -44,13 +43,10 @@ class LightEmission {
     // Chooses a light with u and light that leaves it. Returns nothing where none does.
     std::optional<EmittedRay> Sample(float u, const Vec2f& origin, const Vec2f& direction) const;
 
-    // Returns the densities with which light `index` is found to shine along w, from a point of
-    // normal n.
+    // Returns the densities of light `index` shining along w, from a point of normal n.
     EmissionDensity Density(int index, const Vec3f& n, const Vec3f& w) const;
 
-    // Returns whether any light shines.
     bool Any() const { return anyPower; }
-    // Returns the probability of choosing a light.
     float Pmf(int index) const { return anyPower ? choice.Pmf(index) : 0; }
 
   private:

@@ -14,7 +14,6 @@ void Gather(const LightBounds& light, LightBounds* sum) {
     sum->isTwoSided |= light.isTwoSided;
 }
 
-// Begins a sum for Gather.
 LightBounds Nothing() { return {.axis = Vec3f::Zero(), .cosEmission = 1}; }
 
 // Turns the sum of axes into an axis. Without a common direction, any normal is possible.
@@ -25,13 +24,11 @@ void FindAxis(LightBounds* sum) {
     sum->cosNormals = hasDirection ? 1 : -1;
 }
 
-// Returns the cosine of a + b, given their cosines, or -1 beyond pi.
 float CosOfSum(float cosA, float cosB) {
     if (cosA <= -cosB) return -1;
     return cosA * cosB - SafeSqrt(1 - Sqr(cosA)) * SafeSqrt(1 - Sqr(cosB));
 }
 
-// Widens the normals of `sum`, which has its axis, by those of a light.
 void Widen(const LightBounds& light, LightBounds* sum) {
     const float cosAxes = std::clamp(sum->axis.dot(light.axis), -1.f, 1.f);
     sum->cosNormals = std::min(
@@ -75,7 +72,6 @@ struct LightHierarchy::Builder {
     std::span<const LightBounds> lights;
     LightHierarchy& tree;
 
-    // Describes where to cut: between buckets along an axis.
     struct Cut {
         int axis = -1;
         int bucket = 0;  // the first one behind the cut
@@ -112,7 +108,6 @@ struct LightHierarchy::Builder {
         return node;
     }
 
-    // Returns the cheapest cut; without an axis where all centres coincide.
     Cut FindCut(std::span<const uint32_t> range) const {
         Bounds3f centers;
         for (const uint32_t i : range) centers.Extend(Center(lights[i]));
@@ -158,7 +153,6 @@ struct LightHierarchy::Builder {
         return best;
     }
 
-    // Returns how many of the lights come first, and brings them there.
     size_t Divide(std::span<uint32_t> range, int depth) const {
         if (range.size() > 2 && depth < kDeep) {
             const Cut cut = FindCut(range);

@@ -20,16 +20,13 @@ struct LightSample {
     float pdf = 1;          // 1/sr; 1 for delta lights
     bool isDelta = false;   // no other strategy can find this direction
     bool isHidden = false;  // the emitter is invisible to rays; only light sampling finds it
-    // L is 1, and the map's radiance is left to LightTable::Radiance(): where the light is
-    // occluded, it is not needed.
+    // L is 1: the map's radiance is left to LightTable::Radiance(), unless the light is occluded.
     bool isOnMap = false;
-    // The point on the light; n is zero for point lights. A light at infinity has no point, but for
-    // that on its map: (s, t, 0).
+    // The point on the light, of one at infinity on its map: (s, t, 0); n is zero for point lights.
     bool isAtInfinity = false;
     Vec3f p = Vec3f::Zero(), pError = Vec3f::Zero(), n = Vec3f::Zero();
 };
 
-// Light that a ray finds.
 struct Emitted {
     Rgb L;      // radiance
     float pdf;  // 1/sr, with which sampling the light finds the same direction

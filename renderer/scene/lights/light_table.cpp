@@ -17,7 +17,6 @@ namespace {
 // tables, which sample every light 128 times for each voxel, take longer than many a render.
 constexpr size_t kMostTableLights = 100;
 
-// Returns the radius of a sphere about the scene.
 float WorldRadius(const Bounds3f& bounds) {
     const Vec3f center = 0.5f * (bounds.lower + bounds.upper);
     return bounds.IsEmpty() ? 1 : std::max((bounds.upper - center).norm(), 1e-10f);
@@ -29,7 +28,6 @@ Light Make(const LightReader& in) {
     return L::Make(in);
 }
 
-// Makes a parallel light, or one with an "angle" across, degrees.
 Light MakeDistant(const LightReader& in) {
     const DistantLight parallel = DistantLight::Make(in);
     const float angle = in.entity.parameters.GetFloat("angle", 0);
@@ -55,7 +53,6 @@ constexpr Kind<Light(const LightReader&)> kLights[] = {
     {"projection", Make<ProjectionLight>},
 };
 
-// Makes the light of one LightSource directive; nothing substitutes an unknown kind.
 std::optional<Light> MakeLight(const LightReader& in) {
     const LightEntity& entity = in.entity;
     entity.parameters.GetInt("samples", 1);  // pbrt-v3's path integrator takes one all the same
@@ -74,7 +71,6 @@ std::optional<Light> MakeLight(const LightReader& in) {
     return light;
 }
 
-// Refuses lights to whose place no ray is traced.
 void CheckReach(const Light& light, const LightEntity& entity, float reach) {
     std::visit(
         [&]<typename L>(const L& l) {
@@ -91,8 +87,7 @@ void CheckReach(const Light& light, const LightEntity& entity, float reach) {
 // An area light that shines into a cone, as a spot light does, from the origin of its shape.
 constexpr const char* kAreaSpot = "spot-squared";
 
-// Returns false, with a warning, where another kind of light is to be left out; throws Error where
-// it is not.
+// Returns false, with a warning, where another kind is to be left out; else throws Error.
 bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
     if (entity.name == "diffuse" || entity.name == "area" || entity.name == kAreaSpot) return true;
     warnings.Substitute(entity.loc,
@@ -103,8 +98,7 @@ bool IsKnownAreaLight(const Entity& entity, Warnings& warnings) {
 }
 
 // Reads the cone of a spot, "spread", degrees across the cone about each normal that the light
-// leaves into, or "clearcoat", the weight of a coat above. Returns null where the radiance is the
-// same to all sides.
+// leaves into, or "clearcoat", the weight of a coat above. Returns null without either.
 std::unique_ptr<const EmissionProfile> MakeProfile(const Entity& entity,
                                                    const Mat4d& worldFromShape) {
     if (entity.name == kAreaSpot)
@@ -143,7 +137,6 @@ size_t CountLights(const Description& description, const ShapeTable& shapes) {
     return count;
 }
 
-// Returns where a light is and where it shines; nothing if it has no place.
 template <typename L>
 std::optional<LightBounds> BoundsOf(const L& light) {
     if constexpr (requires { light.Bounds(); })
@@ -166,7 +159,6 @@ std::unique_ptr<LightHierarchy> MakeHierarchy(std::span<const Light> lights) {
     return std::make_unique<LightHierarchy>(bounds, std::move(unbounded));
 }
 
-// Returns how lights are chosen, as the integrator has it.
 std::string StrategyOf(const Entity& integrator, Warnings& warnings) {
     const std::string strategy = integrator.parameters.GetString("lightsamplestrategy", "spatial");
     for (const char* known : {"uniform", "power", "spatial", "bvh"})
@@ -176,7 +168,6 @@ std::string StrategyOf(const Entity& integrator, Warnings& warnings) {
     return "spatial";
 }
 
-// Returns the same weight for each light, or its power.
 std::vector<float> WeightsOf(const std::vector<Light>& lights, bool byPower) {
     std::vector<float> weights(lights.size(), 1.f);
     if (byPower)
@@ -188,8 +179,7 @@ std::vector<float> WeightsOf(const std::vector<Light>& lights, bool byPower) {
 
 // Reads the textures of a mesh's emission: "emission", multiplying L, looked up with the second
 // texture coordinates where "emissionuv" is 1, and the alpha textures of the mesh. Returns null
-// where neither is. What an alpha cuts out shines in pbrt-v3; with an alpha of 0 all over it is a
-// hidden light.
+// where neither is. What an alpha cuts out shines in pbrt-v3; an alpha of 0 is a hidden light.
 std::unique_ptr<const EmissionMap> MakeEmissionMap(const Entity& entity, const Shape& shape,
                                                    const TextureTable& textures, bool asPbrtV3) {
     const SpectrumTexture emission = textures.GetSpectrum(entity, "emission", Rgb::Ones());

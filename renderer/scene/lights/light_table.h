@@ -17,8 +17,7 @@ class LightTable {
     // Shape::firstLight it sets; `shapes` and `textures` must outlive the table and stay where they
     // are. Lights are chosen as the integrator's "lightsamplestrategy" says: "uniform", "power",
     // "spatial" (by tables, or by a hierarchy where there are many lights, unless `asPbrtV3`) or,
-    // which pbrt-v3 does not know, "bvh" (by a hierarchy). Throws Error with file and line for
-    // unknown kinds.
+    // which pbrt-v3 does not know, "bvh" (by a hierarchy). Throws Error for unknown kinds.
     LightTable(const Description&, ShapeTable& shapes, const TextureTable& textures, bool asPbrtV3,
                Warnings&);
 
@@ -30,10 +29,8 @@ class LightTable {
     // Lists the lights that rays reach when they leave the scene.
     const std::vector<int>& Infinite() const { return infinite; }
 
-    // Returns whether lights are chosen by a hierarchy.
     bool HasHierarchy() const { return hierarchy != nullptr; }
 
-    // Returns whether a ray can hit any light at all.
     bool AnyVisible() const { return anyVisible; }
 
     // Samples light i as seen from `from`. Returns nothing if it gives no light there.
@@ -69,7 +66,6 @@ class LightTable {
 
   private:
     void AddLights(const Description&, const ShapeTable&, bool asPbrtV3, Warnings&);
-    // Adds a light for each primitive of an emitting shape.
     void AddAreaLights(const ShapeEntity&, const TextureTable&, bool asPbrtV3, Shape*, Warnings&);
     void ChooseByPlace(const Bounds3f& bounds);
     LightChoice ChoiceIn(size_t place) const {

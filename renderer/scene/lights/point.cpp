@@ -94,13 +94,11 @@ std::optional<LightSample> SampleFrom(const Vec3f& p, const Vec3f& from, const F
     return LightSample{.L = *L, .wi = wi, .isDelta = true, .p = p};
 }
 
-// Returns the factor that makes up the "power" of a light of pbrt-v4, whose image emits `whole`.
 float FactorOfPower(const Entity& entity, float whole) {
     const float power = entity.parameters.GetFloat("power", -1);
     return power > 0 && whole > 0 ? power / whole : 1;
 }
 
-// Integrates the image over the directions that it is projected to.
 float WholePower(const ProjectionLight& light) {
     const Image& image = light.image->image;
     double sum = 0;

@@ -40,7 +40,6 @@ struct EmissionMap {
     bool vertexColors = false;  // multiply it, too
     bool cutsOut = false;       // where the shape's alpha is 0, as rays see it
 
-    // Returns the factor of the radiance at a point of a triangle.
     Rgb At(uint32_t triangle, float b1, float b2) const {
         const Mesh& mesh = *std::get_if<Mesh>(&shape->geometry);
         const Vec2f uv = secondUv ? mesh.Uv1(triangle, b1, b2) : mesh.Uv(triangle, b1, b2);
@@ -115,8 +114,7 @@ struct SpotCone {
     }
     // Returns about how many steradians the whole light would fill, as pbrt-v3 has it.
     float SolidAngle() const { return 2 * kPi * (1 - 0.5f * (cosFalloffStart + cosTotalWidth)); }
-    // Sets the directions of a light's bounds: it leaves along "normals" up to where it begins to
-    // fall off.
+    // Sets the directions of a light's bounds: along "normals" up to where it begins to fall off.
     void Bound(LightBounds*) const;
 };
 
@@ -143,8 +141,7 @@ struct BelowCoat {
 
 using EmissionProfile = std::variant<SpotCone, Spread, BelowCoat>;
 
-// Return the factor of the radiance that leaves a point with normal n towards w, both unit. The
-// normal's side is for callers to check.
+// Return the factor of the radiance from a point with normal n to w, both unit, on n's side.
 inline float Falloff(const SpotCone& cone, const Vec3f&, const Vec3f& w) { return cone.Falloff(w); }
 inline float Falloff(const Spread& spread, const Vec3f& n, const Vec3f& w) {
     // The cross product keeps small angles, which the cosine rounds away.

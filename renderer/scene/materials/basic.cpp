@@ -202,8 +202,7 @@ Disney::Disney(const MaterialReader& in)
 
 MaterialTraits Disney::Traits(const MaterialReader& in) const {
     const auto canBe = [](const FloatTexture& t) { return !(t.IsConstant() && t.constant <= 0); };
-    // Base, retro-reflection and specular reflection; in addition of thin ones a flat base and
-    // transmission.
+    // Base, retro-reflection, specular reflection; of thin ones a flat base and transmission.
     const int most = 3 + 2 * thin + canBe(sheen) + canBe(clearcoat) + canBe(specTrans);
     MaterialTraits traits =
         in.TraitsOf(most, color, scatterDistance, metallic, eta, rough, specularTint, anisotropic,

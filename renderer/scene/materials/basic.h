@@ -19,7 +19,6 @@ struct Interface {
     void AddLobes(const MaterialInputs&, Bsdf*) const {}
 };
 
-// Represents a diffuse surface.
 struct Matte {
     SpectrumTexture kd;
     FloatTexture sigma;  // degrees, clamped to [0, 90]; 0: Lambertian, else Oren-Nayar
@@ -31,7 +30,6 @@ struct Matte {
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
-// Represents a perfect mirror.
 struct Mirror {
     SpectrumTexture kr;
 
@@ -41,7 +39,6 @@ struct Mirror {
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
-// Represents a dielectric, smooth or rough.
 struct Glass {
     SpectrumTexture kr, kt;
     FloatTexture eta;     // index of refraction
@@ -63,7 +60,6 @@ void AddDielectricLobes(const Rgb& reflected, const Rgb& transmitted, float eta,
 void AddDielectric(const Rgb& reflected, const Rgb& transmitted, float eta, const Roughness&,
                    const MaterialInputs&, Bsdf*);
 
-// Represents a rough conductor.
 struct Metal {
     SpectrumTexture eta, k;                      // complex index of refraction; copper's by default
     std::optional<SpectrumTexture> reflectance;  // head-on, instead
@@ -81,7 +77,6 @@ struct Metal {
 // Returns k of the conductor of index 1 + i k that reflects so much head-on, as pbrt-v4 has it.
 Rgb AbsorptionOf(const Rgb& reflectance);
 
-// Represents a diffuse surface under a glossy coat.
 struct Plastic {
     SpectrumTexture kd, ks;
     Roughness roughness;
@@ -166,8 +161,7 @@ struct Hair {
     void AddLobes(const MaterialInputs& in, Bsdf* bsdf) const;
 };
 
-// Materials of pbrt-v4 that are layered: a diffuse base or a conductor under a dielectric coat, and
-// thin sheets of glass.
+// Layered materials of pbrt-v4: a diffuse base or a conductor under a dielectric coat; thin glass.
 
 // Parameters: "reflectance", "eta" and "thickness" of the coat, "uroughness", "vroughness".
 struct CoatedDiffuse {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "renderer/base/hash.h"
 #include "renderer/base/math.h"
 #include "renderer/base/variant.h"
 #include "renderer/input/spectrum.h"
@@ -14,11 +13,11 @@
 #include "renderer/scene/materials/material_inputs.h"
 #include "renderer/scene/materials/metallic_roughness.h"
 #include "renderer/scene/materials/subsurface.h"
+#include "stopping/base/hash.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
 
-// Represents a weighted sum of two other materials.
 struct Mix {
     SpectrumTexture amount;             // of the first; the second gets 1 - amount
     std::optional<FloatTexture> share;  // the amount where it is a number, as in pbrt-v4
@@ -125,7 +124,6 @@ SurfaceNeeds NeedsOf(const SurfaceTilt& tilt, const TextureTable& textures) {
     return needs;
 }
 
-// Returns why the material cannot be rendered, "" if it can.
 std::string ProblemOf(const MaterialKind& kind, const MaterialReader& in) {
     const std::string problem = Visit(kind, [&](const auto& k) {
         if constexpr (requires { k.Problem(in); })
@@ -139,7 +137,6 @@ std::string ProblemOf(const MaterialKind& kind, const MaterialReader& in) {
     return problem;
 }
 
-// Makes the lobes of a constant material once and for all.
 void FoldConstants(const MaterialReader& in, Material* m) {
     if (!m->traits.isConstant) return;
     Bsdf bsdf({Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ()}, Vec3f::UnitZ());
@@ -164,7 +161,6 @@ Material Complete(const MaterialKind& kind, const MaterialReader& in) {
     return m;
 }
 
-// Makes the material of an entity; a matte one substitutes unsupported ones.
 Material MakeMaterial(const MaterialReader& in) {
     const MaterialEntity& entity = in.entity;
     entity.parameters.GetString("type", "");  // MakeNamedMaterial's; already in entity.name

@@ -17,7 +17,6 @@ class SubsurfaceProfile;
 class MaterialTable {
   public:
     // pbrt-v3's default matte replaces unsupported materials. Errors are kept in the warnings.
-    // `textures` must outlive the table.
     MaterialTable(const Description&, const TextureTable& textures, Warnings&);
     MaterialTable();
     ~MaterialTable();

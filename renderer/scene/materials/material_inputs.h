@@ -72,8 +72,7 @@ struct SurfaceTilt {
     std::optional<NormalMap> normalMap{};
 };
 
-// Reads the parameters of one material, and knows the textures and, in `made`, the materials before
-// it.
+// Reads the parameters of a material; knows the textures and, in `made`, the materials before it.
 struct MaterialReader {
     const MaterialEntity& entity;
     const TextureTable& textures;
@@ -101,8 +100,7 @@ struct MaterialReader {
     // Reads "bumpmap", and "normals", pbrt-v4's normal map; nothing where both are flat.
     SurfaceTilt BumpMap() const;
 
-    // Returns the traits of up to `mostLobes` lobes that depend on textures alone; a Roughness
-    // counts as its two.
+    // Returns the traits of up to `mostLobes` lobes that depend on textures alone.
     template <typename... Textures>
     MaterialTraits TraitsOf(int mostLobes, const Textures&... read) const {
         MaterialTraits traits{.mostLobes = mostLobes};

@@ -97,8 +97,7 @@ MaterialTraits MetallicRoughness::Traits(const MaterialReader& in) const {
     });
     if (vertexColors) traits.Need(kNeedsColor);
     if (isAnisotropic) traits.Need(kNeedsTangents);  // the frame turns
-    // The light that sheen, the interface, or a coat on one side leaves to the rest depends on the
-    // view.
+    // What sheen, the interface, or a coat on one side leaves to the rest depends on the view.
     if (hasSheen || diffuseTransmission.factor > 0 || IsCoatedSolid()) traits.isConstant = false;
     if (keepsRadiance && solid) traits.isConstant = false;  // by the side of the view
     if (CanLetThrough()) traits.needs = traits.needs | kLetsThrough;

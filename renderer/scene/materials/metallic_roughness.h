@@ -58,8 +58,7 @@ struct MetallicRoughness {
                                  &sheenRoughness, &diffuseTransmission})
             f(*slot);
     }
-    // Returns the roughness along the tangents of a surface whose own is `alpha`, and turns the
-    // frame to where it is anisotropic.
+    // Returns the roughness along the tangents for `alpha`, and turns the frame where anisotropic.
     Vec2f Alphas(const MaterialInputs& in, float alpha, Bsdf* bsdf) const;
     // Adds the interface that reflects from f0 to f90 and attenuates nothing.
     void AddOwnInterface(const Rgb& f0, float f90, float eta, bool isSmooth, const Vec2f& alphas,

@@ -99,7 +99,6 @@ MediumPreset ReadMediumPreset(const std::string& name, const FileLoc& loc, Warni
 
 namespace {
 
-// Takes little-endian values off the front of the file.
 class Cursor {
   public:
     Cursor(std::string_view rest, const std::string& path) : rest(rest), path(path) {}

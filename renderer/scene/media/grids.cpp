@@ -8,7 +8,6 @@
 namespace lull {
 namespace {
 
-// Interpolates at x between values at whole coordinates.
 template <typename T, typename ValueAt>
 T Interpolate(const Vec3f& x, T sum, const ValueAt& valueAt) {
     Vec3i cell;

@@ -1,7 +1,6 @@
 // Fields of density, colour and temperature in the unit cube.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -19,15 +18,13 @@ struct Grid {
     T operator()(const Vec3f& p) const;
 };
 
-// Does the same for coefficients of absorption and scattering by channel. One that is not given is
-// the same everywhere.
+// Does so for absorption and scattering by channel, the same everywhere where not given.
 struct RgbDensity {
     std::optional<Grid<Rgb>> sigmaA = {}, sigmaS = {};
     float otherwise = 1;
 };
 
-// Density of pbrt-v4's clouds: noise that is thinner higher up, from 0 to 1, in the box of the
-// medium's own space from p0 on.
+// Density of pbrt-v4's clouds: noise from 0 to 1, thinner higher up, in the box from p0 on.
 struct CloudDensity {
     Vec3f p0, diagonal;
     float density, wispiness, frequency;
@@ -56,7 +53,6 @@ struct SparseGrid {
         return bricks[(size_t(brick.z()) * size.y() + brick.y()) * size.x() + brick.x()];
     }
     const Brick& At(const Vec3i& brick) const { return const_cast<SparseGrid*>(this)->At(brick); }
-    // Returns the value of a voxel.
     float Value(const Vec3i& voxel) const;
     float operator()(const Vec3f& p) const;
     // Finds Brick::most of all.

@@ -144,8 +144,7 @@ Properties PropertiesAt(const GridMedium&, const RgbDensity& density, const Vec3
     return {most, sigmaT / most, sigmaS / most, sigmaA / most};
 }
 
-// Where colours differ, collisions are those of the mean extinction, below that of some channel at
-// least: each channel can pass.
+// Where colours differ, collisions are by the mean extinction, so that each channel can pass.
 template <typename Density>
 MediumSample SampleTinted(const GridMedium& medium, const Density& density,
                           const Crossing& crossing, Sampler& sampler) {

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <variant>
-#include <vector>
 
 #include "renderer/base/math.h"
 #include "renderer/base/sampler.h"
@@ -18,7 +17,6 @@ struct MediumSample {
     Rgb emitted = Rgb::Zero();  // radiance of the medium itself that gets to the ray's origin
 };
 
-// Represents a medium that is the same everywhere.
 struct HomogeneousMedium {
     Rgb sigmaS, sigmaT;          // scattering and extinction, per unit of length
     float g;                     // of the phase function
@@ -75,8 +73,7 @@ struct MediumEmission {
     Rgb operator()(const Vec3f& p) const;
 };
 
-// Represents a medium whose density is given by a grid or a formula in the unit cube of its own
-// space; outside there is nothing.
+// A medium whose density is a grid or a formula in the unit cube of its own space, 0 outside.
 struct GridMedium {
     float sigmaT;  // greatest extinction per unit of length in the world where the density is 1
     Rgb albedo;    // scattering over that

@@ -13,13 +13,11 @@
 namespace lull {
 namespace {
 
-// Returns the ray with a unit direction, and the factor from its t to the other's.
 std::pair<Ray, float> Normalised(const Ray& ray) {
     const float length = ray.d.norm();
     return {{ray.o, ray.d / length, ray.tMax * length}, 1 / length};
 }
 
-// Returns a coefficient of scattering or absorption; throws Error.
 Rgb ReadCoefficient(const MediumEntity& entity, const char* name, const Rgb& otherwise,
                     float scale) {
     const Rgb value =
@@ -92,7 +90,6 @@ float GreatestOf(const Grid<T>& grid) {
     return most;
 }
 
-// Returns the matrix from the unit cube to the box from p0 to p1.
 Mat4d MatrixOfBox(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1) {
     Mat4d m = Mat4d::Identity();
     m.topLeftCorner<3, 3>() = (p1 - p0).asDiagonal();
@@ -105,7 +102,6 @@ Mat4d MatrixOfBox(const MediumEntity& entity) {
                        entity.parameters.GetPoint3("p1", Vec3f::Ones()).cast<double>());
 }
 
-// Sets where a medium is that fills the unit cube.
 void Place(const MediumEntity& entity, const Mat4d& mediumFromGrid, GridMedium* medium) {
     const Mat4d worldFromGrid = entity.worldFromMedium * mediumFromGrid;
     medium->gridFromWorld = worldFromGrid.inverse();
@@ -136,8 +132,7 @@ GridMedium MakeGrid(const Rgb& sigmaA, const Rgb& sigmaS, float g) {
 // black body of peak 1 for its spectrum, both without normalisation by the integral of y.
 constexpr float kIntegralOfY = 106.856895f;
 
-// Returns nothing for temperatures that emit nothing. `coldest` and `hottest` are values of the
-// grid.
+// Returns nothing for temperatures without emission. `coldest` and `hottest` are of the grid.
 template <typename Field>
 std::optional<Temperatures> ReadTemperatures(const MediumEntity& entity, Field field, float coldest,
                                              float hottest) {
@@ -210,7 +205,6 @@ GridMedium ReadCloud(const MediumEntity& entity, GridMedium medium) {
     return medium;
 }
 
-// Sets where the unit cube is in a grid.
 void PlaceVoxels(const Mat4d& voxelFromUnit, SparseGrid* grid) {
     grid->scale = voxelFromUnit.topLeftCorner<3, 3>().cast<float>();
     grid->offset = voxelFromUnit.topRightCorner<3, 1>().cast<float>();

@@ -35,7 +35,6 @@ class MediumStack {
         if (count == kMost) std::shift_left(media.begin(), media.end(), 1), --count;
         media[size_t(count++)] = medium;
     }
-    // Leaves the medium, if it has been entered.
     void Leave(int medium) {
         const auto end = media.begin() + count;
         const auto found = std::find(std::reverse_iterator(end), media.rend(), medium);
@@ -51,8 +50,7 @@ class MediumStack {
 };
 
 struct MediumTable {
-    // The media on both sides of a shape; if they are the same, the ray stays in its own medium
-    // (pbrt-v3).
+    // The media on both sides of a shape; if they are the same, the ray stays in its own (pbrt-v3).
     struct Sides {
         int inside = kVacuum, outside = kVacuum;
     };
@@ -82,7 +80,6 @@ struct MediumTable {
         return current;
     }
 
-    // Returns whether one of them emits light.
     bool Emit() const;
 
     // Returns in which channels nothing gets through the medium if it is infinite.

@@ -41,7 +41,6 @@ class Bytes {
     FileLoc place;
 };
 
-// A grid as the head of the file describes it.
 struct Entry {
     std::string_view name = {}, packed = {};
     uint64_t size = 0, packedSize = 0;
@@ -101,7 +100,6 @@ void CheckKind(const Bytes& file, const Entry& entry) {
     if (entry.kind != 0 && entry.kind != kFog) file.Fail(owner + " is no fog volume");
 }
 
-// Returns the bytes of the grid; `unpacked` holds them if need be.
 std::string_view Unpack(const Bytes& file, const Entry& entry, std::unique_ptr<char[]>* unpacked) {
     enum { kPlain, kZip, kBlosc };
     if (entry.codec == kBlosc)
@@ -258,7 +256,6 @@ class TreeReader {
         return value;
     }
 
-    // Sets the bricks of a cube, given in bricks.
     void Fill(const Vec3i& origin, int side, float value) {
         const Vec3i low = (origin - first).cwiseMax(0);
         const Vec3i high = (origin - first + Vec3i::Constant(side)).cwiseMin(result.grid.size);

@@ -2,9 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <filesystem>
-
 #include "renderer/base/math.h"
+#include "renderer/files/file_io.h"
 #include "stopping/base/input_file.h"
 
 namespace lull {
@@ -30,12 +29,6 @@ void DecodeBytes(Image* image) {
 }
 
 namespace {
-
-std::string ExtensionOf(const std::string& filename) {
-    std::string extension = std::filesystem::path(filename).extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
 
 // Returns whether a file of that name holds sRGB unless told otherwise. pbrt-v3 knows .png and
 // .tga; the others it cannot read, and they are of the same nature.
@@ -74,7 +67,6 @@ Wrap GetWrap(const TextureInput& input, const char* parameter) {
     return Wrap::Repeat;
 }
 
-// Reads which channels the texture is made of.
 TextureChannels GetChannels(const TextureInput& input, bool isFloat) {
     if (!isFloat) return TextureChannels::Rgb;
     const std::string channel = input.entity.parameters.GetString("channel", "");

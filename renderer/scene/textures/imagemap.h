@@ -120,8 +120,7 @@ inline Rgb BilinearRgb(const Image& image, const Vec2f& st, Wrap wrapS, Wrap wra
     });
 }
 
-// Returns the texel at a point of the unit square, its first row at st.y = 0; linear, alpha
-// ignored.
+// Returns the texel at a point of the unit square, the first row at 0; linear, without alpha.
 inline Rgb NearestRgb(const Image& image, const Vec2f& st) {
     const auto index = [](float s, int n) { return std::clamp(int(s * float(n)), 0, n - 1); };
     return Visit(image.texels, [&](const auto& texels) {
@@ -173,10 +172,9 @@ T Evaluate(const ImageMap<T>& map, const TextureTable&, const TextureContext& c)
 // sRGB-encoded; by default as its extension suggests) or, of pbrt-v4, "encoding" ("sRGB", "linear"
 // or "gamma" and an exponent, which PNG files heed), "scale" (after linearisation), "invert" (after
 // that), "channel" (of a float texture: "red", "green", "blue", "alpha" or, as in pbrt-v4, "mean or
-// alpha" instead of the luminance), "wrap" ("repeat",
-// "black", "clamp", "mirrored"; "wrapt" for the second axis alone) and the mapping. "trilinear" and
-// "maxanisotropy" have no effect: the finest level is interpolated. pbrt-v3's grey substitutes an
-// image that cannot be read.
+// alpha" instead of the luminance), "wrap" ("repeat", "black", "clamp", "mirrored"; "wrapt" for the
+// second axis alone) and the mapping. "trilinear" and "maxanisotropy" have no effect: the finest
+// level is interpolated. pbrt-v3's grey substitutes unreadable images.
 template <typename T>
 Made<T, ImageMap<T>> MakeImageMap(const TextureInput& input);
 

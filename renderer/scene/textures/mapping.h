@@ -31,7 +31,6 @@ struct CylindricalMapping {
     Eigen::Matrix4f textureFromWorld;
 };
 
-// Projects the world-space point.
 struct PlanarMapping {
     Vec3f vs, vt;
     Vec2f offset;
@@ -41,8 +40,7 @@ using Mapping2D =
     std::variant<UvMapping, SphericalMapping, CylindricalMapping, PlanarMapping, AffineUvMapping>;
 
 // Reads "mapping" and its parameters; pbrt-v3's defaults. "uvaffine" has the six numbers of
-// "uvtransform", two rows of three. The plain uv mapping substitutes an
-// unknown one.
+// "uvtransform", two rows of three. Plain uv substitutes unknown ones.
 Mapping2D MakeMapping2D(const TextureInput& input);
 
 inline SurfaceNeeds Needs(const Mapping2D& mapping) {

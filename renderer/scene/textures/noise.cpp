@@ -33,7 +33,6 @@ constexpr float kGradients[16][3] = {
 
 uint8_t Permute(int i) { return kPermutation[i & 255]; }
 
-// Splits a coordinate into its lattice cell and the place in it.
 struct Cell {
     int i;
     float d;
@@ -55,7 +54,6 @@ float Ramp(int x, int y, int z, float dx, float dy, float dz) {
 // Eases t so that first and second derivatives vanish at lattice points (Perlin 2002, eq. 1b).
 float Ease(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
-// Returns how many octaves samples of that distance resolve.
 float ResolvedOctaves(float spacing2, int octaves) {
     return spacing2 > 0 ? std::clamp(-1 - 0.5f * std::log2(spacing2), 0.f, float(octaves))
                         : float(octaves);
@@ -67,8 +65,7 @@ float Fade(float fraction) {
     return t * t * (3 - 2 * t);
 }
 
-// pbrt-v3's spline has nine control colours and six segments, but only the first five colours
-// are ever used (see Evaluate).
+// Of pbrt-v3's nine control colours only the first five are ever used (see Evaluate).
 constexpr float kColors[5][3] = {
     {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f}, {0.58f, 0.58f, 0.60f},
     {0.50f, 0.50f, 0.50f}, {0.60f, 0.59f, 0.58f},
@@ -135,9 +132,8 @@ Rgb Evaluate(const Marble& marble, const TextureTable&, const TextureContext& c)
     float t = (0.5f + 0.5f * std::sin(angle)) * kSegments;
     if (!(t >= 0)) t = 0;  // NaN of an infinite coordinate
 
-    // pbrt-v3 limits the segment to the first two instead of to the last, so that t runs up to 5
-    // on the second and the cubic is extrapolated: to 40 and more. Materials made for pbrt-v3
-    // show it, so it is kept.
+    // pbrt-v3 limits the segment to the first two instead of to the last, so that t runs up to 5 on
+    // the second and the cubic is extrapolated: to 40 and more. Materials made for pbrt-v3 show it.
     const int first = std::min(1, int(t));
     t -= float(first);
 

@@ -17,7 +17,6 @@ TextureHandle<T> MakeConstant(const TextureInput& input) {
     return {GetValue<T>(input, "value", 1)};
 }
 
-// Multiplies two textures.
 template <typename T>
 struct Scale {
     TextureHandle<T> tex1, tex2;
@@ -39,7 +38,6 @@ Made<T, Scale<T>> MakeScale(const TextureInput& input) {
     return Scale<T>{tex1, tex2};
 }
 
-// Interpolates between two textures by a third.
 template <typename T>
 struct MixTexture {
     TextureHandle<T> tex1, tex2;

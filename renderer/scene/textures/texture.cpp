@@ -75,7 +75,6 @@ constexpr TextureKind<SpectrumTextureNode> kColorKinds[] = {
     {"uv", AddNode<MakeUvColors>},
 };
 
-// Makes one texture, or a substitute for one of an unsupported kind.
 template <typename Node>
 TextureHandle<TypeOf<Node>> MakeTexture(const TextureInput& input, Nodes<Node>* nodes) {
     const TextureEntity& entity = input.entity;
@@ -95,7 +94,6 @@ TextureHandle<TypeOf<Node>> MakeTexture(const TextureInput& input, Nodes<Node>* 
     return {Filled<TypeOf<Node>>(1)};
 }
 
-// Finds the texture that a parameter names among those made so far.
 template <typename T>
 TextureHandle<T> Resolve(const std::vector<TextureHandle<T>>& made, const Parameter& parameter,
                          const TextureRef& ref) {
@@ -126,7 +124,6 @@ std::optional<TextureHandle<T>> Find(const std::vector<TextureHandle<T>>& made,
     return std::nullopt;
 }
 
-// Returns the inputs of the mapping and of the textures that a texture is made of.
 template <typename Node>
 SurfaceNeeds NodeNeeds(const Node& node, const TextureTable& table) {
     return Visit(node.kind, [&](const auto& kind) {

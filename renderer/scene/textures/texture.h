@@ -1,7 +1,6 @@
 // Evaluates textures: functions from a point of a surface to a float or an RGB.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "renderer/base/math.h"
@@ -38,8 +37,7 @@ struct SpectrumTextureNode;
 class TextureTable {
   public:
     // Makes every texture of the description; warns of parameters without effect. Constant 1
-    // substitutes an unsupported kind, pbrt-v3's grey an unreadable image. Errors are kept in the
-    // warnings.
+    // substitutes an unsupported kind, pbrt-v3's grey an unreadable image.
     TextureTable(const Description&, Warnings&);
     TextureTable();  // empty
     ~TextureTable();
@@ -64,7 +62,6 @@ class TextureTable {
     SurfaceNeeds Needs(const FloatTexture&) const;
     SurfaceNeeds Needs(const SpectrumTexture&) const;
 
-    // Returns the memory taken by images, in bytes.
     size_t Bytes() const { return imageBytes; }
 
   private:

@@ -22,7 +22,6 @@ bool AllGrey(const std::vector<T>& texels, int channels) {
     return true;
 }
 
-// Maps every pixel of an image, its rows in reverse order; `convert` reads a pixel and writes one.
 template <typename Out, int Count, typename T, typename Convert>
 Texels<Out, Count> Flip(const Image& image, const std::vector<T>& texels, const Convert& convert) {
     Texels<Out, Count> out;
@@ -51,8 +50,7 @@ std::optional<Rgb> FindUniform(const Texels<T, Count>& texels,
     return Rgb(value(0), value(Count > 1 ? 1 : 0), value(Count > 1 ? 2 : 0));
 }
 
-// Sets values that are not finite to 0, as one would darken all that are filtered with it. Returns
-// how many.
+// Sets values that are not finite to 0, as filters would spread them. Returns how many.
 size_t ReplaceNonFinite(TextureImage* image) {
     size_t count = 0;
     std::visit(
@@ -67,7 +65,6 @@ size_t ReplaceNonFinite(TextureImage* image) {
     return count;
 }
 
-// Returns a grey image of one channel, white where there is none such.
 Image ExtractChannel(const Image& image, TextureChannels wanted) {
     const bool hasColor = image.channels >= 3, hasAlpha = image.channels % 2 == 0;
     const bool wantsAlpha =
@@ -95,7 +92,6 @@ Image ExtractChannel(const Image& image, TextureChannels wanted) {
     return grey;
 }
 
-// Returns whether the image has an alpha that is not 1 all over.
 bool HasAlpha(const Image& image) {
     if (image.channels % 2 != 0) return false;
     return std::visit(
@@ -108,7 +104,6 @@ bool HasAlpha(const Image& image) {
         image.texels);
 }
 
-// Returns the mean of the linearised colours, in one channel.
 template <typename Linear>
 Image MeanOf(const Image& image, const Linear& linear) {
     std::vector<float> means;

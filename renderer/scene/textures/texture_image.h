@@ -21,10 +21,9 @@ struct Texels {
     std::vector<T> values;  // rows from the bottom, channels interleaved
 };
 
-// An image ready for look-ups. The first row is the lowest, since texture space has (0, 0) at
-// the lower left. pbrt-v3 resamples images to powers of two first; here they keep their size and
-// the type of their texels: 8-bit ones are decoded by a table, halves by the processor. Only half
-// and float texels that have to be linearised are converted beforehand.
+// An image ready for look-ups. The first row is the lowest, since texture space has (0, 0) at the
+// lower left. pbrt-v3 resamples images to powers of two first; here they keep their size and the
+// type of their texels: 8-bit ones are decoded by a table, halves by the processor.
 struct TextureImage {
     int width = 0, height = 0;
     std::variant<Texels<uint8_t, 1>, Texels<uint8_t, 3>, Texels<Half, 1>, Texels<Half, 3>,
@@ -48,8 +47,7 @@ enum class TextureChannels { Rgb, Luminance, Red, Green, Blue, Alpha, MeanOrAlph
 // The exponent that says that texels are sRGB-encoded.
 inline constexpr float kSrgb = 0;
 
-// Makes a TextureImage of an image as it was read, whose texels are to be raised to the power of
-// `gamma`, or kSrgb.
+// Makes a TextureImage of an image as read, whose texels are to be raised to `gamma`, or kSrgb.
 TextureImage MakeTextureImage(const Image& image, float gamma, TextureChannels channels);
 
 // Shares images between textures.
@@ -61,7 +59,6 @@ class TextureImages {
     std::shared_ptr<const TextureImage> Get(const EmbeddedImage& image, float gamma,
                                             TextureChannels channels);
 
-    // Returns the memory taken by images.
     size_t Bytes() const;
 
   private:
@@ -85,8 +82,7 @@ struct TextureInput {
     Warnings& warnings;
 };
 
-// The result of a maker: a new texture of its kind, or the handle of an equivalent texture or
-// constant.
+// The result of a maker: a new texture, or the handle of an equivalent texture or constant.
 template <typename T, typename Kind>
 using Made = std::variant<TextureHandle<T>, Kind>;
 

@@ -26,7 +26,6 @@ constexpr const char* kHead = "block,spp,noise_seen";
 constexpr const char* kTrackHead = "block,spp,noise_seen,observer,track";
 constexpr int kMostBlocks = 1 << 16, kMostSpp = 1 << 24;
 
-// Takes a whole number from the beginning of a text. Returns whether it is there.
 bool TakeNumber(std::string_view* text, int* number) {
     const auto [rest, error] = std::from_chars(text->data(), text->data() + text->size(), *number);
     text->remove_prefix(size_t(rest - text->data()));
@@ -48,7 +47,6 @@ bool TakeTrack(std::string_view* text, SingleAnswer* answer) {
     return text->empty() || (TakeNumber(text, &answer->track) && answer->track >= 1);
 }
 
-// Throws std::invalid_argument with the reason.
 SingleAnswer ParseAnswer(const std::string& line, bool hasTrack) {
     SingleAnswer answer;
     std::string_view rest = line;
@@ -132,7 +130,6 @@ double Abscissa(double number, bool isProbability) {
     return std::log(p / (1 - p));
 }
 
-// Numbers of a rule for a block by spp, which increase.
 struct Curve {
     std::vector<double> logSpp = {}, values = {};
 
@@ -161,7 +158,6 @@ Curve CurveOf(const RuleOutcome& outcome, int end, bool isProbability) {
     return curve;
 }
 
-// A rule's runs over all blocks.
 struct RuleRun {
     std::string rule;
     bool isKnown = false;  // whether its stops need no recording
@@ -206,7 +202,6 @@ struct Asked {
     double weight = 1;
 };
 
-// Lets the answers of a track count as one. Returns how many tracks there are.
 int WeighTracks(std::vector<Asked>* asked) {
     std::map<int, int> counts;
     for (const Asked& one : *asked)

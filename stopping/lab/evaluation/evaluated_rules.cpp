@@ -60,8 +60,7 @@ Signals RecordedSignals(const Rule& rule, const BlockRecording& recording, int i
 
 namespace {
 
-// Adds rivals; the settings of those that go on for longer than recordings are chosen on extended
-// recordings as well.
+// Adds rivals; settings of those that outlast recordings are chosen on extended ones as well.
 void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBlock> extended,
                const RulesToEvaluate& wanted, std::vector<EvaluatedRule>* rules) {
     const auto run = [&](std::span<const LabelledBlock> on) {
@@ -79,7 +78,6 @@ void AddRivals(std::span<const LabelledBlock> blocks, std::span<const LabelledBl
 
 std::string Stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
-// Returns the threshold of a rule's number; 0 where a recording has no such numbers.
 double ThresholdOf(const std::string& rule, const RuleContext& context) {
     const RecordedRule* entry = FindRecordedRule(rule);
     return entry && entry->replay == Replay::Decides ? ParseRule(rule, context).threshold : 0;
@@ -102,7 +100,6 @@ EvaluatedRule EvaluateFile(const std::string& path, std::span<const LabelledBloc
     return {Stem(path) + (clipped ? ", clipped" : ""), "", Simulate(blocks, simulator)};
 }
 
-// Marks the blocks that a model was trained on.
 void MarkSeen(const std::map<std::string, std::vector<int>>& trainedOn, EvaluatedRule* rule) {
     for (ViewpointOutcome& viewpoint : rule->viewpoints) {
         const auto known = trainedOn.find(viewpoint.name);
@@ -112,7 +109,6 @@ void MarkSeen(const std::map<std::string, std::vector<int>>& trainedOn, Evaluate
     }
 }
 
-// Returns the blocks that the model of a rule was trained on; none of other rules.
 std::map<std::string, std::vector<int>> TrainingBlocksOf(const std::string& rule,
                                                          const RuleContext& context) {
     const RuleEntry* entry = FindRule(rule);
@@ -188,7 +184,6 @@ std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> block
 
 namespace {
 
-// Returns the rules with one threshold that can be run on the recorded data of the blocks.
 std::vector<const RecordedRule*> RivalRules(std::span<const LabelledBlock> blocks) {
     const bool haveHalves = std::ranges::all_of(
         blocks, [](const LabelledBlock& block) { return HasHalves(*block.recording); });
@@ -218,7 +213,16 @@ std::vector<double> SettingsOf(const RecordedRule& rule) {
 // Runs a setting over block number `index`; without verdicts if `brief`.
 using Run = std::function<RuleOutcome(size_t index, double setting, bool brief)>;
 
-// Returns costs[viewpoint][setting]. `begins` says where viewpoints begin in the blocks.
+ViewpointOutcome OutcomeOf(std::span<const LabelledBlock> blocks, std::span<const size_t> begins,
+                           size_t v, double setting, const Run& run, bool brief) {
+    ViewpointOutcome viewpoint{.name = blocks[begins[v]].viewpoint, .setting = TextOf(setting)};
+    for (size_t i = begins[v]; i < begins[v + 1]; ++i)
+        viewpoint.blocks.push_back({.human = blocks[i].human,
+                                    .outcome = run(i, setting, brief),
+                                    .block = blocks[i].block});
+    return viewpoint;
+}
+
 std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
                                        std::span<const size_t> begins,
                                        std::span<const double> settings, const Run& run,
@@ -226,19 +230,13 @@ std::vector<std::vector<double>> Costs(std::span<const LabelledBlock> blocks,
     std::vector<std::vector<double>> costs;
     for (size_t v = 0; v + 1 < begins.size(); ++v) {
         std::vector<double>& row = costs.emplace_back();
-        for (const double setting : settings) {
-            ViewpointOutcome viewpoint{.name = blocks[begins[v]].viewpoint};
-            for (size_t i = begins[v]; i < begins[v + 1]; ++i)
-                viewpoint.blocks.push_back(
-                    {.human = blocks[i].human, .outcome = run(i, setting, true)});
-            row.push_back(CostOf(viewpoint, chooseBy, grid));
-        }
+        for (const double setting : settings)
+            row.push_back(CostOf(OutcomeOf(blocks, begins, v, setting, run, true), chooseBy, grid));
     }
     return costs;
 }
 
-// Returns the setting of the least mean cost over all viewpoints but `left` (-1: none is left out),
-// the first among equals.
+// Returns the first setting of the least mean cost over all viewpoints but `left` (-1: none).
 double Best(const std::vector<std::vector<double>>& costs, std::span<const double> settings,
             int left) {
     std::vector<double> sums(settings.size(), 0);
@@ -253,19 +251,12 @@ EvaluatedRule EvaluateRival(const std::string& name, std::span<const LabelledBlo
                             const Run& run, ChooseBy chooseBy, int grid) {
     const auto costs = Costs(blocks, begins, settings, run, chooseBy, grid);
     EvaluatedRule rival{.name = name, .setting = TextOf(Best(costs, settings, -1))};
-    for (size_t v = 0; v + 1 < begins.size(); ++v) {
-        const double setting = Best(costs, settings, int(v));
-        ViewpointOutcome& viewpoint = rival.viewpoints.emplace_back(
-            ViewpointOutcome{.name = blocks[begins[v]].viewpoint, .setting = TextOf(setting)});
-        for (size_t i = begins[v]; i < begins[v + 1]; ++i)
-            viewpoint.blocks.push_back({.human = blocks[i].human,
-                                        .outcome = run(i, setting, false),
-                                        .block = blocks[i].block});
-    }
+    for (size_t v = 0; v + 1 < begins.size(); ++v)
+        rival.viewpoints.push_back(
+            OutcomeOf(blocks, begins, v, Best(costs, settings, int(v)), run, false));
     return rival;
 }
 
-// Runs a rule over recordings, each of which it reads once.
 Run MakeRun(std::span<const LabelledBlock> blocks, const RecordedRule& entry) {
     if (entry.replay == Replay::RanAlong)
         return [=](size_t index, double setting, bool brief) {
@@ -311,8 +302,7 @@ constexpr int kStep = 20;  // spp between constants
 
 int SppOf(size_t constant) { return kStep * int(constant + 1); }
 
-// Returns the viewpoint as it is where all of its blocks stop at one spp; without verdicts if
-// `brief`.
+// Returns the viewpoint where all of its blocks stop at one spp; without verdicts if `brief`.
 ViewpointOutcome StoppedAt(const ViewpointOutcome& viewpoint, int spp, int grid, bool brief) {
     ViewpointOutcome result{.name = viewpoint.name, .setting = fmt::format("{}", spp)};
     for (const BlockOutcome& block : viewpoint.blocks)
@@ -330,7 +320,6 @@ std::vector<double> CostsOf(const ViewpointOutcome& viewpoint, ChooseBy chooseBy
     return costs;
 }
 
-// Returns the spp of the least sum of costs, the first among equals.
 int BestOf(const std::vector<double>& costs) {
     return SppOf(size_t(std::ranges::min_element(costs) - costs.begin()));
 }

@@ -14,8 +14,7 @@
 
 namespace lull {
 
-// Lists how stopping rules (rules/rule_table.h) run on recordings, and at which thresholds they are
-// compared.
+// Lists how stopping rules (rules/rule_table.h) run on recordings, and their compared thresholds.
 
 // Contents of a recording that a rule needs.
 enum class Replay {
@@ -28,13 +27,11 @@ enum class Replay {
 struct RecordedRule {
     std::string_view name;  // as in RuleTable()
     Replay replay;
-    // Of a rule that decides: the channel of its number, the root mean square of its values; null:
-    // its inputs (Rule::inputs).
+    // Of a rule that decides: the channel of its number, by root mean square; null: Rule::inputs.
     const char* channel = nullptr;
     // Thresholds of curves, from where it stops at once to where it hardly ever does; empty: none.
     std::span<const double> curve = {};
-    // For the choice of the best one: all between them in steps of 1 %, or those at which it
-    // RanAlong. Both 0: none is chosen.
+    // For the choice of the best: all between them in steps of 1 %, or those it RanAlong. 0: none.
     double largest = 0, least = 0;
 };
 
@@ -44,8 +41,7 @@ std::span<const RecordedRule> RecordedRules();
 // Returns the entry of a text NAME[:ARGUMENT]; null if there is no such rule.
 const RecordedRule* FindRecordedRule(std::string_view text);
 
-// Returns whether record after record has what a rule measures, which ParseRule() or LearnedRule()
-// has made.
+// Returns whether record after record has what a rule measures.
 bool HasRecordedSignals(const Rule& rule);
 
 // Returns what such a rule measures, from record i. Throws std::invalid_argument for features that
@@ -64,8 +60,7 @@ EvaluatedRule EvaluateThresholds(const std::string& path, const std::string& hum
                                  const std::vector<ThresholdsRow>& people, int grid,
                                  const WarningSink& warn);
 
-// Criterion for the best setting of a rule: the least mean error of the thresholds, or the least
-// critical error at 2 %.
+// The best setting of a rule has the least mean error of the thresholds, or critical error at 2 %.
 enum class ChooseBy { AbsoluteError, CriticalError };
 
 // Which rules are judged on recorded blocks.
@@ -88,16 +83,14 @@ std::vector<EvaluatedRule> EvaluateOnBlocks(std::span<const LabelledBlock> block
 
 // Gives each simple rule the best chance: its setting is chosen on other viewpoints.
 
-// Returns that error of a viewpoint, in spp or a share in [0, 1]. `grid` is the step of critical
-// errors, in spp.
+// Returns that error, in spp or a share in [0, 1]. `grid` is the step of critical errors, in spp.
 double CostOf(const ViewpointOutcome& viewpoint, ChooseBy, int grid);
 
-// Runs the rules over recorded blocks (grouped by viewpoint), each viewpoint
-// with the setting that does best on the others; of equally good ones the one that takes the fewest
-// samples. A rule has the best setting on all viewpoints, for use on new ones: a threshold, to
-// three digits. Thresholds are RecordedRule's. Rules that compare halves are left out where a block
-// was recorded without (HasHalves()). Throws std::invalid_argument if there are fewer than two
-// viewpoints.
+// Runs the rules over recorded blocks (grouped by viewpoint), each viewpoint with the setting that
+// does best on the others; of equally good ones the one that takes the fewest samples. A rule has
+// the best setting on all viewpoints, for use on new ones: a threshold, to three digits. Thresholds
+// are RecordedRule's. Rules that compare halves are left out where a block was recorded without
+// (HasHalves()). Throws std::invalid_argument for fewer than two.
 std::vector<EvaluatedRule> EvaluateRivals(std::span<const LabelledBlock> blocks, ChooseBy chooseBy,
                                           int grid);
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -23,7 +22,6 @@ double MeanOf(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-// Collects verdicts and the observers' verdicts at the same spp.
 struct Verdicts {
     std::vector<float> scores;
     std::vector<char> labels;                      // whether people see noise
@@ -57,7 +55,6 @@ void AddMeans(const ViewpointOutcome& viewpoint, const ScoreOptions& options, Sc
             CriticalError(viewpoint.blocks, options.margins[i], options.grid);
 }
 
-// Returns the critical errors of the blocks, by viewpoint.
 std::vector<std::vector<double>> ErrorsOfBlocks(std::span<const ViewpointOutcome> viewpoints,
                                                 double margin, int grid) {
     std::vector<std::vector<double>> errors;

@@ -30,12 +30,11 @@ struct ProbitFit {
     double logLikelihood = 0;  // natural, <= 0
 };
 
-// Fits the probability of a yes, the distribution function of the normal distribution at
-// `rows` * coefficients, to answers of 0 and 1, one a row. Where answers can be told apart without
-// an error coefficients are large, and the likelihood is within 1e-6 of its supremum. Coefficients
-// of columns that say nothing are of no meaning. Throws std::invalid_argument if there are no rows,
-// sizes do not fit or a number is not finite. Each answer counts as so many as its weight, > 0,
-// says; without weights as one.
+// Fits the probability of a yes, the distribution function of the normal distribution at `rows` *
+// coefficients, to answers of 0 and 1, one a row. Where answers can be told apart without an error
+// coefficients are large, and the likelihood is within 1e-6 of its supremum. Throws
+// std::invalid_argument for no rows, wrong sizes and numbers that are not finite. Each answer
+// counts as so many as its weight, > 0, says; without weights as one.
 ProbitFit FitProbit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& answers,
                     const Eigen::VectorXd& weights = {});
 
@@ -46,20 +45,17 @@ std::optional<double> RankCorrelation(std::span<const double> a, std::span<const
 
 // Measures how well numbers tell two classes apart.
 
-// Returns the area under the curve of the receiver operating characteristic: the probability that
-// a sample with the label 1 has a higher score than one with 0; equal scores count one half. 0.5
-// if there are no two classes. Throws std::invalid_argument if the lengths differ or a score is
-// NaN.
+// Returns the area under the curve of the receiver operating characteristic: the probability that a
+// sample with the label 1 has a higher score than one with 0; equal scores count one half. 0.5 if
+// there are no two classes. Throws std::invalid_argument if lengths differ or for NaN.
 double AreaUnderRoc(std::span<const float> scores, std::span<const char> labels);
 
-// Verdict of a rule on a block at some spp.
 struct BlockVerdict {
     int spp = 0;
     double score = 0;  // the larger, the noisier; comparable between blocks; may be infinite
     bool noisy = false;
 };
 
-// Stop and verdicts of a rule on a block.
 struct RuleOutcome {
     int stop = 0;  // spp; kMostShownSpp where it never stopped
     // Whether the recording ends below the cap and the rule had not stopped the block there: it
@@ -130,8 +126,7 @@ struct Scores {
     // those where both differ, and of the means of the viewpoints.
     std::optional<double> rankWithin = {}, rankBetween = {};
     // Of all verdicts together, against noise seen below the human threshold; nothing where all
-    // verdicts are on one side of it. The accuracy is the mean of both classes' accuracies, which
-    // balances them.
+    // verdicts are on one side of it. The accuracy is the mean of both classes'.
     std::optional<double> auc, accuracy;
 };
 Scores Score(std::span<const ViewpointOutcome> viewpoints, const ScoreOptions& options);

@@ -25,13 +25,11 @@ RuleOutcome MakeOutcome(const BlockRecording& recording, int spp) {
     return {.stop = end, .open = end < kMostShownSpp};
 }
 
-// Returns whether a verdict is due: at every second pass, so that they are evenly spaced; at every
-// record where these come at any spp.
+// Verdicts are due at every second pass, evenly; at every record where these come at any spp.
 bool HasVerdict(const LabelledBlock& block, int spp) {
     return block.passSpp == 0 || (spp - block.passSpp) % (2 * block.passSpp) == 0;
 }
 
-// Adds the verdicts of a rule of which only the stop is known: noisy before it.
 void AddVerdictsOfStop(const LabelledBlock& block, RuleOutcome* outcome) {
     for (const int spp : block.recording->spp)
         if (HasVerdict(block, spp))
@@ -40,7 +38,6 @@ void AddVerdictsOfStop(const LabelledBlock& block, RuleOutcome* outcome) {
                                          .noisy = outcome->open || outcome->stop > spp});
 }
 
-// Adds the verdicts of a rule from its numbers, one for each record.
 void AddVerdicts(const LabelledBlock& block, std::span<const double> numbers, double threshold,
                  RuleOutcome* outcome) {
     const std::vector<int>& spp = block.recording->spp;
@@ -71,8 +68,7 @@ void CheckLookedAt(std::span<const Decision> decisions, const LabelledBlock& blo
         "multiples of 20 or 40 spp, or at most 1.4 times the spp of the one before");
 }
 
-// Returns PeakOverLimit() of record i. Older recordings have no peak noise, but root mean squares,
-// which give a lower bound.
+// Returns PeakOverLimit() of record i; of older recordings a lower bound by root mean squares.
 double PeakIn(const BlockRecording& recording, int i, const Rule& rule) {
     if (rule.peak.most <= 0 || !HasHalves(recording)) return 0;
     const auto values = [&](const char* channel) { return recording.Values(i, channel); };
@@ -91,7 +87,6 @@ std::vector<double> NumbersOf(std::span<const Decision> decisions) {
     return numbers;
 }
 
-// Returns the end of the pass, or the record where these come at any spp, that reaches `spp`.
 int PassReaching(int spp, const LabelledBlock& block) {
     if (block.passSpp > 0) return (spp + block.passSpp - 1) / block.passSpp * block.passSpp;
     const std::vector<int>& recorded = block.recording->spp;
@@ -251,7 +246,6 @@ bool HasOpen(const EvaluatedRule& rule) {
     return false;
 }
 
-// Marks the stops that lie beyond the ends of recordings. Outcomes are in the order of the blocks.
 void MarkOpen(std::span<const LabelledBlock> blocks, EvaluatedRule* rule) {
     size_t next = 0;
     for (ViewpointOutcome& viewpoint : rule->viewpoints)

@@ -48,8 +48,7 @@ RuleOutcome SimulateRule(const LabelledBlock& block, const Rule& rule);
 // Stops at `spp`, wherever the recording ends.
 RuleOutcome SimulateStop(const LabelledBlock& block, int spp);
 
-// Returns the threshold of a block in the rows of the file at `path`. Throws std::runtime_error if
-// there is none.
+// Returns a block's threshold in the rows of the file `path`. Throws std::runtime_error if none.
 int ThresholdIn(std::span<const ThresholdsRow> rows, const std::string& path,
                 const LabelledBlock& block);
 

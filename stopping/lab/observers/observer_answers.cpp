@@ -52,7 +52,6 @@ std::optional<double> GetOptional(const Json& object, const char* key) {
     return object.at(key).get<double>();
 }
 
-// Returns one of the words that the page knows, or "".
 std::string GetWord(const Json& object, const char* key, std::initializer_list<const char*> words) {
     if (!object.contains(key) || !object.at(key).is_string()) return "";
     const std::string word = object.at(key).get<std::string>();
@@ -131,7 +130,6 @@ BlockAnswer ReadAnswer(const Json& json, const ObserverAnswers& head, int blocks
     return answer;
 }
 
-// Checks that the thresholds are the means of the answers.
 void CheckThresholds(const ObserverAnswers& answers) {
     std::vector<double> sums(answers.thresholds.size(), 0), counts(sums), asked(sums);
     for (const BlockAnswer& answer : answers.answers) {

@@ -1,5 +1,4 @@
-// Reads the answers of one observer on one viewpoint: the JSON files that the page of `lull study`
-// saves.
+// Reads an observer's answers on one viewpoint: the JSON files that the page of `lull study` saves.
 #pragma once
 
 #include <optional>
@@ -49,9 +48,8 @@ struct ObserverAnswers {
     bool operator==(const ObserverAnswers& other) const;  // but for the file
 };
 
-// Reads answers from a text. Throws std::runtime_error with the reason: no JSON, not made by
-// the page, or contradictory. Names have no control characters, and can stand in thresholds
-// files.
+// Reads answers from a text. Throws std::runtime_error with the reason: no JSON, not made by the
+// page, or contradictory. Names can stand in thresholds files.
 ObserverAnswers ParseAnswers(std::string_view text);
 
 // Reads a file. Throws std::runtime_error, without the file's name.

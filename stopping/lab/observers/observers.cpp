@@ -23,7 +23,6 @@ constexpr double kLooseOctaves = 1;    // and a deviation of one that is more
 constexpr double kLeastGamma = 1.8, kMostGamma = 2.6, kMostZoomError = 0.06;
 constexpr double kLeastPixelsPerDegree = 20, kMostPixelsPerDegree = 90;
 
-// Moves answers for which `reasonOf` has a reason to `refused`.
 template <typename ReasonOf>
 void RefuseSome(std::vector<ObserverAnswers>* answers, std::vector<RefusedAnswers>* refused,
                 const ReasonOf& reasonOf) {
@@ -116,7 +115,6 @@ void RefuseDoubles(std::vector<ObserverAnswers>* answers, std::vector<RefusedAns
     });
 }
 
-// Adds doubts about the display and the viewing conditions.
 template <typename Add>
 void AddDisplayDoubts(const ObserverAnswers& answers, const Add& add) {
     if (answers.tones == "not all") add("could not tell all tones of the display apart");
@@ -129,7 +127,6 @@ void AddDisplayDoubts(const ObserverAnswers& answers, const Add& add) {
         add(fmt::format("saw {:.0f} pixels a degree", *pixels));
 }
 
-// Returns doubts about the answers that count.
 std::string DoubtsOf(const CheckedObserver& judged, double secondsEach) {
     std::string doubts;
     const auto add = [&](const std::string& doubt) {
@@ -176,7 +173,6 @@ CheckedObserver CheckObserver(ObserverAnswers answers, const CollectOptions& opt
     return judged;
 }
 
-// Returns the standard deviation of a sample, nothing for fewer than two values.
 std::optional<double> SampleDeviation(const std::vector<double>& values) {
     if (values.size() < 2) return {};
     double mean = 0, sum = 0;
@@ -199,7 +195,6 @@ BlockConsensus MakeConsensus(const std::vector<double>& spp) {
     return block;
 }
 
-// Makes the viewpoint of observers whose answers count, and notes how far each is from all.
 CollectedViewpoint MakeCollected(const std::vector<CheckedObserver*>& observers) {
     const ObserverAnswers& first = observers.front()->answers;
     CollectedViewpoint viewpoint{.name = first.viewpoint,
@@ -286,7 +281,6 @@ std::string Field(const std::optional<double>& value) {
 }
 std::string Field(const std::optional<int>& value) { return value ? std::to_string(*value) : ""; }
 
-// Returns the data of the display and the observer, for columns from gamma to window.
 std::string ViewingFields(const ObserverAnswers& a) {
     const std::string window = a.windowWidth && a.windowHeight
                                    ? fmt::format("{}x{}", *a.windowWidth, *a.windowHeight)

@@ -14,7 +14,6 @@ struct CollectOptions {
     std::string study = {};     // the id of the only study that is taken; empty: any
 };
 
-// Rejected answers, with the reason.
 struct RefusedAnswers {
     std::string file, reason;
 };
@@ -72,8 +71,7 @@ std::vector<ThresholdsRow> ThresholdsOf(const Collected& collected);
 
 // Writes the answers of observers as CSV tables.
 
-// Returns a CSV with a line of column names: a row for each block. Thresholds are in spp; unknown
-// fields are empty.
+// Returns a CSV with a head line and a row for each block: thresholds in spp; unknown ones empty.
 std::string DetailsCsv(const Collected& collected);
 
 // Returns a CSV with a line of column names and a row for each file of answers: whether it
@@ -83,8 +81,7 @@ std::string ObserversCsv(const Collected& collected);
 
 // Returns the single answers of observers who count, as read by ReadSingleAnswers()
 // (evaluation/answer_scores.h) and `lull evaluate --answers`: for each adjustment, noise seen at
-// the levels that were left, and none at its end, with a number for the adjustment, as these
-// answers are steps on one path. Empty if there is none.
+// the levels that were left, and none at its end, with a number for the adjustment. May be empty.
 std::string SingleAnswersCsv(const Collected& collected, const std::string& viewpoint);
 
 }  // namespace lull

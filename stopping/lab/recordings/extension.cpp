@@ -40,7 +40,6 @@ Law LawOf(std::string_view channel) {
     return channel == "attributes26" ? kFilteredLaw : kConstant;
 }
 
-// The law of one number of a record.
 struct Fit {
     Law law;
     double level = 0, slope = 0;
@@ -48,7 +47,6 @@ struct Fit {
     float At(int spp) const { return float(law.Out(level + slope * law.Abscissa(spp))); }
 };
 
-// Fits a law to one number of the records from `first` on.
 Fit FitLaw(const BlockRecording& recording, size_t first, size_t number, const Law& law) {
     const auto valueOf = [&](size_t i) {
         return law.In(recording.values[i * size_t(kRecordLength) + number]);
@@ -76,7 +74,6 @@ Fit FitLaw(const BlockRecording& recording, size_t first, size_t number, const L
     return fit;
 }
 
-// Returns the laws of all numbers of a record.
 std::vector<Fit> FitAll(const BlockRecording& recording) {
     const double begin = recording.spp.back() / std::exp2(kDoublings);
     const auto from = std::ranges::lower_bound(recording.spp, int(begin));
@@ -91,7 +88,6 @@ std::vector<Fit> FitAll(const BlockRecording& recording) {
     return fits;
 }
 
-// Sets the stops of `cycles` beyond the last pass that was recorded, up to `end`.
 void ExtendCycles(int last, int passSpp, int end, BlockRecording* recording) {
     double product = 0;  // T^2 n
     for (size_t i = 0; i < kCyclesThresholds.size(); ++i) {
@@ -105,7 +101,6 @@ void ExtendCycles(int last, int passSpp, int end, BlockRecording* recording) {
     }
 }
 
-// Returns how far the last two records are apart, in spp.
 int LastStep(const BlockRecording& recording) {
     const size_t count = recording.spp.size();
     return count > 1 ? recording.spp[count - 1] - recording.spp[count - 2] : recording.spp[0];

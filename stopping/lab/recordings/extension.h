@@ -16,11 +16,10 @@
 
 namespace lull {
 
-// Returns the recording with records up to `end` spp, as IsRecorded() spaces them or, where
-// passSpp is 0, as far apart as the last two. Where `cycles` has not stopped at a threshold
-// T, it does where T^2 times the spp equals that at the least threshold at which it has; it
-// never does where there is none. Throws std::invalid_argument for a recording without
-// records.
+// Returns the recording with records up to `end` spp, as IsRecorded() spaces them or, where passSpp
+// is 0, as far apart as the last two. Where `cycles` has not stopped at a threshold T, it does
+// where T^2 times the spp equals that at the least threshold at which it has, if ever. Throws
+// std::invalid_argument for a recording without records.
 BlockRecording ExtendRecording(const BlockRecording& recording, int passSpp, int end);
 
 // Blocks with recordings extended to kMostShownSpp. It can be moved, but not copied.

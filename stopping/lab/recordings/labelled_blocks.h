@@ -1,5 +1,4 @@
-// Joins recorded blocks with the thresholds of people, for networks to learn from and rules to be
-// judged by.
+// Joins recorded blocks with people's thresholds, for networks to learn from and rules to meet.
 #pragma once
 
 #include <functional>
@@ -57,14 +56,12 @@ TrainingSamples MakeSamples(std::span<const LabelledBlock> blocks, const ModelSe
 // Receives warnings for the user, and is called by one thread at a time.
 using WarningSink = std::function<void(const std::string& message)>;
 
-// Reads data sets as one; blocks of a viewpoint can be in several files. Throws std::runtime_error
-// beginning with the file's name.
+// Reads data sets as one; viewpoints can be in several files. Throws std::runtime_error "FILE...".
 std::vector<ViewpointRecording> ReadDatasets(const std::vector<std::string>& paths);
 
 // Joins recordings, which must outlive the result, with the thresholds in the file `human`, less
 // the viewpoints in `without`; tells which have no thresholds. Throws std::runtime_error if no
-// block is left or they do not fit together, or for a name in `without` that is neither recorded
-// nor judged.
+// block is left, they do not fit, or for an unknown name in `without`.
 std::vector<LabelledBlock> ReadLabelledBlocks(const std::vector<ViewpointRecording>& viewpoints,
                                               const std::string& human,
                                               const std::vector<std::string>& without,

@@ -43,7 +43,6 @@ void AppendEntropies(std::span<const double> lightness, int width, int height,
     Append(h2, to);
 }
 
-// Computes a record: all channels in their order.
 void AppendRecord(const BlockView& view, std::vector<float>* to) {
     const std::vector<double> lightness = LightnessOf(view.mean);
     AppendEntropies(lightness, view.width, view.height, to);

@@ -20,8 +20,7 @@ namespace lull {
 // The spp at which the human thresholds end: observers were shown no more.
 inline constexpr int kMostShownSpp = 10000;
 
-// The thresholds at which the rule `cycles`, which remembers pixels, runs along while blocks are
-// recorded.
+// The thresholds at which the rule `cycles`, which remembers pixels, runs along in recordings.
 inline constexpr std::array<double, 13> kCyclesThresholds = {
     0.64, 0.32, 0.16, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015, 0.01, 0.0075, 0.005, 0.0025};
 
@@ -67,7 +66,6 @@ inline constexpr int kRecordLength = [] {
     return length;
 }();
 
-// The history of one block.
 struct BlockRecording {
     std::vector<int> spp;       // of the records, increasing
     std::vector<float> values;  // kRecordLength for each of them, 0 in channels that are absent
@@ -76,8 +74,7 @@ struct BlockRecording {
     std::array<int, kCyclesThresholds.size()> cyclesStops = {};
 
     int Count() const { return int(spp.size()); }
-    // Returns the numbers of one channel in record i. Throws std::invalid_argument for a channel
-    // that the block does not have.
+    // Returns a channel's numbers in record i. Throws std::invalid_argument for one not there.
     std::span<const float> Values(int i, std::string_view channel) const;
 };
 
@@ -89,8 +86,7 @@ void AddPicture(const BlockView& view, BlockRecording* recording);
 // Returns whether a block was recorded with a half of its samples, or has no record yet.
 bool HasHalves(const BlockRecording& recording);
 
-// Returns whether a pass is recorded: all are up to 400 spp, then every second one (counted from
-// the first), and the last.
+// Returns whether a pass is recorded: up to 400 spp all, then every second one, and the last.
 bool IsRecorded(int spp, int passSpp, int cap);
 
 // Records and never votes: "stops" the block at the first pass at or beyond `limit` spp. Blocks
@@ -115,7 +111,6 @@ class BlockRecorder final : public Criterion {
 
 // Reads and writes data sets: HDF5 files of recordings, a group a viewpoint, a group a block in it.
 
-// The recordings of one viewpoint.
 struct ViewpointRecording {
     std::string name;
     int blockCount = 0;  // in the whole image

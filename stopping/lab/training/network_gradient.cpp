@@ -28,8 +28,7 @@ Eigen::MatrixXf GlorotUniform(Eigen::Index outputs, Eigen::Index inputs, Counter
                                         [&] { return float(limit * (2 * random->Uniform() - 1)); });
 }
 
-// Returns orthonormal columns, uniform over all there are: the Q of a Gaussian matrix, where signs
-// make the diagonal of R positive.
+// Returns uniform orthonormal columns: the Q of a Gaussian matrix, the diagonal of R positive.
 Eigen::MatrixXf Orthonormal(Eigen::Index rows, Eigen::Index columns, CounterRandom* random) {
     const Eigen::MatrixXd gauss =
         Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return random->Normal(); });
@@ -173,8 +172,7 @@ LstmTrace<Scalar> RunForward(const LstmWeights<Scalar>& layer, MatrixOf<Scalar> 
     return trace;
 }
 
-// Adds the gradient of a layer, given that of its outputs. Returns that of its inputs, unless they
-// are those of the network.
+// Adds the gradient of a layer, given that of its outputs. Returns its inputs', but the network's.
 template <typename Scalar>
 MatrixOf<Scalar> RunBackward(const LstmWeights<Scalar>& layer, const LstmTrace<Scalar>& trace,
                              const MatrixOf<Scalar>& outputGradient, const MatrixOf<Scalar>* mask,

@@ -1,5 +1,4 @@
-// The weights of a network that is being trained, and how its loss changes with them
-// (back-propagation through time).
+// The weights of a network in training, and its loss's gradient (back-propagation through time).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,41 +11,31 @@
 #include <span>
 #include <vector>
 
+#include "stopping/base/hash.h"
 #include "stopping/network/lstm.h"
 
 namespace lull {
 
-// Makes random numbers that depend only on a seed and a purpose, so that an interrupted training
-// continues with the same ones.
+// Makes random numbers by seed and purpose alone: an interrupted training continues with the same.
 class CounterRandom {
   public:
     // Begins the sequence of a seed and a purpose, given as numbers.
     explicit CounterRandom(uint64_t seed, std::initializer_list<uint64_t> purpose = {})
-        : key(Mix(seed)) {
-        for (uint64_t p : purpose) key = Mix(key ^ Mix(p + 1));
+        : key(MixBits(seed)) {
+        for (uint64_t p : purpose) key = MixBits(key ^ MixBits(p + 1));
     }
 
-    uint64_t Next() { return Mix(key + ++count * kStep); }
+    uint64_t Next() { return MixBits(key + ++count * 0x9e3779b97f4a7c15); }
     // Returns a number in [0, 1), a multiple of 2^-53.
     double Uniform() { return double(Next() >> 11) * 0x1p-53; }
     // Returns an integer in [0, limit), limit > 0.
     uint64_t Below(uint64_t limit) { return uint64_t(Uniform() * double(limit)); }
-    // Returns a number from the standard normal distribution.
     double Normal() {
         const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
         return radius * std::cos(2 * std::numbers::pi * Uniform());
     }
 
   private:
-    static constexpr uint64_t kStep = 0x9e3779b97f4a7c15;
-
-    // Mixes all bits into all others: the finalizer of splitmix64 (Steele, Lea, Flood 2014).
-    static uint64_t Mix(uint64_t x) {
-        x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-        x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-        return x ^ (x >> 31);
-    }
-
     uint64_t key, count = 0;
 };
 
@@ -55,8 +44,7 @@ using MatrixOf = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <typename Scalar>
 using VectorOf = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-// The same as LstmLayer, with the paper's activations: sigmoid, and hard sigmoid for the
-// gates.
+// An LstmLayer with the paper's activations: sigmoid, and hard sigmoid for the gates.
 template <typename Scalar>
 struct LstmWeights {
     MatrixOf<Scalar> kernel, recurrent;
@@ -70,7 +58,6 @@ struct DenseWeights {
     VectorOf<Scalar> bias;
 };
 
-// The weights of a network, or a gradient with respect to them.
 template <typename Scalar>
 struct NetworkWeights {
     std::vector<LstmWeights<Scalar>> lstm;
@@ -97,7 +84,6 @@ struct NetworkWeights {
 // layer, a size is not in [1, 16384], or a layer of more than 2^28 weights.
 NetworkWeights<float> InitialWeights(int inputs, std::span<const int> units, uint64_t seed);
 
-// Returns weights of the same shape, all zero.
 template <typename Scalar>
 NetworkWeights<Scalar> ZerosLike(const NetworkWeights<Scalar>& weights) {
     NetworkWeights<Scalar> zeros = weights;
@@ -105,7 +91,6 @@ NetworkWeights<Scalar> ZerosLike(const NetworkWeights<Scalar>& weights) {
     return zeros;
 }
 
-// Returns the network that has these weights.
 Network MakeNetwork(const NetworkWeights<float>& weights);
 
 // Moves weights against their gradient, each with a step size of its own.

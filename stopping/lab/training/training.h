@@ -23,8 +23,7 @@ struct TrainingOptions {
     uint64_t seed = 0;
     // Lets each viewpoint count the same, however many blocks of it there are.
     bool balanceViewpoints = false;
-    // Weights noisy and noiseless samples as the paper does. Without, all count the same, as all
-    // spp do in the critical error.
+    // Weights noisy and noiseless samples as the paper does. Without, all count the same.
     bool balanceClasses = true;
 };
 
@@ -53,7 +52,6 @@ class Trainer {
     // Trains on the next batch. Throws std::runtime_error if the loss is no longer finite.
     void Step();
     TrainingProgress Progress() const;
-    // Returns the network as it is now.
     Network Result() const { return MakeNetwork(weights); }
 
     // Return and set all that steps have changed. Restore() throws std::runtime_error if `state`
@@ -106,7 +104,6 @@ class TrainingCheckpoint {
     // Restores a training to its saved state; leaves it unchanged where there is none. Throws
     // std::runtime_error if it is the state of another.
     void Restore(size_t training, Trainer* trainer) const;
-    // Returns whether the next writing is due.
     bool IsDue() const;
     // Writes the file, if there is one. Throws as the writer does.
     void Write();

@@ -104,7 +104,6 @@ void AddOutcomes(const Network& network, const ModelSettings& settings,
         viewpoints->push_back(std::move(viewpoint));
 }
 
-// Outcomes of networks on blocks that each of them did not see, or did.
 struct NetworkOutcomes {
     std::string name;
     std::vector<LabelledBlock> blocks = {};

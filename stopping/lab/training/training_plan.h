@@ -22,8 +22,7 @@ struct TrainingPreset {
     TrainingOptions training = {};
 };
 
-// Returns the presets, the default first: "entropy", for the model that ships as the default, and
-// "paper", for Buisine et al. 2021.
+// Returns the presets: "entropy", of the default model, and "paper", of Buisine et al. 2021.
 std::span<const TrainingPreset> TrainingPresets();
 
 struct TrainingPlan {
@@ -60,7 +59,6 @@ struct TrainingEvents {
     std::function<bool()> isCancelled;  // is asked before each step; true ends the training
 };
 
-// Result of a plan.
 struct TrainingResult {
     Network network;  // the last one
     // Outcomes of networks: "each viewpoint left out" and, of the last one, "blocks left out" or,

@@ -77,7 +77,6 @@ TEST(Film, AddressesPixelsOfTheFullImage) {
     EXPECT_EQ(mean[3 * 5], 11);  // the second pixel of the second row
     EXPECT_EQ(mean[3 * 5 + 1], 21);
     EXPECT_EQ(film.SampleCount(), 12);
-    EXPECT_EQ(film.SppImage(), std::vector<float>(12, 1));
 }
 
 TEST(Film, ExtractsRectanglesIntoBuffersOfAnyFormerSize) {
@@ -147,7 +146,6 @@ TEST(Film, KeepsTheSameByTiles) {
         EXPECT_EQ(byTile.RejectedCount(), byPixel.RejectedCount());
         EXPECT_EQ(byTile.SampleCount(), byPixel.SampleCount());
         EXPECT_EQ(byTile.MeanImage(), byPixel.MeanImage());
-        EXPECT_EQ(byTile.SppImage(), byPixel.SppImage());
     }
 }
 

@@ -29,23 +29,19 @@ int ReadSplitDepth(const Entity& entity) {
     return depth;
 }
 
-// Elevates a quadratic curve to a cubic one.
 std::array<Vec3f, 4> Elevated(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
     return {a, Between(2.f / 3, a, b), Between(1.f / 3, b, c), c};
 }
 
-// How control points make pieces.
 struct Basis {
     bool isSpline;
     int degree;
 
-    // Returns how many pieces n points make; nothing where they make none.
     std::optional<size_t> PieceCount(size_t n) const {
         if (n < size_t(degree) + 1 || (!isSpline && (n - 1) % degree != 0)) return {};
         return isSpline ? n - degree : (n - 1) / degree;
     }
 
-    // Returns a piece's control points as a cubic Bezier curve, by the blossoms of its own.
     std::array<Vec3f, 4> Piece(const std::vector<Vec3f>& points, size_t i) const {
         const Vec3f* p = &points[isSpline ? i : i * degree];
         if (!isSpline && degree == 3) return {p[0], p[1], p[2], p[3]};
@@ -79,7 +75,6 @@ std::vector<Vec3f> ReadVectors(const Entity& entity, ParameterType type, const c
     return vectors;
 }
 
-// Returns a strand's normals, one more than pieces; none of curves that face the ray.
 std::vector<Vec3f> ReadNormals(const Entity& entity, CurveKind kind, size_t pieces,
                                Warnings& warnings) {
     std::vector<Vec3f> normals = ReadVectors(entity, ParameterType::Normal, "N");
@@ -104,7 +99,6 @@ std::array<float, 2> ReadWidths(const Entity& entity) {
     return {GetNonnegative(entity, "width0", width), GetNonnegative(entity, "width1", width)};
 }
 
-// Adds the pieces of one strand, in shape space.
 void AddStrand(const Entity& entity, Curves* curves, Warnings& warnings) {
     const Basis basis = ReadBasis(entity);
     const std::vector<Vec3f> points = ReadVectors(entity, ParameterType::Point3, "P");
@@ -129,7 +123,6 @@ void AddStrand(const Entity& entity, Curves* curves, Warnings& warnings) {
     }
 }
 
-// Carries the pieces into the world where that keeps widths and sides.
 void Place(const ShapeEntity& entity, Curves* curves) {
     Mat4d rigid = entity.worldFromObject;
     const bool mirrors = Mirrors(rigid);

@@ -41,13 +41,11 @@ Vec3f RibbonNormal(const std::array<Vec3f, 2>& n, float u) {
     return (std::sin((1 - u) * angle) * n[0] + std::sin(u * angle) * n[1]) / std::sin(angle);
 }
 
-// Returns the width that the ray sees at u; n is null for curves that face it.
 float SeenWidth(const CurvePiece& piece, const Vec3f* n, const Vec3f& direction, float u) {
     const float width = Lerp(u, piece.width[0], piece.width[1]);
     return n ? width * std::abs(n->dot(direction)) : width;
 }
 
-// Returns the range of u of a primitive within its piece.
 std::array<float, 2> RangeOf(const Curves& curves, uint32_t primitive) {
     const uint32_t parts = 1u << curves.splitDepth, part = primitive & (parts - 1);
     return {float(part) / float(parts), float(part + 1) / float(parts)};
@@ -59,8 +57,7 @@ Ray IntoShape(const Curves& curves, const Ray& ray) {
     return {local.o.cast<float>(), local.d.cast<float>(), ray.tMax};
 }
 
-// Looks for the ray in the plane across it: x roughly along the curve, z along the ray, both from
-// the ray's origin.
+// Looks for the ray in the plane across it: x roughly along the curve, z along the ray.
 class Search {
   public:
     Search(const Curves& curves, uint32_t primitive, const Ray& ray)
@@ -90,8 +87,7 @@ class Search {
     std::optional<ShapeHit> nearest;
 
   private:
-    // Returns whether the box around the part is where the ray goes. The y range, which is the
-    // smallest, comes first.
+    // Returns whether the ray goes through the part's box; its y range, the smallest, comes first.
     bool CanHit(const ControlPoints& p, float u0, float u1) const {
         const float half = 0.5f * std::max(Lerp(u0, piece.width[0], piece.width[1]),
                                            Lerp(u1, piece.width[0], piece.width[1]));
@@ -132,7 +128,6 @@ class Search {
             if (CanHit(halves[i], u[i], u[i + 1])) Descend(halves[i], u[i], u[i + 1], depth - 1);
     }
 
-    // Meets a part that is straight.
     void MeetStraight(const ControlPoints& p, float u0, float u1) {
         // Leave out points beyond the perpendiculars at the ends.
         const auto beyond = [](const Vec3f& end, const Vec3f& next) {
@@ -166,8 +161,7 @@ class Search {
     float zMax;
 };
 
-// Returns the unit vector across the curve at v, where `along` is the tangent and `n` the normal of
-// a flat curve or a ribbon.
+// Returns the unit vector across the curve at v; `n` is the normal of a flat curve or a ribbon.
 Vec3f AcrossAt(CurveKind kind, const Vec3f& n, const Vec3f& along, float v) {
     Vec3f across = n.cross(along);
     if (const float length = across.norm(); length > 0) {

@@ -8,8 +8,7 @@
 
 namespace lull {
 
-// Flat curves face every ray; so do cylinders, but with the normals of tubes; ribbons are oriented
-// by their normals.
+// Flat curves face every ray; so do cylinders, with the normals of tubes; ribbons have normals.
 enum class CurveKind { Flat, Cylinder, Ribbon };
 
 // A Bezier curve. Its width changes linearly from u = 0 to u = 1.

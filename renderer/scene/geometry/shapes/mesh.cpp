@@ -14,7 +14,6 @@ std::array<T, N> Interpolate(const std::vector<std::array<T, N>>& values,
     return sum;
 }
 
-// Replaces the shading tangents by those of the vertices, at right angles to the normal.
 void UseVertexTangents(const std::array<float, 4>& tangent, SurfaceInteraction* hit) {
     const Vec3f t(tangent[0], tangent[1], tangent[2]);
     const Vec3f s = t - hit->ns * hit->ns.dot(t);

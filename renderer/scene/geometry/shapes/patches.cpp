@@ -11,7 +11,6 @@ using Eigen::Vector4d;
 
 constexpr int kMaxSide = 1 << 14;  // of a heightfield or a net: the square still fits an int
 
-// Joins an nu by nv grid of vertices, rows of nu, by two triangles a cell.
 void JoinGrid(int nu, int nv, MeshData* data) {
     const auto vertex = [&](int u, int v) { return uint32_t(v * nu + u); };
     for (int v = 0; v + 1 < nv; ++v)
@@ -21,7 +20,6 @@ void JoinGrid(int nu, int nv, MeshData* data) {
         }
 }
 
-// Reads a number of grid points, at least `least`.
 int ReadCount(const ShapeEntity& entity, const char* name, int least) {
     const int n = entity.parameters.GetInt(name, -1);
     if (n < least || n > kMaxSide)
@@ -30,7 +28,6 @@ int ReadCount(const ShapeEntity& entity, const char* name, int least) {
     return n;
 }
 
-// One direction of a B-spline: order, knots and the range that is shown.
 struct Spline {
     int count, order;
     std::vector<double> knots;
@@ -70,8 +67,7 @@ Spline ReadSpline(const ShapeEntity& entity, const std::string& letter) {
     return s;
 }
 
-// Returns the span k of knots with knots[k] < t <= knots[k + 1], the first one that is not empty
-// where t is at the start.
+// Returns the k with knots[k] < t <= knots[k + 1], at the start the first that is not empty.
 int SpanOf(const Spline& s, double t) {
     int k = s.order - 1;
     while (k < s.count - 1 && (t > s.knots[k + 1] || s.knots[k] == s.knots[k + 1])) ++k;
@@ -79,8 +75,7 @@ int SpanOf(const Spline& s, double t) {
     return k;
 }
 
-// Evaluates the homogeneous curve of control points at(0), at(1), ... and its derivative by t, by
-// de Boor's recursion.
+// Evaluates the homogeneous curve of points at(0), ... and its derivative, by de Boor's recursion.
 template <typename At>
 void Evaluate(const Spline& s, double t, const At& at, Vector4d* value, Vector4d* derivative) {
     const int k = SpanOf(s, t), degree = s.order - 1;
@@ -98,7 +93,6 @@ void Evaluate(const Spline& s, double t, const At& at, Vector4d* value, Vector4d
     *value = d[degree];
 }
 
-// Returns the derivative of the point that a homogeneous one stands for.
 Vector3d Dehomogenised(const Vector4d& p, const Vector4d& dp) {
     return dp.head<3>() / p.w() - p.head<3>() * (dp.w() / (p.w() * p.w()));
 }

@@ -8,8 +8,7 @@
 namespace lull {
 
 PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& error) {
-    // Propagate the point's own error; the arithmetic is double, so only the rounding of the
-    // result to float is added.
+    // Propagate the point's own error, to which double adds only the rounding to float.
     const Vec3f q = TransformPoint(m, p);
     const Vec3f propagated =
         (m.topLeftCorner<3, 3>().cwiseAbs() * error.cast<double>()).cast<float>();
@@ -74,13 +73,11 @@ float OneMinusCosMax(float sin2Max) { return sin2Max / (1 + SafeSqrt(1 - sin2Max
 float Theta(const Sphere& sphere, float z) {
     return std::acos(std::clamp(z / sphere.radius, -1.f, 1.f));
 }
-// Returns theta where v is 0 and where it is 1.
 std::pair<float, float> Thetas(const Sphere& sphere) {
     return {Theta(sphere, std::min(sphere.zMin, sphere.zMax)),
             Theta(sphere, std::max(sphere.zMin, sphere.zMax))};
 }
 
-// Computes the derivatives at p of position and, where asked for, normal, in shape space.
 void ComputeTangents(const Sphere& sphere, const Vec3f& p, SurfaceNeeds needs,
                      SurfaceInteraction* hit) {
     const float r = sphere.radius, zRadius = std::hypot(p.x(), p.y());
@@ -104,8 +101,7 @@ Bounds3f Sphere::WorldBounds() const {
 
 std::optional<float> Intersect(const Sphere& sphere, const Ray& worldRay) {
     // Solve |o + t d|^2 = r^2 about the point of closest approach: the discriminant is formed from
-    // the distance there, which is stable for far origins (Haines et al. 2019, Ray Tracing Gems,
-    // chapter 7).
+    // the distance there, which is stable for far origins (Haines et al. 2019, Ray Tracing Gems 7).
     const ShapeRay ray(sphere.place, worldRay);
     const double a = ray.d.squaredNorm(), b = -ray.o.dot(ray.d);
     const double r = sphere.radius;
@@ -143,8 +139,7 @@ std::optional<ShapeSample> Sample(const Sphere& sphere, const Vec3f& from, const
         return SeenFrom(from,
                         SampleAt(sphere.place, p, Gamma(5) * p.cwiseAbs(), p, 1 / sphere.Area()));
     }
-    // Sample the cone that the sphere subtends (pbrt 3rd ed., 14.2.2, in 1 - cos, which keeps its
-    // digits for small cones).
+    // Sample the cone that the sphere subtends (pbrt 3rd ed., 14.2.2), in 1 - cos for its digits.
     const Vec3f center = Center(sphere);
     const float distance = (center - from).norm();
     const Vec3f axis = (center - from) / distance;

@@ -1,5 +1,4 @@
-// Represents spheres, disks and surfaces that turn about an axis, which are intersected exactly, in
-// their own space.
+// Spheres, disks and surfaces that turn about an axis, intersected exactly, in their own space.
 #pragma once
 
 #include <optional>
@@ -65,8 +64,7 @@ PointWithError TransformWithError(const Mat4d& m, const Vec3f& p, const Vec3f& e
 ShapeSample SampleAt(const QuadricPlacement&, const Vec3f& p, const Vec3f& error, const Vec3f& n,
                      float pdf);
 
-// Transforms the point, the normal and, where needed, hit->dpdu ... dndv from shape space to world
-// space.
+// Transforms the point, the normal and, where needed, hit->dpdu ... dndv to world space.
 void FinishQuadricHit(const QuadricPlacement&, const Vec3f& pShape, const Vec3f& errorShape,
                       const Vec3f& nShape, SurfaceNeeds, SurfaceInteraction* hit);
 
@@ -87,8 +85,7 @@ inline float Azimuth(double x, double y) {
     return phi < 0 ? phi + 2 * kPi : phi;
 }
 
-// Represents cylinders, cones, paraboloids and hyperboloids: surfaces swept by a line or a parabola
-// that turns about the z axis.
+// Cylinders, cones, paraboloids and hyperboloids: a line or a parabola turned about the z axis.
 
 // Represents {x^2 + y^2 = r2[0] + r2[1] z + r2[2] z^2, zMin <= z <= zMax, phi <= phiMax}. The curve
 // that turns starts at `start` (v = 0) and ends at `end` (v = 1); phi is measured from it.

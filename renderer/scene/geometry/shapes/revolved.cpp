@@ -19,12 +19,10 @@ Vector3d HalfGradient(const Revolved& shape, const Vector3d& p) {
     return {p.x(), p.y(), -0.5 * shape.r2[1] - shape.r2[2] * p.z()};
 }
 
-// Returns v of the height z.
 double HeightToV(const Revolved& shape, double z) {
     return (z - shape.start.z()) / (shape.end.z() - shape.start.z());
 }
 
-// Returns the point of the curve at height z, and its derivatives by v.
 struct CurvePoint {
     Vector3d p, dp, d2p;
 };
@@ -40,7 +38,6 @@ CurvePoint Curve(const Revolved& shape, double z) {
     return {{x, 0, z}, {slope * dz, 0, dz}, {-slope * slope / x * dz * dz, 0, 0}};
 }
 
-// Returns the azimuth of p in [0, 2 pi), counted from the curve.
 double AzimuthFromCurve(const Revolved& shape, const Vector3d& p) {
     const Vector3d c = Curve(shape, p.z()).p;
     const double phi = std::atan2(c.x() * p.y() - p.x() * c.y(), p.x() * c.x() + p.y() * c.y());
@@ -62,7 +59,6 @@ Revolved Finished(Revolved shape) {
     return shape;
 }
 
-// Returns how far the surface gets from the axis, squared.
 double LargestRadius2(const Revolved& shape) {
     if (shape.isOnSurface)
         return std::max(shape.start.head<2>().squaredNorm(), shape.end.head<2>().squaredNorm());
@@ -71,7 +67,6 @@ double LargestRadius2(const Revolved& shape) {
         {Radius2(shape, shape.zMin), Radius2(shape, middle), Radius2(shape, shape.zMax)});
 }
 
-// Turns a line from `start` to `end`, of different heights.
 Revolved TurnedLine(const Vector3d& start, const Vector3d& end, float phiMax) {
     Revolved shape;
     shape.start = start;

@@ -21,7 +21,6 @@ std::vector<Vector> VectorsOf(std::span<const float> values) {
     return vectors;
 }
 
-// Gathers indices three by three, with each checked.
 std::vector<std::array<uint32_t, 3>> TrianglesOf(const ShapeEntity& entity, size_t vertexCount) {
     const auto indices = entity.parameters.GetInts("indices");
     if (indices.empty() || indices.size() % 3 != 0)
@@ -71,7 +70,6 @@ MeshData TriangleMesh(const ShapeEntity& entity, Warnings& warnings) {
     return data;
 }
 
-// Gathers values four by four, one a vertex; none where their number is wrong.
 std::vector<std::array<float, 4>> FoursOf(const ShapeEntity& entity, const char* name,
                                           size_t vertexCount) {
     const auto values = entity.parameters.GetFloats(ParameterType::Float, name);
@@ -103,8 +101,7 @@ void ReadExtraAttributes(const ShapeEntity& entity, size_t vertexCount, Mesh* me
     }
 }
 
-// Carries the mesh to its place and drops triangles without area, which no ray can hit and no
-// light can shine from.
+// Carries the mesh to its place and drops triangles without area.
 Mesh PlaceMesh(MeshData data, const ShapeEntity& entity, Warnings& warnings) {
     const Mat4d& m = entity.worldFromObject;
     const Mat4d inverse = m.inverse();
@@ -234,7 +231,6 @@ std::optional<Coverage> ReadCoverage(const TextureTable& textures, const ShapeEn
     return coverage;
 }
 
-// Inputs of the makers of shapes.
 struct ShapeReader {
     const Description& description;
     const ShapeEntity& entity;
@@ -242,7 +238,6 @@ struct ShapeReader {
     Warnings& warnings;
 };
 
-// Makes a mesh of which textures may cut parts out.
 Shape MakeCutOutMesh(const ShapeReader& in, MeshData data) {
     return {.geometry = PlaceMesh(std::move(data), in.entity, in.warnings),
             .alpha = ReadAlpha(in.textures, in.entity, "alpha"),

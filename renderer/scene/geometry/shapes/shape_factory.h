@@ -34,8 +34,7 @@ bool Mirrors(const Mat4d& m);
 std::optional<float> TakeScale(Mat4d* m);
 
 // Returns the placement of a shape without its scale, which goes to *scale: sampling computes a
-// shape's area and the cone that it subtends from its sizes. Throws Error if an emitting shape is
-// stretched.
+// shape's area and the cone that it subtends from its sizes. Throws Error for a stretched emitter.
 QuadricPlacement PlacementOf(const ShapeEntity&, float* scale);
 
 }  // namespace lull

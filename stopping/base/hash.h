@@ -5,8 +5,7 @@
 
 namespace lull {
 
-// Returns a permutation of 64 bits in which each depends on all (Stafford 2011, variant 13: that of
-// SplitMix64).
+// Returns a permutation of 64 bits in which each depends on all (Stafford 2011, variant 13).
 inline uint64_t MixBits(uint64_t z) {
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
