@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/expect_has.h"
+
 namespace lull::denoising_test {
 namespace {
 
@@ -148,8 +150,7 @@ TEST(Denoising, SaysWhatIsWrong) {
         Pictures p;
         spoil(&p);
         ASSERT_EQ(lull_denoise(&p.noisy, &p.output), LULL_BAD_ARGUMENT) << expected;
-        const std::string message = lull_error_message();
-        EXPECT_NE(message.find(expected), std::string::npos) << message;
+        EXPECT_HAS(lull_error_message(), expected);
         EXPECT_EQ(p.clean, std::vector<float>(3 * kPixels, -1));
         EXPECT_EQ(p.block.upper, -1);
     }

@@ -10,8 +10,7 @@ namespace {
 
 void ExpectError(lull_status expected, lull_status status, const std::string& part) {
     EXPECT_EQ(status, expected);
-    EXPECT_NE(std::string(lull_error_message()).find(part), std::string::npos)
-        << "no '" << part << "' in: " << lull_error_message();
+    EXPECT_HAS(lull_error_message(), part) << "no '" << part << "' in: " << lull_error_message();
 }
 
 TEST(StopperErrors, RefusesBadSettings) {

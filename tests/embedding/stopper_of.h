@@ -5,9 +5,8 @@
 #include <lull/lull.h>
 
 #include <memory>
-#include <string>
-#include <vector>
 
+#include "tests/expect_has.h"
 #include "tests/stopping/signals/block_images.h"
 
 namespace lull {

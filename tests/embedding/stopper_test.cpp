@@ -1,7 +1,6 @@
 // Answers to other programs: the same as lull's own, whatever the layout of their pictures.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <thread>
 

@@ -2,8 +2,6 @@
 // itself; and geometry that has no business to be there, but is.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "tests/hard_cases/known_scene.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

@@ -2,9 +2,6 @@
 // does not see them, people see them first.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <memory>
-
 #include "stopping/rules/rule_table.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"

@@ -1,8 +1,6 @@
 // Runs `lull compare` as its help describes it.
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"
@@ -32,10 +30,10 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
         directory, std::string("compare scene.pbrt") + kSize +
                        "--snapshots --stop dammertz:0.02 --human human.csv:a --cap 160 -o "
                        "room --report room.html --verify 2");
-    EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
+    EXPECT_HAS(outcome.out, "the same bits");
     for (const char* file : {"room.automatic.exr", "room.human.png", "room.reference.exr",
                              "room.thresholds.csv", "room.compare.json", "room.html"}) {
-        EXPECT_TRUE(Contains(outcome.out, std::string(file) + "\n")) << file;
+        EXPECT_HAS(outcome.out, std::string(file) + "\n") << file;
         EXPECT_TRUE(std::filesystem::exists(directory.File(file))) << file;
     }
 
@@ -71,7 +69,7 @@ TEST(Compare, SaysHowManyBlocksDifferVisibly) {
                                spp + ".exr");
     const std::string files = "compare --automatic at20.exr --reference at160.exr --block 40 ";
     const Outcome near = ExpectSuccess(directory, files + "--viewing 200cd,20ppd -o near");
-    EXPECT_TRUE(Contains(near.out, " blocks differ visibly at 20 pixels a degree\n")) << near.out;
+    EXPECT_HAS(near.out, " blocks differ visibly at 20 pixels a degree\n");
     RunLull(directory, files + "--viewing 200cd,90ppd -o far");
     const Json json = directory.Read("near.compare.json"), image = json["images"][0];
     EXPECT_EQ(json["viewing"]["name"], "200cd,20ppd,250lux");
@@ -85,7 +83,7 @@ TEST(Compare, SaysHowManyBlocksDifferVisibly) {
 
     const Outcome bad = RunLull(directory, files + "--viewing 200 -o bad");
     EXPECT_EQ(bad.exitCode, 2);
-    EXPECT_TRUE(Contains(bad.err, "100cd,40ppd,250lux")) << bad.err;
+    EXPECT_HAS(bad.err, "100cd,40ppd,250lux");
 }
 
 TEST(Compare, MakesTheDenoisedImageOfARender) {
@@ -117,7 +115,7 @@ TEST(Compare, TakesPairs) {
         ExpectSuccess(directory, "compare" + pair +
                                      "--snapshots --denoise --stop lnoise:1.5 --cap 160 -o room "
                                      "--verify 1");
-    EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
+    EXPECT_HAS(outcome.out, "the same bits");
     RunLull(directory, "render" + pair + "--stop lnoise:1.5 --cap 160 -o a.exr");
     RunLull(directory, "render" + pair + "--denoise --cap 160 -o clean.exr");
     RunLull(directory, "render" + pair + "--spp 160 -o r.exr");
@@ -139,7 +137,7 @@ TEST(Compare, TakesPairs) {
     EXPECT_EQ(one["blocks"][17]["flip"], other["blocks"][17]["flip"]);
     const Outcome refused = RunLull(directory, "denoise a.exr");
     EXPECT_EQ(refused.exitCode, 1);
-    EXPECT_TRUE(Contains(refused.err, "a.exr: is a pair")) << refused.err;
+    EXPECT_HAS(refused.err, "a.exr: is a pair");
 }
 
 // Pictures have the figures of the display image of the EXRs beside them, and no others.
@@ -151,7 +149,7 @@ TEST(Compare, TakesPicturesForDisplays) {
     const std::string files = "compare --block 40 --reference at160.exr ";
     ExpectSuccess(directory, files + "--automatic at20.exr -o exr");
     const Outcome outcome = ExpectSuccess(directory, files + "--human at20.png -o png");
-    EXPECT_TRUE(Contains(outcome.err, "Pictures for displays: ")) << outcome.err;
+    EXPECT_HAS(outcome.err, "Pictures for displays: ");
     const Json expected = directory.Read("exr.compare.json")["images"][0],
                image = directory.Read("png.compare.json")["images"][0];
     EXPECT_TRUE(image["figures"]["rmse"].is_null() && image["blocks"][0]["relMse"].is_null());
@@ -256,7 +254,7 @@ TEST(Compare, HasCurvesOfErrorAgainstTime) {
     EXPECT_EQ(points["fixed:20"]["spp"], 20);
     EXPECT_GT(points["fixed:20"]["rmseLightness"], points["fixed:60"]["rmseLightness"]);
     EXPECT_GT(points["denoised:3.1"]["ruleSeconds"], 0);
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("room.html")), "errorCurves"));
+    EXPECT_HAS(ReadBytes(directory.File("room.html")), "errorCurves");
 
     // Beside a reference from a file, the errors are the same.
     ExpectSuccess(directory, command + "--reference room.reference.exr -o other");

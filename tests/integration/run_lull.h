@@ -75,7 +75,7 @@ inline Outcome ExpectFailure(const TemporaryDirectory& directory, const std::str
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
     EXPECT_EQ(outcome.err.back(), '\n');
     for (const std::string& part : parts)
-        EXPECT_TRUE(Contains(outcome.err, part)) << "no '" << part << "' in: " << outcome.err;
+        EXPECT_HAS(outcome.err, part) << "no '" << part << "' in: " << outcome.err;
     EXPECT_EQ(ReadBytes(directory.File("out.exr")), "precious");
     EXPECT_EQ(directory.CountFiles(), filesBefore);
     return outcome;

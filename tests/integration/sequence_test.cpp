@@ -1,5 +1,4 @@
 // Renders sequences: the frames of an animation in one run.
-#include <algorithm>
 #include <array>
 #include <span>
 

@@ -31,10 +31,10 @@ void ExpectOneWriter(const TemporaryDirectory& directory, const std::string& com
     const Outcome outcome = RunShell(directory, "exec 9>" + lock + " && flock 9 && (" + command +
                                                     " 9>&-; echo first $?); " + "exec 9>&-; " +
                                                     command + "; echo then $?");
-    EXPECT_TRUE(Contains(outcome.out, "first 1\n")) << outcome.out << outcome.err;
-    EXPECT_TRUE(Contains(outcome.out, "then 0\n")) << outcome.out << outcome.err;
+    EXPECT_HAS(outcome.out, "first 1\n") << outcome.out << outcome.err;
+    EXPECT_HAS(outcome.out, "then 0\n") << outcome.out << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "another process is writing " + file)) << outcome.err;
+    EXPECT_HAS(outcome.err, "another process is writing " + file);
     EXPECT_FALSE(std::filesystem::exists(directory.File(lock)));
 }
 
@@ -84,7 +84,7 @@ TEST(SpecialFiles, AreNotWaitedFor) {
           "train f.h5 --human f.csv -o m.h5", "study --collect f.json -o t.csv"}) {
         const Outcome outcome = RunShell(directory, kLimit + std::string(command));
         EXPECT_EQ(outcome.exitCode, 1) << command << "\n" << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, "not a regular file")) << command << "\n" << outcome.err;
+        EXPECT_HAS(outcome.err, "not a regular file") << command << "\n" << outcome.err;
     }
 }
 
@@ -146,7 +146,7 @@ TEST(Layers, HoldNoInfinityWhereTheFilmIsScaled) {
                                             std::string(kSphere)));
     const Outcome outcome = ExpectSuccess(
         directory, "render scene.pbrt --spp 20 --exposure 100 --denoise --denoise-layers -o a.exr");
-    EXPECT_TRUE(Contains(outcome.err, "samples were not finite")) << outcome.err;
+    EXPECT_HAS(outcome.err, "samples were not finite");
     for (const ExrChannel& channel : ReadExr(directory.File("a.exr")).channels)
         EXPECT_TRUE(std::ranges::all_of(channel.values, [](float v) { return std::isfinite(v); }))
             << channel.name;

@@ -66,7 +66,7 @@ TEST(Streams, LostResultsAreAnError) {
         const Outcome outcome = RunShell(directory, command);
         EXPECT_EQ(outcome.exitCode, 1) << command << outcome.err;
         EXPECT_EQ(CountErrorLines(outcome.err), 1) << command << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, "stdout")) << command << outcome.err;
+        EXPECT_HAS(outcome.err, "stdout") << command << outcome.err;
     }
 }
 

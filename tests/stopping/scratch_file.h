@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/expect_has.h"
+
 namespace lull {
 
 class ScratchFile {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "renderer/base/error.h"
+#include "tests/expect_has.h"
 
 namespace lull {
 
@@ -79,10 +80,6 @@ std::string ErrorOf(const Call& call) {
         return error.what();
     }
     return "";
-}
-
-inline bool Contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace lull

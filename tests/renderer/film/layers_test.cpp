@@ -146,11 +146,7 @@ TEST(AovSet, HasNames) {
     EXPECT_TRUE(ParseAovs({"noise"}).Any());
     EXPECT_FALSE(AovSet().Any());
     for (const char* bad : {"", "Albedo", "albedo normal", "albedo,noise"})
-        EXPECT_TRUE(Contains(ErrorOf([&] {
-                                 ParseAovs({"depth", bad});
-                             }),
-                             "there is no layer"))
-            << bad;
+        EXPECT_HAS(ErrorOf([&] { ParseAovs({"depth", bad}); }), "there is no layer") << bad;
 }
 
 FirstHit HitOf(uint32_t object, float weight = 1) {

@@ -273,7 +273,7 @@ TEST(GltfErrors, RefuseBrokenBinaries) {
     EXPECT_EQ(folder.ErrorOf(bad, "scene.glb"), "scene.glb: is of GLB version 1; 2 is modelled");
     bad = good;
     bad[15] = '\x7f';
-    EXPECT_NE(folder.ErrorOf(bad, "scene.glb").find("goes beyond its end"), std::string::npos);
+    EXPECT_HAS(folder.ErrorOf(bad, "scene.glb"), "goes beyond its end");
 }
 
 // Whatever bytes change, there is a scene or an Error.

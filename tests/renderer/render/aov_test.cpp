@@ -108,11 +108,11 @@ TEST(Aovs, CanBeLeftOutAfterACheckpoint) {
 
     WriteCheckpoint(path, identity, state, fewer.film);
     for (const AovSet& more : {AovSet{.albedo = true}, AovSet{.alpha = true}})
-        EXPECT_TRUE(Contains(ErrorOf([&] {
-                                 Rendered other(more);
-                                 ReadCheckpoint(path, identity, &other.film);
-                             }),
-                             "it was written without the "));
+        EXPECT_HAS(ErrorOf([&] {
+                       Rendered other(more);
+                       ReadCheckpoint(path, identity, &other.film);
+                   }),
+                   "it was written without the ");
     Rendered through({.depth = true, .throughSpecular = true});
     EXPECT_THROW(ReadCheckpoint(path, identity, &through.film), Error);
 }

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <filesystem>
 
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"

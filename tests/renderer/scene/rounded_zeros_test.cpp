@@ -49,8 +49,7 @@ TEST(RoundedZeros, AreZeroInScenes) {
     for (const Place& place : places) {
         EXPECT_EQ(ErrorWith(place, "-1e-9"), "") << place.options << place.world;
         EXPECT_EQ(ErrorWith(place, "-0"), "") << place.options << place.world;
-        EXPECT_TRUE(Contains(ErrorWith(place, "-0.1"), "test.pbrt:"))
-            << place.options << place.world;
+        EXPECT_HAS(ErrorWith(place, "-0.1"), "test.pbrt:") << place.options << place.world;
     }
 }
 
@@ -83,9 +82,9 @@ TEST(RoundedLimits, OfSubsurfaceScatteringAreTheirLimits) {
             ErrorWith({"", "Material \"subsurface\" \"float eta\" [{}]\nShape \"sphere\""}, value),
             "")
             << value;
-    EXPECT_TRUE(Contains(
+    EXPECT_HAS(
         ErrorWith({"", "Material \"subsurface\" \"float eta\" [{}]\nShape \"sphere\""}, "0.99"),
-        "has to lie between 1 and 4"));
+        "has to lie between 1 and 4");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
 
 #include "renderer/base/error.h"
 #include "renderer/vision/visible_difference.h"

@@ -117,9 +117,9 @@ TEST(Seal, FindsEveryFlippedBit) {
 TEST(Seal, SaysWhatIsWrong) {
     std::string bad = Sealed(std::string(100, 'x'));
     bad[50] = 'y';
-    EXPECT_NE(Problem(bad).find("damaged"), std::string::npos);
-    EXPECT_NE(Problem("something else").find("cut short"), std::string::npos);
-    EXPECT_NE(WhatOf([] { CheckSeal("/nowhere/x.h5"); }).find("No such file"), std::string::npos);
+    EXPECT_HAS(Problem(bad), "damaged");
+    EXPECT_HAS(Problem("something else"), "cut short");
+    EXPECT_HAS(WhatOf([] { CheckSeal("/nowhere/x.h5"); }), "No such file");
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ std::string ErrorOf(const std::string& path) {
 void ExpectError(const std::string& path, const std::string& part) {
     const std::string error = ErrorOf(path);
     EXPECT_TRUE(error.starts_with(path + ": ")) << error;
-    EXPECT_NE(error.find(part), std::string::npos) << error;
+    EXPECT_HAS(error, part);
 }
 
 // Writes a model of one dense layer of one unit after an LSTM layer of one unit, whose weights
@@ -267,7 +267,7 @@ void ExpectError(const std::string& json, const std::string& part,
         ParseKerasConfig(json, version);
         ADD_FAILURE() << "not refused: " << json;
     } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        EXPECT_HAS(std::string(error.what()), part) << error.what();
     }
 }
 

@@ -248,8 +248,7 @@ TEST(SunLight, HasAPenumbra) {
 
 TEST(SunLight, RefusesAnglesThatAreNone) {
     for (const double angle : {-1., 181.}) {
-        const std::string error = ErrorOf([&] { LightScene scene(Sun(angle)); });
-        EXPECT_TRUE(Contains(error, "\"angle\" is")) << error;
+        EXPECT_HAS(ErrorOf([&] { LightScene scene(Sun(angle)); }), "\"angle\" is");
     }
 }
 

@@ -161,7 +161,7 @@ TEST(Lights, RefuseToBeStretched) {
                             "Shape \"{0}\"\nAttributeEnd\nShape \"{0}\"",
                             shape));
         });
-        EXPECT_TRUE(Contains(error, "test.pbrt:6: a light of shape")) << error;
+        EXPECT_HAS(error, "test.pbrt:6: a light of shape");
     }
 }
 

@@ -61,7 +61,7 @@ TEST(EmissionProfile, RefusesOtherAngles) {
             SceneOf(WorldText(std::string("AreaLightSource \"diffuse\" \"float spread\" [") + bad +
                               "]\nShape \"sphere\"\n"));
         });
-        EXPECT_TRUE(Contains(error, "above 0 and at most 180 degrees")) << bad << error;
+        EXPECT_HAS(error, "above 0 and at most 180 degrees") << bad << error;
     }
 }
 
@@ -199,7 +199,7 @@ TEST(ImageLights, RefuseWhatTheyCannotRead) {
                               "\"projection\" \"string mapname\" \"missing.exr\""}) {
         const std::string error =
             ErrorOf([&] { LightScene scene(std::string("LightSource ") + light); });
-        EXPECT_TRUE(Contains(error, "test.pbrt:3: ")) << light << ": " << error;
+        EXPECT_HAS(error, "test.pbrt:3: ") << light << ": " << error;
     }
 }
 

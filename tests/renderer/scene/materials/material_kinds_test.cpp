@@ -70,7 +70,7 @@ TEST(Subsurface, UnknownNamesAreWarnedOf) {
     b.AddMaterial("subsurface", {String("name", "Marbel")});
     b.Make();
     ASSERT_EQ(b.messages.size(), 1u);
-    EXPECT_TRUE(Contains(b.messages[0], "Marbel")) << b.messages[0];
+    EXPECT_HAS(b.messages[0], "Marbel");
 }
 
 TEST(Plastic, Defaults) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "stopping/features/model_inputs.h"
@@ -224,10 +223,10 @@ TEST(Dataset, AddsBlocksOfTheSameRecordingOnly) {
     };
     more = MakeViewpoint("a");
     more.provenance["seed"] = "7";
-    EXPECT_NE(errorOf(more).find("another seed (0, now 7)"), std::string::npos) << errorOf(more);
+    EXPECT_HAS(errorOf(more), "another seed (0, now 7)");
     more = MakeViewpoint("a");
     more.cap = 200;
-    EXPECT_NE(errorOf(more).find("another cap"), std::string::npos);
+    EXPECT_HAS(errorOf(more), "another cap");
 }
 
 TEST(Dataset, RefusesWhatIsNone) {
@@ -311,9 +310,8 @@ TEST(PictureRecords, CannotBeComparedWithHalves) {
     const BlockRecording recording = Record({20, 40, 60});
     const LabelledBlock block = Labelled(recording);
     for (const char* rule : {"lnoise:0.5", "dammertz:0.01", "luxtile:0.1"})
-        EXPECT_NE(
-            WhatOf([&] { MakeSimulator(rule, {.passSpp = 0})(block); }).find("half of the samples"),
-            std::string::npos)
+        EXPECT_HAS(WhatOf([&] { MakeSimulator(rule, {.passSpp = 0})(block); }),
+                   "half of the samples")
             << rule;
     EXPECT_THROW(SimulateCycles(block, 0.01), std::invalid_argument);
     const std::vector<LabelledBlock> blocks = {block, Labelled(recording, "hall")};
@@ -326,9 +324,7 @@ TEST(PictureRecords, SayWhereTheyLieTooFarApart) {
     const std::string model = std::string(LULL_SOURCE_DIR) + "/stopping/models/entropy.h5";
     const std::string said =
         WhatOf([&] { MakeSimulator("learned:" + model, {.passSpp = 0})(Labelled(recording)); });
-    EXPECT_NE(said.find("pictures at 64, 128, 256, 512, ... spp lie too far apart"),
-              std::string::npos)
-        << said;
+    EXPECT_HAS(said, "pictures at 64, 128, 256, 512, ... spp lie too far apart");
 }
 
 TEST(PictureRecords, GoOnAsFarApartAsTheLast) {

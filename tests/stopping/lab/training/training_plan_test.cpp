@@ -89,7 +89,7 @@ TEST(TrainingPlan, IsRecorded) {
     EXPECT_EQ(record.at("training_blocks"), "attic: 0 1 2 3\nbarn: 0 1 2");
     EXPECT_EQ(record.at("test_blocks"), "none");
     EXPECT_EQ(record.at("learning_rate"), "0.001");
-    EXPECT_NE(record.at("human").find(".csv crc32:"), std::string::npos);
+    EXPECT_HAS(record.at("human"), ".csv crc32:");
     EXPECT_EQ(MakeRecord(plan, split, {}, {}), record);
 }
 
