@@ -1,5 +1,4 @@
 // Calls the C interface of the denoiser as a program in C++ would.
-#include <gtest/gtest.h>
 #include <lull/lull.h>
 
 #include <algorithm>
@@ -7,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "tests/expect_has.h"

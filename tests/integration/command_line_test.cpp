@@ -1,5 +1,4 @@
 // Runs the program as its help describes it.
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 

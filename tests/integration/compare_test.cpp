@@ -1,5 +1,4 @@
 // Runs `lull compare` as its help describes it.
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "renderer/image/image_io.h"

@@ -1,5 +1,4 @@
 // Denoises renders: by the render itself, afterwards, and those of others.
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "renderer/image/image_io.h"

@@ -4,7 +4,6 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
-#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>

@@ -1,6 +1,4 @@
 // Makes studies and collects answers; the page itself is used in study_page.py.
-#include <gtest/gtest.h>
-
 #include "stopping/lab/recordings/recording.h"
 #include "stopping/rules/thresholds.h"
 #include "tests/integration/run_and_signal.h"

@@ -1,9 +1,5 @@
 #include "renderer/film/film.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/renderer/files/test_files.h"
 
 namespace lull::layers_test {

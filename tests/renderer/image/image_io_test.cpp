@@ -1,11 +1,5 @@
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
-
-#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
+#include "renderer/base/math.h"
 #include "tests/renderer/files/test_files.h"
 
 namespace lull {

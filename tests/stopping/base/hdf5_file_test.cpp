@@ -1,10 +1,4 @@
-#include <gtest/gtest.h>
-
-#include <fstream>
 #include <iterator>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"

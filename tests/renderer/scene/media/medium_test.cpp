@@ -1,7 +1,6 @@
 // Tests media: what they transmit and where they scatter, and how they are read.
 #include "renderer/scene/media/medium_table.h"
 
-#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <cstring>

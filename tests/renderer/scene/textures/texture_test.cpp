@@ -1,7 +1,5 @@
-#include <gtest/gtest.h>
-
-#include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/texture.h"
+#include "renderer/scene/textures/mapping.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 
