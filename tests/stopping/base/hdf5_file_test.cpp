@@ -7,11 +7,6 @@
 namespace lull {
 namespace {
 
-std::string ContentsOf(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::string TextIn(const std::string& path) {
     try {
         return Hdf5Group::Open(path).String("text");
@@ -59,10 +54,6 @@ TEST(Hdf5Group, SaysWhyAFileCannotBeOpened) {
     const ScratchFile text(".h5", "this is no HDF5 file");
     EXPECT_EQ(TextIn(text.path), "cannot open it as HDF5");
 }
-
-}  // namespace
-
-namespace {
 
 TEST(State, SaysWhatIsDamaged) {
     StateWriter writer;

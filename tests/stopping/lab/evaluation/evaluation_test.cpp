@@ -124,10 +124,6 @@ TEST(Scores, TakesAStopForADecision) {
     EXPECT_EQ(Score({&right, 1}, {}).auc, 1);
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Bootstrap, IsAPointWhereAllIsTheSame) {
     const std::vector<std::vector<double>> values = {{0.25, 0.25}, {0.25}};
     const Interval interval = BootstrapInterval(values);

@@ -120,8 +120,7 @@ TEST(LabelledBlocks, NameTheFileThatDoesNotFit) {
 
 TEST(LabelledBlocks, AreReadFromSeveralFilesAsOne) {
     const LearningData data, other;
-    const std::vector<ViewpointRecording> all = ReadDatasets({data.dataset.path});
-    EXPECT_EQ(all.size(), 3u);
+    EXPECT_EQ(ReadDatasets({data.dataset.path}).size(), 3u);
     EXPECT_EQ(ReadDatasets({data.dataset.path, other.dataset.path}).size(), 3u);
     EXPECT_THROW(ReadDatasets({data.human.path}), std::runtime_error);
 }

@@ -126,11 +126,6 @@ ViewpointRecording MakeViewpoint(const std::string& name) {
     return viewpoint;
 }
 
-void WriteBytes(const std::string& path, std::span<const std::byte> bytes) {
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-}
-
 TEST(Dataset, KeepsWhatWasRecorded) {
     const std::vector<ViewpointRecording> written = {MakeViewpoint("a"), MakeViewpoint("b")};
     const ScratchFile file(".h5");
@@ -270,9 +265,8 @@ TEST(PictureRecords, StayWithoutHalvesInFiles) {
     viewpoint.blockCount = 1;
     viewpoint.cap = 128;
     viewpoint.blocks[0] = Record({64, 128});
-    const std::vector<std::byte> bytes = EncodeDataset(std::span(&viewpoint, 1));
-    const ScratchFile file(".h5",
-                           std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    const ScratchFile file(".h5");
+    WriteBytes(file.path, EncodeDataset(std::span(&viewpoint, 1)));
     const ViewpointRecording read = ReadDataset(file.path).at(0);
     EXPECT_EQ(read.passSpp, 0);
     EXPECT_EQ(read.blocks.at(0).absent, viewpoint.blocks[0].absent);

@@ -93,11 +93,6 @@ TEST(TrainingPlan, IsRecorded) {
 namespace lull::training_run_test {
 namespace {
 
-void WriteFile(const std::string& path, std::span<const std::byte> bytes) {
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-}
-
 // Lets trainings continue for a number of steps, and counts their events.
 struct Watcher {
     int left = 1 << 30, begun = 0, ended = 0;
@@ -118,7 +113,7 @@ TEST(TrainAll, ScoresEachNetworkByWhatItHasNotSeen) {
     TrainingPlan plan = data.Plan();
     plan.crossValidate = true;
     const std::vector<BlockSplit> splits = MakeSplits(plan, data.Blocks());
-    TrainingCheckpoint none("", 0, WriteFile);
+    TrainingCheckpoint none("", 0, WriteBytes);
     Watcher watcher;
     const auto result = TrainAll(plan, splits, &none, watcher.Events());
     ASSERT_TRUE(result);
@@ -154,7 +149,7 @@ TEST(TrainAll, GoesOnFromItsCheckpoint) {
     TrainingPlan plan = data.Plan();
     plan.crossValidate = true;
     const std::vector<BlockSplit> splits = MakeSplits(plan, data.Blocks());
-    TrainingCheckpoint none("", 0, WriteFile);
+    TrainingCheckpoint none("", 0, WriteBytes);
     Watcher whole;
     const auto expected = TrainAll(plan, splits, &none, whole.Events());
     const int steps = (1 << 30) - whole.left;
@@ -162,10 +157,10 @@ TEST(TrainAll, GoesOnFromItsCheckpoint) {
     const ScratchFile file(".checkpoint");
     for (const int before : {0, steps / 2, steps - 1}) {
         Watcher first{before};
-        TrainingCheckpoint checkpoint(file.path, 1e6, WriteFile);
+        TrainingCheckpoint checkpoint(file.path, 1e6, WriteBytes);
         EXPECT_FALSE(TrainAll(plan, splits, &checkpoint, first.Events()));
         EXPECT_EQ(first.begun, before == 0 ? 1 : first.begun);
-        TrainingCheckpoint again(file.path, 1e6, WriteFile);
+        TrainingCheckpoint again(file.path, 1e6, WriteBytes);
         again.Read();
         Watcher rest;
         const auto result = TrainAll(plan, splits, &again, rest.Events());
@@ -182,7 +177,7 @@ TEST(TrainingCheckpoint, IsOfOneTrainingAndWhole) {
     TrainingPlan plan = data.Plan();
     const std::vector<BlockSplit> splits = MakeSplits(plan, data.Blocks());
     const ScratchFile file(".checkpoint");
-    TrainingCheckpoint checkpoint(file.path, 1e6, WriteFile);
+    TrainingCheckpoint checkpoint(file.path, 1e6, WriteBytes);
     EXPECT_THROW(checkpoint.Read(), std::runtime_error);
     Watcher watcher{3};
     EXPECT_FALSE(TrainAll(plan, splits, &checkpoint, watcher.Events()));
@@ -190,12 +185,12 @@ TEST(TrainingCheckpoint, IsOfOneTrainingAndWhole) {
     // Another training cannot go on from there.
     TrainingPlan other = plan;
     other.training.batch = 32;
-    TrainingCheckpoint read(file.path, 1e6, WriteFile);
+    TrainingCheckpoint read(file.path, 1e6, WriteBytes);
     read.Read();
     EXPECT_THROW(TrainAll(other, splits, &read, Watcher().Events()), std::runtime_error);
     // Neither can this one from a part of the file.
     std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 1);
-    TrainingCheckpoint cut(file.path, 1e6, WriteFile);
+    TrainingCheckpoint cut(file.path, 1e6, WriteBytes);
     EXPECT_THROW(cut.Read(), std::runtime_error);
 
     TrainingCheckpoint full(file.path, 0, [](const std::string&, std::span<const std::byte>) {
