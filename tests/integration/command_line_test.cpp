@@ -8,10 +8,6 @@
 namespace lull {
 namespace {
 
-struct SceneDirectory : TemporaryDirectory {
-    SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
-};
-
 TEST(CommandLine, RefusesWrongUsage) {
     const SceneDirectory directory;
     for (const char* arguments :
@@ -91,8 +87,7 @@ TEST(CommandLine, RefusesWrongUsage) {
 }
 
 TEST(CommandLine, ReadsNumbersInDecimalNotation) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const std::string render = "render scene.pbrt --quiet -o a.exr --spp ";
     for (const char* good : {"+2", "2 --exposure +.5", "2 --exposure -1e-1", "2 --seed +7"})
         ExpectSuccess(directory, render + good);
@@ -101,8 +96,7 @@ TEST(CommandLine, ReadsNumbersInDecimalNotation) {
 }
 
 TEST(CommandLine, SuggestsOptions) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const auto errorOf = [&](const std::string& arguments) {
         return RunLull(directory, "render scene.pbrt " + arguments).err;
     };
@@ -170,8 +164,7 @@ TEST(CommandLine, HelpNamesChoices) {
     const TemporaryDirectory directory;
     for (const auto& [command, option] : {std::pair("render", "--png-bits 8|16=8 "),
                                           {"evaluate", "--choose-by error|critical=error"}}) {
-        const Outcome outcome = RunLull(directory, std::string(command) + " --help-all");
-        EXPECT_HAS(outcome.out, option);
+        EXPECT_HAS(RunLull(directory, std::string(command) + " --help-all").out, option);
     }
     const Outcome wrong = RunLull(directory, "render scene.pbrt --png-bits 12");
     EXPECT_EQ(wrong.exitCode, 2);
@@ -219,7 +212,7 @@ TEST(CommandLine, PrintsThePathOfASample) {
     const Outcome outcome = ExpectSuccess(directory, command);
     for (const char* part : {"Sample 3 of pixel 12,8", "camera at 0 0 -3", "on \"sphere, ",
                              "\nRadiance ", "leaves the scene"})
-        EXPECT_HAS(outcome.out, part) << part << " is not in\n" << outcome.out;
+        EXPECT_HAS(outcome.out, part);
     EXPECT_EQ(RunLull(directory, command).out, outcome.out);
     EXPECT_NE(RunLull(directory, command + "0").out, outcome.out);
     EXPECT_EQ(directory.CountFiles(), 1);
@@ -250,8 +243,7 @@ TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
 }
 
 TEST(CommandLine, StopsBlocksAsARuleSays) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     directory.Write("rows.csv", "scene;20;60;\n");
     ExpectSuccess(directory,
                   "render scene.pbrt --resolution 100x50 --block 50 -o image.exr "
@@ -368,7 +360,7 @@ TEST(CommandLine, TellsStoppedFromCapped) {
         ExpectSuccess(directory, render + "--stop lnoise:0.01 --cap 100 -o i.exr");
     for (const char* part : {"0 of 4 blocks clean, 4 at the cap and not clean", "threshold 0.01;",
                              "estimated sufficient --max-spp: "})
-        EXPECT_HAS(capped.err, part) << part << "\n" << capped.err;
+        EXPECT_HAS(capped.err, part);
     EXPECT_FALSE(Contains(capped.err, "less time")) << capped.err;
     const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
     EXPECT_EQ(report["totals"]["blocksAtCap"], 4);
@@ -393,7 +385,7 @@ TEST(CommandLine, HelpsWithWrongUsage) {
     const auto refuses = [&](const std::string& arguments, const std::string& part) {
         const Outcome outcome = RunLull(directory, arguments);
         EXPECT_EQ(outcome.exitCode, 2) << arguments << outcome.err;
-        EXPECT_HAS(outcome.err, part) << arguments << "\n" << outcome.err;
+        EXPECT_HAS(outcome.err, part) << arguments;
     };
     refuses("rendr scene.pbrt", "there is no command 'rendr'; did you mean 'render'?");
     refuses("scene.pbrt", "type lull render scene.pbrt");
@@ -414,7 +406,7 @@ TEST(CommandLine, TellsWhatIsInAScene) {
     const Outcome outcome = ExpectSuccess(directory, "info scene.pbrt");
     for (const char* part : {"sphere", "matte", "infinite", "24 x 16",
                              "sobol-halves (random in the file)", "perspective"})
-        EXPECT_HAS(outcome.out, part) << part << "\n" << outcome.out;
+        EXPECT_HAS(outcome.out, part);
     EXPECT_EQ(directory.CountFiles(), 1);
 }
 

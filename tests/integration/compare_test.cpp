@@ -11,9 +11,8 @@ using Json = nlohmann::json;
 
 constexpr const char* kSize = " --resolution 100x90 --block 40 --quiet ";
 
-struct SceneDirectory : TemporaryDirectory {
-    SceneDirectory() {
-        Write("scene.pbrt", SceneText(kSphere));
+struct HumanDirectory : SceneDirectory {
+    HumanDirectory() {
         Write("human.csv", "a;20;40;60;80;100;120;20;40;60;\nb;20;20;20;20;20;20;20;20;20;\n");
     }
     Json Read(const std::string& name) const { return Json::parse(ReadBytes(File(name))); }
@@ -24,7 +23,7 @@ std::vector<float> Green(const TemporaryDirectory& directory, const std::string&
 }
 
 TEST(Compare, OneRenderGivesTheImagesOfThree) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const Outcome outcome = ExpectSuccess(
         directory, std::string("compare scene.pbrt") + kSize +
                        "--snapshots --stop dammertz:0.02 --human human.csv:a --cap 160 -o "
@@ -62,7 +61,7 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
 }
 
 TEST(Compare, SaysHowManyBlocksDifferVisibly) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     for (const char* spp : {"20", "160"})
         RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
                                spp + ".exr");
@@ -86,7 +85,7 @@ TEST(Compare, SaysHowManyBlocksDifferVisibly) {
 }
 
 TEST(Compare, MakesTheDenoisedImageOfARender) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize +
                                  "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
                                  "room.html");
@@ -108,7 +107,7 @@ TEST(Compare, MakesTheDenoisedImageOfARender) {
 
 // Both blocks of a place stop with the later, and each eye is denoised and measured by itself.
 TEST(Compare, TakesPairs) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const std::string pair = std::string(" scene.pbrt --stereo 0.3,4") + kSize;
     const Outcome outcome =
         ExpectSuccess(directory, "compare" + pair +
@@ -141,7 +140,7 @@ TEST(Compare, TakesPairs) {
 
 // Pictures have the figures of the display image of the EXRs beside them, and no others.
 TEST(Compare, TakesPicturesForDisplays) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     for (const char* spp : {"20", "160"})
         RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
                                spp + ".exr");
@@ -157,7 +156,7 @@ TEST(Compare, TakesPicturesForDisplays) {
 }
 
 TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp 160 -o r.exr");
     ExpectSuccess(directory,
                   std::string("compare scene.pbrt") + kSize +
@@ -170,7 +169,7 @@ TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
 }
 
 TEST(Compare, GoesOnAfterAnInterruption) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const std::string command = std::string("compare scene.pbrt") + kSize +
                                 "--snapshots --curves --stop dammertz:0.01 --human human.csv:a "
                                 "--cap 400 ";
@@ -194,7 +193,7 @@ TEST(Compare, GoesOnAfterAnInterruption) {
 }
 
 TEST(Compare, SaysWhatIsMissingOrWrong) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     RunLull(directory, "render scene.pbrt --spp 1 --quiet -o small.exr");
     RunLull(directory, "render scene.pbrt --spp 1 --quiet -o crop.exr --crop 0,0.5,0,1");
     directory.Write("text.exr", "no image");
@@ -235,7 +234,7 @@ TEST(Compare, SaysWhatIsMissingOrWrong) {
 }
 
 TEST(Compare, HasCurvesOfErrorAgainstTime) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const std::string command =
         "compare scene.pbrt --resolution 48x44 --block 44 --quiet --cap 100 --curves "
         "--stop dammertz:0.03 ";
@@ -263,7 +262,7 @@ TEST(Compare, HasCurvesOfErrorAgainstTime) {
 }
 
 TEST(RenderReport, IsAPageWhereItsNameSaysSo) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     ExpectSuccess(directory, std::string("render scene.pbrt") + kSize +
                                  "--stop lnoise:2 --cap 200 -o i.exr --report r.html");
     EXPECT_TRUE(ReadBytes(directory.File("r.html")).starts_with("<!DOCTYPE html>"));

@@ -257,8 +257,7 @@ TEST(DenoiseCommand, KnowsTheChannelsOfOthers) {
         const bool hasFeatures = names.size() > 10;
         EXPECT_EQ(out.contains("albedo.G") && out.contains("N.X") && out.contains("Z"),
                   hasFeatures);
-        const ExrImage exr = ReadExr(directory.File("out.exr"));
-        EXPECT_EQ(exr.origin, Vec2i(3, 2));
+        EXPECT_EQ(ReadExr(directory.File("out.exr")).origin, Vec2i(3, 2));
     }
     WriteHalves(directory, {"depth.V", "mask"});
     ExpectFailure(directory, "denoise a.exr --half b.exr -o out.exr",

@@ -12,10 +12,6 @@ namespace {
 constexpr const char* kOptions =
     "scene.pbrt --resolution 100x90 --block 40 --stop dammertz:0.0075 --cap 900 --quiet";
 
-struct SceneDirectory : TemporaryDirectory {
-    SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
-};
-
 std::string RenderCommand(const std::string& more) {
     return fmt::format("LULL render {} {}", kOptions, more);
 }
@@ -129,9 +125,8 @@ TEST(Interruption, GoesOnToMore) {
     expectSame("--stop lnoise:0.8 --cap 150", "--stop lnoise:0.8 --cap 150 --caution 3");
 
     // The rule that looks at passes in a row begins anew, with what there is.
-    const Outcome learned =
-        ExpectSuccess(render("--checkpoint c.h5 --resume -o parts.exr --cap 200"));
-    EXPECT_HAS(learned.err, "going on from c.h5, with another rule");
+    EXPECT_HAS(ExpectSuccess(render("--checkpoint c.h5 --resume -o parts.exr --cap 200")).err,
+               "going on from c.h5, with another rule");
     EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
 
     ExpectSuccess(render(keep + "--spp 30"));
@@ -183,8 +178,7 @@ TEST(Interruption, RecordingsComeToTheSameBits) {
     EXPECT_LT(different, 100u);
 
     // What is there already is not recorded again.
-    const Outcome again = ExpectSuccess(RunShell(directory, record + " -o whole.h5"));
-    EXPECT_HAS(again.err, "already");
+    EXPECT_HAS(ExpectSuccess(RunShell(directory, record + " -o whole.h5")).err, "already");
     EXPECT_EQ(ReadBytes(directory.File("whole.h5")), whole);
 }
 

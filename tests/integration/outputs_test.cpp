@@ -45,7 +45,7 @@ void ExpectRefused(const TemporaryDirectory& directory, const std::string& argum
     EXPECT_EQ(outcome.exitCode, 1) << arguments << "\n" << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << arguments << "\n" << outcome.err;
     for (const std::string& part : {output + " \"", "would replace " + other + " \""})
-        EXPECT_HAS(outcome.err, part) << arguments << "\n" << outcome.err;
+        EXPECT_HAS(outcome.err, part) << arguments;
     EXPECT_EQ(FilesIn(directory), before) << arguments;
 }
 

@@ -12,8 +12,7 @@ namespace {
 constexpr const char* kLimit = "timeout 20 LULL ";
 
 TEST(Writers, OfOneDatasetLoseNothing) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     ExpectSuccess(RunShell(
         directory,
         "for v in v1 v2 v3; do LULL record scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 "
@@ -36,8 +35,7 @@ void ExpectOneWriter(const TemporaryDirectory& directory, const std::string& com
 }
 
 TEST(Writers, OfOneCheckpointAreOne) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     ExpectOneWriter(directory, "LULL render scene.pbrt --spp 2 --checkpoint c.h5 -o a.exr --quiet",
                     ".c.h5.lock");
     ExpectOneWriter(directory,
@@ -48,8 +46,7 @@ TEST(Writers, OfOneCheckpointAreOne) {
 
 // Files of one name are of one process; another name, or a name that a killed process had, is free.
 TEST(Writers, OfOneResultAreOne) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const auto expectOneWriter = [&](const std::string& command, const std::string& lock) {
         ExpectOneWriter(directory, command, lock, "this file");
     };
@@ -69,8 +66,7 @@ TEST(Writers, OfOneResultAreOne) {
 }
 
 TEST(SpecialFiles, AreNotWaitedFor) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     for (const char* name : {"f.exr", "f.h5", "f.csv", "f.json"})
         ASSERT_EQ(mkfifo(directory.File(name).c_str(), 0600), 0);
     for (const char* command :
@@ -81,7 +77,7 @@ TEST(SpecialFiles, AreNotWaitedFor) {
           "train f.h5 --human f.csv -o m.h5", "study --collect f.json -o t.csv"}) {
         const Outcome outcome = RunShell(directory, kLimit + std::string(command));
         EXPECT_EQ(outcome.exitCode, 1) << command << "\n" << outcome.err;
-        EXPECT_HAS(outcome.err, "not a regular file") << command << "\n" << outcome.err;
+        EXPECT_HAS(outcome.err, "not a regular file");
     }
 }
 
@@ -98,8 +94,7 @@ TEST(HalfExr, IsClampedWithOneWarning) {
 }
 
 TEST(Messages, AreShortAndCommandNoTerminal) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     directory.Write("t.csv", "scene;" + std::string(100'000, '\x1b') + ";\n");
     directory.Write(
         "m.pbrt", SceneText("Material \"a\x1b[31m\a" + std::string(5000, 'x') + "\"\n" + kSphere));
@@ -114,8 +109,7 @@ TEST(Messages, AreShortAndCommandNoTerminal) {
 }
 
 TEST(Messages, AreShortHoweverLongTheCommandIs) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     directory.Write("h.csv", "v;20\n");
     for (const char* command :
          {"render scene.pbrt --stop learned:$L", "render scene.pbrt --stop thresholds:h.csv:$L",
@@ -130,8 +124,7 @@ TEST(Messages, AreShortHoweverLongTheCommandIs) {
 }
 
 TEST(Messages, AreNotThoseOfALibraryForManyThreads) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const Outcome outcome =
         ExpectSuccess(directory, "render scene.pbrt --spp 1 --threads 4096 -o a.exr --quiet");
     EXPECT_EQ(outcome.err, "");
