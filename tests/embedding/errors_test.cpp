@@ -1,6 +1,4 @@
 // Errors have a message, and change nothing.
-#include <cstdlib>
-#include <limits>
 #include <thread>
 
 #include "tests/embedding/stopper_of.h"
@@ -10,8 +8,7 @@ namespace {
 
 void ExpectError(lull_status expected, lull_status status, const std::string& part) {
     EXPECT_EQ(status, expected);
-    EXPECT_NE(std::string(lull_error_message()).find(part), std::string::npos)
-        << "no '" << part << "' in: " << lull_error_message();
+    EXPECT_HAS(lull_error_message(), part) << "no '" << part << "' in: " << lull_error_message();
 }
 
 TEST(StopperErrors, RefusesBadSettings) {

@@ -1,8 +1,4 @@
 // Answers to other programs: the same as lull's own, whatever the layout of their pictures.
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <limits>
 #include <thread>
 
 #include "stopping/rules/baselines.h"

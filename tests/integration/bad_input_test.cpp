@@ -26,16 +26,15 @@ TEST(BadInput, WithSubstitutesIsRendered) {
          {"NamedMaterial \"none\"", "\"velvet\"", "there is no texture \"lost\"", "lost.png",
           "lost.ply", "ObjectInstance of \"lost\"", "coordinate system \"lost\"", "\"blob\"",
           "\"glow\"", "lost.exr", "lost.spd", "lost.pbrt"})
-        EXPECT_TRUE(Contains(with.err, lost)) << lost << " in: " << with.err;
+        EXPECT_HAS(with.err, lost);
 
     directory.Write("scene.pbrt", SceneText(world + kSphere));
     const Outcome without = RunLull(directory, command);
     EXPECT_EQ(without.exitCode, 1);
     EXPECT_EQ(CountErrorLines(without.err), 11) << without.err;
-    EXPECT_TRUE(Contains(without.err,
-                         "scene.pbrt:7: NamedMaterial \"none\": no MakeNamedMaterial in "
-                         "force defines it; with --substitute "))
-        << without.err;
+    EXPECT_HAS(without.err,
+               "scene.pbrt:7: NamedMaterial \"none\": no MakeNamedMaterial in "
+               "force defines it; with --substitute ");
 }
 
 TEST(BadInput, IsToldAllAtOnce) {
@@ -47,7 +46,7 @@ TEST(BadInput, IsToldAllAtOnce) {
     EXPECT_EQ(CountErrorLines(outcome.err), 3) << outcome.err;
     for (const char* place : {"scene.pbrt:7: Scale by 0",
                               "scene.pbrt:8: ", "scene.pbrt:10: unknown directive 'Shapes'"})
-        EXPECT_TRUE(Contains(outcome.err, place)) << place << " in: " << outcome.err;
+        EXPECT_HAS(outcome.err, place);
 }
 
 TEST(BadInput, OfOtherProgramsIsNamed) {
@@ -135,16 +134,14 @@ TEST(BadInput, ErrorsOfOtherFormatsAreOneLine) {
 }
 
 TEST(BadInput, ImageTooLargeForTheMemory) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const Outcome outcome = RunShell(directory,
                                      "ulimit -v 4000000 && LULL render scene.pbrt -o out.exr "
                                      "--resolution 13000x13000 --spp 1");
     EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "an image of 13000x13000 pixels needs 4.1 GB of memory"))
-        << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "--crop")) << outcome.err;
+    EXPECT_HAS(outcome.err, "an image of 13000x13000 pixels needs 4.1 GB of memory");
+    EXPECT_HAS(outcome.err, "--crop");
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // Runs the program as its help describes it.
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -8,10 +7,6 @@
 
 namespace lull {
 namespace {
-
-struct SceneDirectory : TemporaryDirectory {
-    SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
-};
 
 TEST(CommandLine, RefusesWrongUsage) {
     const SceneDirectory directory;
@@ -92,19 +87,16 @@ TEST(CommandLine, RefusesWrongUsage) {
 }
 
 TEST(CommandLine, ReadsNumbersInDecimalNotation) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const std::string render = "render scene.pbrt --quiet -o a.exr --spp ";
     for (const char* good : {"+2", "2 --exposure +.5", "2 --exposure -1e-1", "2 --seed +7"})
         ExpectSuccess(directory, render + good);
-    EXPECT_TRUE(Contains(RunLull(directory, render + "0x2").err, "'0x2' is not a whole number"));
-    EXPECT_TRUE(Contains(RunLull(directory, render + "0").err,
-                         "'0' is not in the range from 1 to 16777216"));
+    EXPECT_HAS(RunLull(directory, render + "0x2").err, "'0x2' is not a whole number");
+    EXPECT_HAS(RunLull(directory, render + "0").err, "'0' is not in the range from 1 to 16777216");
 }
 
 TEST(CommandLine, SuggestsOptions) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const auto errorOf = [&](const std::string& arguments) {
         return RunLull(directory, "render scene.pbrt " + arguments).err;
     };
@@ -115,11 +107,11 @@ TEST(CommandLine, SuggestsOptions) {
         "lull: error: there is no option --guide any more; use --denoise, or --integrator bdpt for "
         "light through glass\n");
     EXPECT_EQ(errorOf("--ssp=3"), "lull: error: there is no option --ssp; did you mean --spp?\n");
-    EXPECT_TRUE(Contains(errorOf("--samples 4"), "did you mean --spp?"));
-    EXPECT_TRUE(Contains(errorOf("--res=8x8"), "did you mean --resolution?"));
-    EXPECT_TRUE(Contains(errorOf("--quantum"), "; lull render --help lists"));
+    EXPECT_HAS(errorOf("--samples 4"), "did you mean --spp?");
+    EXPECT_HAS(errorOf("--res=8x8"), "did you mean --resolution?");
+    EXPECT_HAS(errorOf("--quantum"), "; lull render --help lists");
     EXPECT_TRUE(errorOf("--spp none").starts_with("lull: error: "));
-    EXPECT_TRUE(Contains(errorOf("--filtering=pbrt-v3"), "no option --filtering any more; images"));
+    EXPECT_HAS(errorOf("--filtering=pbrt-v3"), "no option --filtering any more; images");
 }
 
 TEST(CommandLine, NamesImagesAfterTheScene) {
@@ -139,7 +131,7 @@ TEST(CommandLine, HelpsAndTellsItsVersion) {
     const TemporaryDirectory directory;
     for (const char* arguments : {"--help", "render --help", "info --help", "--version"}) {
         const Outcome outcome = ExpectSuccess(directory, arguments);
-        EXPECT_TRUE(Contains(outcome.out, "lull")) << arguments;
+        EXPECT_HAS(outcome.out, "lull") << arguments;
         EXPECT_EQ(outcome.err, "") << arguments;
     }
     for (const auto& [as, arguments] :
@@ -156,14 +148,14 @@ TEST(CommandLine, HelpHasTheCommonOptionsFirst) {
         EXPECT_TRUE(Contains(brief, option) && Contains(all, option)) << option;
     for (const char* option : {"--png-bits", "--checkpoint-interval", "--orbit"})
         EXPECT_TRUE(!Contains(brief, option) && Contains(all, option)) << option;
-    EXPECT_TRUE(Contains(brief, "lull render --help-all lists all options."));
+    EXPECT_HAS(brief, "lull render --help-all lists all options.");
     for (const char* group :
          {"\nScene:\n  -", "\nImage:\n  -", "\nSampling:\n  -", "\nStopping:\n  -",
           "\nDenoising:\n  -", "\nOutput:\n  -", "\nInterruption:\n  -", "\nAdvanced:\n  -"})
-        EXPECT_TRUE(Contains(all, group)) << group;
+        EXPECT_HAS(all, group) << group;
     EXPECT_FALSE(Contains(all, "\nOptions:\n"));
     // The options of one command alone come first.
-    EXPECT_TRUE(Contains(ExpectSuccess(directory, "compare --help").out, "--snapshots"));
+    EXPECT_HAS(ExpectSuccess(directory, "compare --help").out, "--snapshots");
     EXPECT_EQ(RunLull(directory, "train --help").out, RunLull(directory, "train --help-all").out);
 }
 
@@ -172,12 +164,11 @@ TEST(CommandLine, HelpNamesChoices) {
     const TemporaryDirectory directory;
     for (const auto& [command, option] : {std::pair("render", "--png-bits 8|16=8 "),
                                           {"evaluate", "--choose-by error|critical=error"}}) {
-        const Outcome outcome = RunLull(directory, std::string(command) + " --help-all");
-        EXPECT_TRUE(Contains(outcome.out, option)) << outcome.out;
+        EXPECT_HAS(RunLull(directory, std::string(command) + " --help-all").out, option);
     }
     const Outcome wrong = RunLull(directory, "render scene.pbrt --png-bits 12");
     EXPECT_EQ(wrong.exitCode, 2);
-    EXPECT_TRUE(Contains(wrong.err, "12 not in {8,16}")) << wrong.err;
+    EXPECT_HAS(wrong.err, "12 not in {8,16}");
 }
 
 TEST(CommandLine, WritesAllFilesAndNamesThemOnStdout) {
@@ -221,7 +212,7 @@ TEST(CommandLine, PrintsThePathOfASample) {
     const Outcome outcome = ExpectSuccess(directory, command);
     for (const char* part : {"Sample 3 of pixel 12,8", "camera at 0 0 -3", "on \"sphere, ",
                              "\nRadiance ", "leaves the scene"})
-        EXPECT_TRUE(Contains(outcome.out, part)) << part << " is not in\n" << outcome.out;
+        EXPECT_HAS(outcome.out, part);
     EXPECT_EQ(RunLull(directory, command).out, outcome.out);
     EXPECT_NE(RunLull(directory, command + "0").out, outcome.out);
     EXPECT_EQ(directory.CountFiles(), 1);
@@ -252,8 +243,7 @@ TEST(CommandLine, WritesWhatTheImageWasMadeFrom) {
 }
 
 TEST(CommandLine, StopsBlocksAsARuleSays) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     directory.Write("rows.csv", "scene;20;60;\n");
     ExpectSuccess(directory,
                   "render scene.pbrt --resolution 100x50 --block 50 -o image.exr "
@@ -272,7 +262,7 @@ TEST(CommandLine, WarnsOfFirstSamplesThatTakeLongerThanTheClock) {
     const Outcome late = RunShell(directory, "timeout -s TERM 100 " + render +
                                                  "--resolution 3000x2000 --spp 20 --threads 1 "
                                                  "--time 1ms");
-    EXPECT_TRUE(Contains(late.err, part)) << late.err;
+    EXPECT_HAS(late.err, part);
     EXPECT_EQ(late.err.find(part), late.err.rfind(part)) << late.err;
     const Outcome inTime = ExpectSuccess(RunShell(directory, render + "--spp 20 --time 100s"));
     EXPECT_FALSE(Contains(inTime.err, part)) << inTime.err;
@@ -370,7 +360,7 @@ TEST(CommandLine, TellsStoppedFromCapped) {
         ExpectSuccess(directory, render + "--stop lnoise:0.01 --cap 100 -o i.exr");
     for (const char* part : {"0 of 4 blocks clean, 4 at the cap and not clean", "threshold 0.01;",
                              "estimated sufficient --max-spp: "})
-        EXPECT_TRUE(Contains(capped.err, part)) << part << "\n" << capped.err;
+        EXPECT_HAS(capped.err, part);
     EXPECT_FALSE(Contains(capped.err, "less time")) << capped.err;
     const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
     EXPECT_EQ(report["totals"]["blocksAtCap"], 4);
@@ -381,11 +371,11 @@ TEST(CommandLine, TellsStoppedFromCapped) {
     };
     EXPECT_EQ(attribute("cleanBlocks"), "0");
     EXPECT_EQ(attribute("blocksAtCap"), "4");
-    EXPECT_TRUE(Contains(attribute("note"), "4 of 4 blocks went to the cap"));
+    EXPECT_HAS(attribute("note"), "4 of 4 blocks went to the cap");
 
     // A fixed number of samples is no cap that anybody ran into.
     const Outcome fixed = RunLull(directory, render + "--spp 20 -o i.exr");
-    EXPECT_TRUE(Contains(fixed.err, "4 of 4 blocks done")) << fixed.err;
+    EXPECT_HAS(fixed.err, "4 of 4 blocks done");
     EXPECT_FALSE(Contains(fixed.err, "cap")) << fixed.err;
     EXPECT_FALSE(ReadExr(directory.File("i.exr")).attributes.contains("note"));
 }
@@ -395,7 +385,7 @@ TEST(CommandLine, HelpsWithWrongUsage) {
     const auto refuses = [&](const std::string& arguments, const std::string& part) {
         const Outcome outcome = RunLull(directory, arguments);
         EXPECT_EQ(outcome.exitCode, 2) << arguments << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, part)) << arguments << "\n" << outcome.err;
+        EXPECT_HAS(outcome.err, part) << arguments;
     };
     refuses("rendr scene.pbrt", "there is no command 'rendr'; did you mean 'render'?");
     refuses("scene.pbrt", "type lull render scene.pbrt");
@@ -416,7 +406,7 @@ TEST(CommandLine, TellsWhatIsInAScene) {
     const Outcome outcome = ExpectSuccess(directory, "info scene.pbrt");
     for (const char* part : {"sphere", "matte", "infinite", "24 x 16",
                              "sobol-halves (random in the file)", "perspective"})
-        EXPECT_TRUE(Contains(outcome.out, part)) << part << "\n" << outcome.out;
+        EXPECT_HAS(outcome.out, part);
     EXPECT_EQ(directory.CountFiles(), 1);
 }
 

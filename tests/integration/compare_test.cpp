@@ -1,8 +1,5 @@
 // Runs `lull compare` as its help describes it.
-#include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"
@@ -14,9 +11,8 @@ using Json = nlohmann::json;
 
 constexpr const char* kSize = " --resolution 100x90 --block 40 --quiet ";
 
-struct SceneDirectory : TemporaryDirectory {
-    SceneDirectory() {
-        Write("scene.pbrt", SceneText(kSphere));
+struct HumanDirectory : SceneDirectory {
+    HumanDirectory() {
         Write("human.csv", "a;20;40;60;80;100;120;20;40;60;\nb;20;20;20;20;20;20;20;20;20;\n");
     }
     Json Read(const std::string& name) const { return Json::parse(ReadBytes(File(name))); }
@@ -27,15 +23,15 @@ std::vector<float> Green(const TemporaryDirectory& directory, const std::string&
 }
 
 TEST(Compare, OneRenderGivesTheImagesOfThree) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const Outcome outcome = ExpectSuccess(
         directory, std::string("compare scene.pbrt") + kSize +
                        "--snapshots --stop dammertz:0.02 --human human.csv:a --cap 160 -o "
                        "room --report room.html --verify 2");
-    EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
+    EXPECT_HAS(outcome.out, "the same bits");
     for (const char* file : {"room.automatic.exr", "room.human.png", "room.reference.exr",
                              "room.thresholds.csv", "room.compare.json", "room.html"}) {
-        EXPECT_TRUE(Contains(outcome.out, std::string(file) + "\n")) << file;
+        EXPECT_HAS(outcome.out, std::string(file) + "\n") << file;
         EXPECT_TRUE(std::filesystem::exists(directory.File(file))) << file;
     }
 
@@ -65,13 +61,13 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
 }
 
 TEST(Compare, SaysHowManyBlocksDifferVisibly) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     for (const char* spp : {"20", "160"})
         RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
                                spp + ".exr");
     const std::string files = "compare --automatic at20.exr --reference at160.exr --block 40 ";
     const Outcome near = ExpectSuccess(directory, files + "--viewing 200cd,20ppd -o near");
-    EXPECT_TRUE(Contains(near.out, " blocks differ visibly at 20 pixels a degree\n")) << near.out;
+    EXPECT_HAS(near.out, " blocks differ visibly at 20 pixels a degree\n");
     RunLull(directory, files + "--viewing 200cd,90ppd -o far");
     const Json json = directory.Read("near.compare.json"), image = json["images"][0];
     EXPECT_EQ(json["viewing"]["name"], "200cd,20ppd,250lux");
@@ -85,11 +81,11 @@ TEST(Compare, SaysHowManyBlocksDifferVisibly) {
 
     const Outcome bad = RunLull(directory, files + "--viewing 200 -o bad");
     EXPECT_EQ(bad.exitCode, 2);
-    EXPECT_TRUE(Contains(bad.err, "100cd,40ppd,250lux")) << bad.err;
+    EXPECT_HAS(bad.err, "100cd,40ppd,250lux");
 }
 
 TEST(Compare, MakesTheDenoisedImageOfARender) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize +
                                  "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
                                  "room.html");
@@ -111,13 +107,13 @@ TEST(Compare, MakesTheDenoisedImageOfARender) {
 
 // Both blocks of a place stop with the later, and each eye is denoised and measured by itself.
 TEST(Compare, TakesPairs) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const std::string pair = std::string(" scene.pbrt --stereo 0.3,4") + kSize;
     const Outcome outcome =
         ExpectSuccess(directory, "compare" + pair +
                                      "--snapshots --denoise --stop lnoise:1.5 --cap 160 -o room "
                                      "--verify 1");
-    EXPECT_TRUE(Contains(outcome.out, "the same bits")) << outcome.out;
+    EXPECT_HAS(outcome.out, "the same bits");
     RunLull(directory, "render" + pair + "--stop lnoise:1.5 --cap 160 -o a.exr");
     RunLull(directory, "render" + pair + "--denoise --cap 160 -o clean.exr");
     RunLull(directory, "render" + pair + "--spp 160 -o r.exr");
@@ -139,19 +135,19 @@ TEST(Compare, TakesPairs) {
     EXPECT_EQ(one["blocks"][17]["flip"], other["blocks"][17]["flip"]);
     const Outcome refused = RunLull(directory, "denoise a.exr");
     EXPECT_EQ(refused.exitCode, 1);
-    EXPECT_TRUE(Contains(refused.err, "a.exr: is a pair")) << refused.err;
+    EXPECT_HAS(refused.err, "a.exr: is a pair");
 }
 
 // Pictures have the figures of the display image of the EXRs beside them, and no others.
 TEST(Compare, TakesPicturesForDisplays) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     for (const char* spp : {"20", "160"})
         RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
                                spp + ".exr");
     const std::string files = "compare --block 40 --reference at160.exr ";
     ExpectSuccess(directory, files + "--automatic at20.exr -o exr");
     const Outcome outcome = ExpectSuccess(directory, files + "--human at20.png -o png");
-    EXPECT_TRUE(Contains(outcome.err, "Pictures for displays: ")) << outcome.err;
+    EXPECT_HAS(outcome.err, "Pictures for displays: ");
     const Json expected = directory.Read("exr.compare.json")["images"][0],
                image = directory.Read("png.compare.json")["images"][0];
     EXPECT_TRUE(image["figures"]["rmse"].is_null() && image["blocks"][0]["relMse"].is_null());
@@ -160,7 +156,7 @@ TEST(Compare, TakesPicturesForDisplays) {
 }
 
 TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp 160 -o r.exr");
     ExpectSuccess(directory,
                   std::string("compare scene.pbrt") + kSize +
@@ -173,7 +169,7 @@ TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
 }
 
 TEST(Compare, GoesOnAfterAnInterruption) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const std::string command = std::string("compare scene.pbrt") + kSize +
                                 "--snapshots --curves --stop dammertz:0.01 --human human.csv:a "
                                 "--cap 400 ";
@@ -197,7 +193,7 @@ TEST(Compare, GoesOnAfterAnInterruption) {
 }
 
 TEST(Compare, SaysWhatIsMissingOrWrong) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     RunLull(directory, "render scene.pbrt --spp 1 --quiet -o small.exr");
     RunLull(directory, "render scene.pbrt --spp 1 --quiet -o crop.exr --crop 0,0.5,0,1");
     directory.Write("text.exr", "no image");
@@ -238,7 +234,7 @@ TEST(Compare, SaysWhatIsMissingOrWrong) {
 }
 
 TEST(Compare, HasCurvesOfErrorAgainstTime) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     const std::string command =
         "compare scene.pbrt --resolution 48x44 --block 44 --quiet --cap 100 --curves "
         "--stop dammertz:0.03 ";
@@ -256,7 +252,7 @@ TEST(Compare, HasCurvesOfErrorAgainstTime) {
     EXPECT_EQ(points["fixed:20"]["spp"], 20);
     EXPECT_GT(points["fixed:20"]["rmseLightness"], points["fixed:60"]["rmseLightness"]);
     EXPECT_GT(points["denoised:3.1"]["ruleSeconds"], 0);
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("room.html")), "errorCurves"));
+    EXPECT_HAS(ReadBytes(directory.File("room.html")), "errorCurves");
 
     // Beside a reference from a file, the errors are the same.
     ExpectSuccess(directory, command + "--reference room.reference.exr -o other");
@@ -266,7 +262,7 @@ TEST(Compare, HasCurvesOfErrorAgainstTime) {
 }
 
 TEST(RenderReport, IsAPageWhereItsNameSaysSo) {
-    const SceneDirectory directory;
+    const HumanDirectory directory;
     ExpectSuccess(directory, std::string("render scene.pbrt") + kSize +
                                  "--stop lnoise:2 --cap 200 -o i.exr --report r.html");
     EXPECT_TRUE(ReadBytes(directory.File("r.html")).starts_with("<!DOCTYPE html>"));

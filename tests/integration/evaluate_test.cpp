@@ -1,8 +1,5 @@
 // Judges rules and thresholds as a user would.
-#include <cmath>
-
 #include "renderer/files/file_io.h"
-#include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_lull.h"
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
@@ -55,11 +52,11 @@ TEST(Evaluate, PrintsThePublishedErrors) {
     const TemporaryDirectory directory;
     const std::string files = " --human '" + human + "' --predicted '";
     const Outcome first = ExpectSuccess(directory, "evaluate" + files + entropy + "' --grid 40");
-    EXPECT_TRUE(Contains(Line(first.out, "all"), "  14.79   13.25   11.89  ")) << first.out;
-    EXPECT_TRUE(Contains(Line(first.out, "all"), "  40     640     0")) << first.out;
+    EXPECT_HAS(Line(first.out, "all"), "  14.79   13.25   11.89  ") << first.out;
+    EXPECT_HAS(Line(first.out, "all"), "  40     640     0") << first.out;
     const Outcome second =
         RunLull(directory, "evaluate" + files + attributes + "' --grid 20 --margins 10,2,6");
-    EXPECT_TRUE(Contains(Line(second.out, "all"), "  14.73   17.82   16.20  ")) << second.out;
+    EXPECT_HAS(Line(second.out, "all"), "  14.73   17.82   16.20  ") << second.out;
     EXPECT_NE(Line(second.out, "p3d_kitchen-view0_part6"), "");
 }
 
@@ -67,12 +64,12 @@ TEST(Evaluate, ComparesTwoFiles) {
     const EvaluationDirectory directory;
     const std::string files = "evaluate --human human.csv --predicted predicted.csv";
     const Outcome outcome = ExpectSuccess(directory, files + " --csv out.csv");
-    EXPECT_TRUE(Contains(outcome.err, "1 of 2 viewpoints")) << outcome.err;
+    EXPECT_HAS(outcome.err, "1 of 2 viewpoints");
     // 100 early and 800 late of 4 blocks; the first is early, the third late.
-    EXPECT_TRUE(Contains(Line(outcome.out, "attic"), "  225    2.2   25.0   25.0")) << outcome.out;
+    EXPECT_HAS(Line(outcome.out, "attic"), "  225    2.2   25.0   25.0") << outcome.out;
     const std::string csv = ReadBytes(directory.File("out.csv"));
-    EXPECT_TRUE(Contains(csv, "\npredicted,attic,,1,4,0,")) << csv;
-    EXPECT_TRUE(Contains(csv, "\npredicted,all,,1,4,0,")) << csv;
+    EXPECT_HAS(csv, "\npredicted,attic,,1,4,0,");
+    EXPECT_HAS(csv, "\npredicted,all,,1,4,0,");
 
     const Outcome brief = RunLull(directory, files + " --predicted all.csv --brief");
     EXPECT_EQ(Line(brief.out, "attic"), "");
@@ -88,16 +85,14 @@ TEST(Evaluate, RunsRulesOnRecordings) {
         ExpectSuccess(directory,
                       "evaluate data.h5 --human human.csv --stop lnoise:0.51 --stop fixed:900 "
                       "--stop lnoise:0.3 --stop thresholds:all.csv --brief");
-    EXPECT_TRUE(Contains(outcome.err, "no thresholds for 'shed'")) << outcome.err;
+    EXPECT_HAS(outcome.err, "no thresholds for 'shed'");
     // Seven blocks of two viewpoints; at 0.3 all but the one at the cap end before they stop.
-    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.51"), "  2       7     0")) << outcome.out;
+    EXPECT_HAS(Line(outcome.out, "lnoise:0.51"), "  2       7     0") << outcome.out;
     EXPECT_EQ(Line(outcome.out, "lnoise:0.51, "), "");
-    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, at least"), "  2       7     0     6"))
-        << outcome.out;
-    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.3, extended"), "  2       7     0     6"))
-        << outcome.out;
+    EXPECT_HAS(Line(outcome.out, "lnoise:0.3, at least"), "  2       7     0     6") << outcome.out;
+    EXPECT_HAS(Line(outcome.out, "lnoise:0.3, extended"), "  2       7     0     6") << outcome.out;
     // fixed: 500, 0, 700, 1600 and 275, 9100, 325: means of 700 and 3233.
-    EXPECT_TRUE(Contains(Line(outcome.out, "fixed:900"), "  1967   19.7")) << outcome.out;
+    EXPECT_HAS(Line(outcome.out, "fixed:900"), "  1967   19.7") << outcome.out;
     EXPECT_NE(Line(outcome.out, "thresholds:all.csv"), "");
 }
 
@@ -113,14 +108,14 @@ TEST(Evaluate, ComparesRivals) {
         const std::string table = outcome.out.substr(outcome.out.rfind("\nrule ") + 1);
         for (const char* rule : {"dammertz", "cycles", "luxtile", "lnoise"})
             EXPECT_NE(Line(table, rule), "") << table;
-        EXPECT_TRUE(Contains(Line(table, "all "), "  2       7     0")) << table;
+        EXPECT_HAS(Line(table, "all "), "  2       7     0") << table;
         // Thresholds of 2400, 625 and 10000 spp: the first is at the end of the recording.
-        EXPECT_TRUE(Contains(Line(table, "all, clipped"), "  2       7     0")) << table;
+        EXPECT_HAS(Line(table, "all, clipped"), "  2       7     0") << table;
     }
     const Outcome alone =
         RunLull(directory, "evaluate data.h5 --human human.csv --rivals --without cellar");
     EXPECT_EQ(alone.exitCode, 1);
-    EXPECT_TRUE(Contains(alone.err, "other viewpoints")) << alone.err;
+    EXPECT_HAS(alone.err, "other viewpoints");
 }
 
 TEST(Evaluate, EvaluatesRulesBySingleAnswers) {
@@ -137,13 +132,11 @@ TEST(Evaluate, EvaluatesRulesBySingleAnswers) {
         "evaluate data.h5 --without cellar --without shed --answers answers.csv --stop lnoise:0.5 "
         "--stop fixed:1600 --csv out.csv ";
     const Outcome outcome = ExpectSuccess(directory, command);
-    EXPECT_TRUE(Contains(outcome.out, "attic: 45 of 88 answers, to 4 of 4 blocks, count"))
-        << outcome.out;
-    EXPECT_TRUE(Contains(outcome.out, "left out: 43 answers at spp where not every rule has"));
-    EXPECT_TRUE(Contains(Line(outcome.out, "lnoise:0.5 "), "   100.0  ")) << outcome.out;
-    EXPECT_TRUE(Contains(Line(outcome.out, "fixed:1600 "), "     0.0  ")) << outcome.out;
-    const std::string csv = ReadBytes(directory.File("out.csv"));
-    EXPECT_TRUE(Contains(csv, "\nlnoise:0.5,attic,45,4,")) << csv;
+    EXPECT_HAS(outcome.out, "attic: 45 of 88 answers, to 4 of 4 blocks, count");
+    EXPECT_HAS(outcome.out, "left out: 43 answers at spp where not every rule has");
+    EXPECT_HAS(Line(outcome.out, "lnoise:0.5 "), "   100.0  ") << outcome.out;
+    EXPECT_HAS(Line(outcome.out, "fixed:1600 "), "     0.0  ") << outcome.out;
+    EXPECT_HAS(ReadBytes(directory.File("out.csv")), "\nlnoise:0.5,attic,45,4,");
     const Outcome brief = RunLull(directory, command + "--brief");
     EXPECT_FALSE(Contains(brief.out, "threshold  stops")) << brief.out;
 }

@@ -89,8 +89,8 @@ TEST(Importance, IsPartOfTheRuleWhereARenderResumes) {
     const std::string whole = ReadBytes(directory.File("i.thresholds.csv"));
     const std::string keep = rule + "--checkpoint c.h5 --resume --keep-checkpoint ";
     directory.Stops(keep + "--max-spp 20");  // before the first block stops
-    EXPECT_TRUE(Contains(RunLull(directory, kRender + keep + "--importance mask.png").err,
-                         "with another rule"));
+    EXPECT_HAS(RunLull(directory, kRender + keep + "--importance mask.png").err,
+               "with another rule");
     EXPECT_EQ(ReadBytes(directory.File("i.thresholds.csv")), whole);
 }
 

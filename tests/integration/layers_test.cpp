@@ -4,7 +4,6 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
-#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -167,7 +166,7 @@ TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
     ExpectSum("g.exr", {"bulb", "key", "rest"});
     Render("--spp 40 --exr-half -o d.exr " + groups);
     ExpectSum("d.exr", {"bulb", "key", "rest"}, 2e-3f);
-    EXPECT_TRUE(Contains(OpenExr(directory.File("d.exr")).Channels(), "light.key.G:half"));
+    EXPECT_HAS(OpenExr(directory.File("d.exr")).Channels(), "light.key.G:half");
 }
 
 // Names of channels are UTF-8 of up to 255 bytes; those of lights can be anything.
@@ -221,8 +220,7 @@ TEST_F(LayersTest, LetTheBackgroundOut) {
     Render("--spp 16 --transparent --aov cryptomatte -o mattes.exr");
     const std::vector<float> share =  // of the only object
         OpenExr(directory.File("mattes.exr")).Channel("CryptoObject00.G");
-    EXPECT_TRUE(
-        Contains(ReadBytes(directory.File("mattes.exr")), std::string("/manifest\0string\0", 17)));
+    EXPECT_HAS(ReadBytes(directory.File("mattes.exr")), std::string("/manifest\0string\0", 17));
     bool isPartial = false;
     for (size_t i = 0; i < alpha.size(); ++i) {
         // The sky is white.
@@ -309,7 +307,7 @@ colorspaces:
     const Outcome unknown =
         RunLull(directory, "render scene.pbrt -o c.exr " + ocio + " --view filmic");
     EXPECT_EQ(unknown.exitCode, 1);
-    EXPECT_TRUE(Contains(unknown.err, "no view \"filmic\", but: plain, half")) << unknown.err;
+    EXPECT_HAS(unknown.err, "no view \"filmic\", but: plain, half");
     EXPECT_EQ(RunLull(directory, "render scene.pbrt --ocio no.ocio").exitCode, 1);
 }
 
@@ -319,7 +317,7 @@ TEST_F(LayersTest, MessagesOfOpenColorIoCanBePrinted) {
     for (const char* view : {"--ocio raw.ocio", "--ocio raw.ocio --view \xff\x1b[31m"}) {
         const Outcome bad = RunLull(directory, "render scene.pbrt -o c.exr " + std::string(view));
         EXPECT_EQ(bad.exitCode, 1);
-        EXPECT_TRUE(Contains(bad.err, "raw.ocio")) << bad.err;
+        EXPECT_HAS(bad.err, "raw.ocio");
         for (const char c : bad.err) EXPECT_TRUE((c >= ' ' && c < 0x7f) || c == '\n') << bad.err;
     }
 }

@@ -45,7 +45,7 @@ void ExpectRefused(const TemporaryDirectory& directory, const std::string& argum
     EXPECT_EQ(outcome.exitCode, 1) << arguments << "\n" << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << arguments << "\n" << outcome.err;
     for (const std::string& part : {output + " \"", "would replace " + other + " \""})
-        EXPECT_TRUE(Contains(outcome.err, part)) << arguments << "\n" << outcome.err;
+        EXPECT_HAS(outcome.err, part) << arguments;
     EXPECT_EQ(FilesIn(directory), before) << arguments;
 }
 
@@ -130,7 +130,7 @@ TEST(Outputs, LongRendersAreToldOfDenoising) {
         RunShell(directory,
                  "timeout -s INT 7 LULL render scene.pbrt --resolution 400x400 --max-depth 1000 "
                  "--threads 1 -o out.exr");
-    EXPECT_TRUE(Contains(outcome.err, " left; with --denoise, blocks stop once ")) << outcome.err;
+    EXPECT_HAS(outcome.err, " left; with --denoise, blocks stop once ");
 }
 
 // However early it comes, it is whole, and shows all of the picture.
@@ -144,7 +144,7 @@ TEST(Outputs, PreviewsAreOfTheWholePicture) {
             SIGKILL, "out.exr out.png");
         EXPECT_EQ(outcome.exitCode, 137) << outcome.err;
         const ExrImage image = ReadExr(directory.File("out.exr"));
-        EXPECT_TRUE(Contains(std::get<std::string>(image.attributes.at("note")), "interrupted"));
+        EXPECT_HAS(std::get<std::string>(image.attributes.at("note")), "interrupted");
         EXPECT_EQ(ReadImage(directory.File("out.png")).width, image.width);
         bool isDenoised = false;
         for (const ExrChannel& channel : image.channels) {
@@ -166,12 +166,11 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
         RunShell(directory, fmt::format("TMPDIR=other LULL render {} -o out.exr", kOptions));
     EXPECT_EQ(outcome.exitCode, 1);
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "cannot write \"out.exr\": No space left on device"))
-        << outcome.err;
+    EXPECT_HAS(outcome.err, "cannot write \"out.exr\": No space left on device");
 
     const std::string place = outcome.out.substr(0, outcome.out.find('\n'));
     EXPECT_TRUE(place.starts_with("other/lull-") && place.ends_with("/out.exr")) << place;
-    EXPECT_TRUE(Contains(outcome.err, fs::path(place).parent_path().string())) << outcome.err;
+    EXPECT_HAS(outcome.err, fs::path(place).parent_path().string());
     EXPECT_EQ(ReadImage(directory.File(place)).texels,
               ReadImage(directory.File("whole.exr")).texels);
     for (const char* extension : {".png", ".spp.png", ".thresholds.csv"})
@@ -193,9 +192,7 @@ TEST(Outputs, FilesOfAllCommandsGoElsewhere) {
             RunShell(directory, fmt::format("TMPDIR=. LULL {} {}", command, file));
         EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
         EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err,
-                             fmt::format("cannot write \"{}\": No space left on device", file)))
-            << outcome.err;
+        EXPECT_HAS(outcome.err, fmt::format("cannot write \"{}\": No space left on device", file));
         const size_t end = outcome.out.find(std::string("/") + file + "\n");
         ASSERT_NE(end, std::string::npos) << outcome.out;
         const size_t begin = outcome.out.rfind('\n', end) + 1;  // 0 where there is no other line
@@ -208,7 +205,7 @@ TEST(Outputs, FilesOfAllCommandsGoElsewhere) {
         directory, fmt::format("ulimit -f 4; TMPDIR=. LULL {} page.html", kCases[1].first));
     EXPECT_EQ(small.exitCode, 1) << small.err;
     EXPECT_EQ(CountErrorLines(small.err), 1) << small.err;
-    EXPECT_TRUE(Contains(small.err, "; lost: ")) << small.err;
+    EXPECT_HAS(small.err, "; lost: ");
     EXPECT_TRUE(small.err.ends_with("\"page.html\"\n")) << small.err;
     EXPECT_EQ(ReadBytes(directory.File("page.html")), "former");
 }

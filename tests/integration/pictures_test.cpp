@@ -1,7 +1,6 @@
 // Uses the pictures of another renderer as a laboratory would.
 #include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <random>
 
 #include "renderer/image/image_io.h"
@@ -37,8 +36,7 @@ TEST(Pictures, AreRecordedAndJudgedAsScenesAre) {
     const Outcome made =
         ExpectSuccess(directory, "record --images room -o data.h5 --block 50 --threads 1");
     EXPECT_EQ(made.out, "data.h5\n");
-    EXPECT_TRUE(Contains(made.err, "room: 10 pictures of 20 to 200 spp, 4 of 4 blocks"))
-        << made.err;
+    EXPECT_HAS(made.err, "room: 10 pictures of 20 to 200 spp, 4 of 4 blocks");
     const ViewpointRecording room = ReadDataset(directory.File("data.h5")).at(0);
     EXPECT_EQ(room.name, "room");
     EXPECT_EQ(room.blocks.at(3).Count(), 10);
@@ -52,8 +50,8 @@ TEST(Pictures, AreRecordedAndJudgedAsScenesAre) {
         EXPECT_TRUE(std::ranges::equal(room.blocks.at(2).Values(4, channel),
                                        own.blocks.at(2).Values(4, channel)))
             << channel;
-    EXPECT_TRUE(Contains(ExpectSuccess(directory, "record --images room -o data.h5 --block 50").err,
-                         "has all blocks of 'room' already"));
+    EXPECT_HAS(ExpectSuccess(directory, "record --images room -o data.h5 --block 50").err,
+               "has all blocks of 'room' already");
 
     const std::string rules = " --human human.csv --stop entropy:1 --stop fixed:100 --brief";
     const Outcome fromData = ExpectSuccess(directory, "evaluate data.h5" + rules);
@@ -67,16 +65,16 @@ TEST(Pictures, AreRecordedAndJudgedAsScenesAre) {
                       "evaluate --images room:room --block 50 --csv a.csv --curves c.csv "
                       "--split paper:split.csv" +
                           rules);
-    EXPECT_TRUE(Contains(test.err, "2 blocks that split.csv does not list")) << test.err;
+    EXPECT_HAS(test.err, "2 blocks that split.csv does not list");
     EXPECT_TRUE(ReadBytes(directory.File("c.csv"))
                     .starts_with("rule,viewpoint,block,human,stop,spp,value,threshold,noisy\n"
                                  "entropy:1,room,2,200,"));
     EXPECT_FALSE(Contains(ReadBytes(directory.File("c.csv")), "entropy:1,room,1,"));
     EXPECT_EQ(ExpectSuccess(directory, "evaluate --images room --block 50" + rules).out,
               fromData.out);
-    EXPECT_TRUE(Contains(
+    EXPECT_HAS(
         RunLull(directory, "evaluate --images room --block 50 --human human.csv --stop lnoise").err,
-        "half of the samples"));
+        "half of the samples");
 }
 
 TEST(Pictures, MakeTheImageOfPeople) {
@@ -85,13 +83,13 @@ TEST(Pictures, MakeTheImageOfPeople) {
         directory, "compare --images room --human human.csv --stop fixed:80 --block 50 -o out");
     for (const char* file : {"out.automatic.png", "out.human.png", "out.reference.png",
                              "out.thresholds.csv", "out.compare.json"})
-        EXPECT_TRUE(Contains(outcome.out, std::string(file) + "\n")) << outcome.out;
+        EXPECT_HAS(outcome.out, std::string(file) + "\n");
     EXPECT_EQ(ReadBytes(directory.File("out.thresholds.csv")), "room;80;80;80;80;\n");
     const auto json = nlohmann::json::parse(ReadBytes(directory.File("out.compare.json")));
     ASSERT_EQ(json["images"].size(), 3u);
     // 60, 100 (the first of at least 90), 200 and 120 spp.
     EXPECT_EQ(json["images"][1]["name"], "human");
-    EXPECT_TRUE(Contains(outcome.out, "    120.0")) << outcome.out;
+    EXPECT_HAS(outcome.out, "    120.0");
     // The folder's thresholds by another name; and what does not fit.
     ExpectSuccess(directory, "compare --images room:attic --human human.csv:room --block 50 -o b");
     ExpectFailure(directory, "compare --images room:attic --human human.csv --block 50 -o c",
@@ -114,8 +112,8 @@ TEST(Pictures, HaveEntropies) {
     EXPECT_EQ(std::ranges::count(one.out, '\n'), 1 + 4 + 2) << one.out;
     const std::string csv = ReadBytes(directory.File("e.csv"));
     EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 1 + 4 * 26);
-    EXPECT_TRUE(Contains(csv, "\n,room/tex_100.png,100,,,0,0,100,100,")) << csv.substr(0, 400);
-    EXPECT_TRUE(Contains(csv, "\n,room/tex_100.png,100,3,24,90,90,10,10,"));
+    EXPECT_HAS(csv, "\n,room/tex_100.png,100,,,0,0,100,100,") << csv.substr(0, 400);
+    EXPECT_HAS(csv, "\n,room/tex_100.png,100,3,24,90,90,10,10,");
     const std::string head = csv.substr(0, csv.find('\n'));
     for (size_t at = 0; at < csv.size(); at = csv.find('\n', at) + 1)  // as many fields
         EXPECT_EQ(std::count(csv.begin() + ptrdiff_t(at),
@@ -123,11 +121,9 @@ TEST(Pictures, HaveEntropies) {
                   std::ranges::count(head, ','));
     // In the order of spp, by name or by folder: entropies fall.
     const Outcome folder = ExpectSuccess(directory, "entropy --images room --block 50 --csv f.csv");
-    const Outcome files = ExpectSuccess(directory, "entropy room/tex_*.png --block 50");
-    EXPECT_EQ(files.out, folder.out);
+    EXPECT_EQ(ExpectSuccess(directory, "entropy room/tex_*.png --block 50").out, folder.out);
     EXPECT_LT(folder.out.find("tex_40.png"), folder.out.find("tex_100.png"));
-    EXPECT_TRUE(
-        Contains(ReadBytes(directory.File("f.csv")), "\nroom,room/tex_200.png,200,3,,50,50,"));
+    EXPECT_HAS(ReadBytes(directory.File("f.csv")), "\nroom,room/tex_200.png,200,3,,50,50,");
     ExpectFailure(directory, "entropy room/tex_20.png --block 7", {"tex_20.png", "too small"});
     ExpectFailure(directory, "entropy nowhere.png", {"nowhere.png"});
     for (const char* usage :
@@ -163,7 +159,7 @@ TEST(Laboratory, GoesFromPicturesToATableAndAFigure) {
     EXPECT_EQ(run("answers").exitCode, 2);
     std::filesystem::create_directory(directory.path / "answers");
     const Outcome study = ExpectSuccess(run("answers out 50"));
-    EXPECT_TRUE(Contains(study.out, "Give out/study.html to observers")) << study.out;
+    EXPECT_HAS(study.out, "Give out/study.html to observers");
     // Observers answer, as the page saves it.
     const std::string page = ReadBytes(directory.File("out/study.html"));
     const size_t at = page.find("\"id\":\"") + 6;
@@ -175,11 +171,11 @@ TEST(Laboratory, GoesFromPicturesToATableAndAFigure) {
                                        .viewpoint = "kitchen"}
                             .Text());
     const Outcome whole = ExpectSuccess(run("answers out 50"));
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("out/human.csv")), "kitchen;40;80;160;320;"));
+    EXPECT_HAS(ReadBytes(directory.File("out/human.csv")), "kitchen;40;80;160;320;");
     for (const char* file : {"entropies.csv", "collected.html", "data.h5", "own.h5", "blocks.csv",
                              "curves.csv", "kitchen.human.png", "compare.html"})
         EXPECT_FALSE(ReadBytes(directory.File(std::string("out/") + file)).empty()) << file;
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("out/table.csv")), "learned:out/own.h5,"));
+    EXPECT_HAS(ReadBytes(directory.File("out/table.csv")), "learned:out/own.h5,");
     // With thresholds that are there already, there is nobody to ask.
     ExpectSuccess(run("out/human.csv again 50"));
     EXPECT_FALSE(std::filesystem::exists(directory.File("again/study.html")));
@@ -190,15 +186,13 @@ TEST(Preset, ListsItsValues) {
     const Outcome paper = ExpectSuccess(directory, "train --preset paper");
     for (const char* line :
          {"--k 8\n", "--n 40\n", "--features H\n", "--units 512,128,32\n", "--epochs 30\n"})
-        EXPECT_TRUE(Contains(paper.out, line)) << line << paper.out;
-    EXPECT_TRUE(
-        Contains(ExpectSuccess(directory, "train --preset entropy").out, "--ratio 1.4142\n"));
+        EXPECT_HAS(paper.out, line);
+    EXPECT_HAS(ExpectSuccess(directory, "train --preset entropy").out, "--ratio 1.4142\n");
     EXPECT_EQ(RunLull(directory, "train -o m.h5").exitCode, 2);
 }
 
 TEST(PaperFull, SaysWhyItDoesNotShip) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     ExpectFailure(directory, "render scene.pbrt --stop learned:paper-full -o a.exr",
                   {"paper-full", "--preset paper"});
 }

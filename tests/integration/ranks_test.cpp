@@ -1,8 +1,4 @@
 // Renders under mpirun, and compares with what one process makes.
-#include <fmt/format.h>
-
-#include <sstream>
-
 #include "renderer/image/image_io.h"
 #include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_and_signal.h"
@@ -138,7 +134,7 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
             "mpi=$(echo $(cat /proc/$p/task/$p/children)); " +
             RankTwo("$mpi") + "kill -STOP $last; wait $p"));
     const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
-    EXPECT_TRUE(Contains(stopped.err, line)) << stopped.err;
+    EXPECT_HAS(stopped.err, line);
     EXPECT_EQ(stopped.out, "parts.exr\nparts.png\nparts.spp.png\nparts.thresholds.csv\n");
     ExpectSuccess(
         Run("LULL render scene.pbrt --resolution 100x90 --block 40 --quiet "
@@ -172,19 +168,19 @@ TEST_F(RanksTest, SaySharedErrorsOnce) {
     const Outcome missing = Run(Ranks(3) + "LULL render nothing.pbrt");
     EXPECT_EQ(missing.exitCode, 1);
     EXPECT_EQ(CountErrorLines(missing.err), 1) << missing.err;
-    EXPECT_TRUE(Contains(missing.err, "nothing.pbrt")) << missing.err;
+    EXPECT_HAS(missing.err, "nothing.pbrt");
 
     const Outcome info = Run(Ranks(2) + "LULL info scene.pbrt");
     EXPECT_EQ(info.exitCode, 1);
     EXPECT_EQ(CountErrorLines(info.err), 1) << info.err;
-    EXPECT_TRUE(Contains(info.err, "several ranks")) << info.err;
+    EXPECT_HAS(info.err, "several ranks");
 
     EXPECT_EQ(Run(Ranks(2) + "LULL render scene.pbrt --stop").exitCode, 2);
 
     const Outcome viewed = Run(Ranks(2) + kRender + "--display 127.0.0.1:9");
     EXPECT_NE(viewed.exitCode, 0);
-    EXPECT_TRUE(Contains(viewed.err, "--display")) << viewed.err;
-    EXPECT_TRUE(Contains(viewed.err, "one process")) << viewed.err;
+    EXPECT_HAS(viewed.err, "--display");
+    EXPECT_HAS(viewed.err, "one process");
 }
 
 // Whoever is about to render another scene does not spoil the image of the others.
@@ -197,7 +193,7 @@ TEST_F(RanksTest, RefuseToRenderDifferentScenes) {
             "[ $OMPI_COMM_WORLD_RANK = 1 ] && s=mine || s=mine0; LULL render $s.pbrt --spp 4'");
     EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "rank 1")) << outcome.err;
+    EXPECT_HAS(outcome.err, "rank 1");
 }
 
 }  // namespace

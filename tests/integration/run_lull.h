@@ -1,8 +1,6 @@
 // Runs the program as a user would.
 #pragma once
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include "tests/renderer/files/test_files.h"
@@ -54,6 +52,10 @@ inline std::string SceneText(const std::string& world, const std::string& film =
 
 inline const char* const kSphere = "Shape \"sphere\"";
 
+struct SceneDirectory : TemporaryDirectory {
+    SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
+};
+
 // Returns the lines that begin as errors do.
 inline int CountErrorLines(const std::string& err) {
     const std::string mark = "lull: error: ";
@@ -74,8 +76,7 @@ inline Outcome ExpectFailure(const TemporaryDirectory& directory, const std::str
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
     EXPECT_EQ(outcome.err.back(), '\n');
-    for (const std::string& part : parts)
-        EXPECT_TRUE(Contains(outcome.err, part)) << "no '" << part << "' in: " << outcome.err;
+    for (const std::string& part : parts) EXPECT_HAS(outcome.err, part);
     EXPECT_EQ(ReadBytes(directory.File("out.exr")), "precious");
     EXPECT_EQ(directory.CountFiles(), filesBefore);
     return outcome;

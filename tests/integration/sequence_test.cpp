@@ -1,8 +1,4 @@
 // Renders sequences: the frames of an animation in one run.
-#include <algorithm>
-#include <array>
-#include <span>
-
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"
 

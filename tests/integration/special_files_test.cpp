@@ -1,9 +1,6 @@
 // Tests what is no regular file, names that would command a terminal, and writers that meet.
 #include <sys/stat.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "renderer/image/image_io.h"
 #include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_lull.h"
@@ -15,8 +12,7 @@ namespace {
 constexpr const char* kLimit = "timeout 20 LULL ";
 
 TEST(Writers, OfOneDatasetLoseNothing) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     ExpectSuccess(RunShell(
         directory,
         "for v in v1 v2 v3; do LULL record scene.pbrt --resolution 60x60 --max-depth 0 --cap 40 "
@@ -31,16 +27,15 @@ void ExpectOneWriter(const TemporaryDirectory& directory, const std::string& com
     const Outcome outcome = RunShell(directory, "exec 9>" + lock + " && flock 9 && (" + command +
                                                     " 9>&-; echo first $?); " + "exec 9>&-; " +
                                                     command + "; echo then $?");
-    EXPECT_TRUE(Contains(outcome.out, "first 1\n")) << outcome.out << outcome.err;
-    EXPECT_TRUE(Contains(outcome.out, "then 0\n")) << outcome.out << outcome.err;
+    EXPECT_HAS(outcome.out, "first 1\n") << outcome.out << outcome.err;
+    EXPECT_HAS(outcome.out, "then 0\n") << outcome.out << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.err, "another process is writing " + file)) << outcome.err;
+    EXPECT_HAS(outcome.err, "another process is writing " + file);
     EXPECT_FALSE(std::filesystem::exists(directory.File(lock)));
 }
 
 TEST(Writers, OfOneCheckpointAreOne) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     ExpectOneWriter(directory, "LULL render scene.pbrt --spp 2 --checkpoint c.h5 -o a.exr --quiet",
                     ".c.h5.lock");
     ExpectOneWriter(directory,
@@ -51,8 +46,7 @@ TEST(Writers, OfOneCheckpointAreOne) {
 
 // Files of one name are of one process; another name, or a name that a killed process had, is free.
 TEST(Writers, OfOneResultAreOne) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const auto expectOneWriter = [&](const std::string& command, const std::string& lock) {
         ExpectOneWriter(directory, command, lock, "this file");
     };
@@ -72,8 +66,7 @@ TEST(Writers, OfOneResultAreOne) {
 }
 
 TEST(SpecialFiles, AreNotWaitedFor) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     for (const char* name : {"f.exr", "f.h5", "f.csv", "f.json"})
         ASSERT_EQ(mkfifo(directory.File(name).c_str(), 0600), 0);
     for (const char* command :
@@ -84,7 +77,7 @@ TEST(SpecialFiles, AreNotWaitedFor) {
           "train f.h5 --human f.csv -o m.h5", "study --collect f.json -o t.csv"}) {
         const Outcome outcome = RunShell(directory, kLimit + std::string(command));
         EXPECT_EQ(outcome.exitCode, 1) << command << "\n" << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, "not a regular file")) << command << "\n" << outcome.err;
+        EXPECT_HAS(outcome.err, "not a regular file");
     }
 }
 
@@ -101,8 +94,7 @@ TEST(HalfExr, IsClampedWithOneWarning) {
 }
 
 TEST(Messages, AreShortAndCommandNoTerminal) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     directory.Write("t.csv", "scene;" + std::string(100'000, '\x1b') + ";\n");
     directory.Write(
         "m.pbrt", SceneText("Material \"a\x1b[31m\a" + std::string(5000, 'x') + "\"\n" + kSphere));
@@ -117,8 +109,7 @@ TEST(Messages, AreShortAndCommandNoTerminal) {
 }
 
 TEST(Messages, AreShortHoweverLongTheCommandIs) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     directory.Write("h.csv", "v;20\n");
     for (const char* command :
          {"render scene.pbrt --stop learned:$L", "render scene.pbrt --stop thresholds:h.csv:$L",
@@ -133,8 +124,7 @@ TEST(Messages, AreShortHoweverLongTheCommandIs) {
 }
 
 TEST(Messages, AreNotThoseOfALibraryForManyThreads) {
-    const TemporaryDirectory directory;
-    directory.Write("scene.pbrt", SceneText(kSphere));
+    const SceneDirectory directory;
     const Outcome outcome =
         ExpectSuccess(directory, "render scene.pbrt --spp 1 --threads 4096 -o a.exr --quiet");
     EXPECT_EQ(outcome.err, "");
@@ -146,7 +136,7 @@ TEST(Layers, HoldNoInfinityWhereTheFilmIsScaled) {
                                             std::string(kSphere)));
     const Outcome outcome = ExpectSuccess(
         directory, "render scene.pbrt --spp 20 --exposure 100 --denoise --denoise-layers -o a.exr");
-    EXPECT_TRUE(Contains(outcome.err, "samples were not finite")) << outcome.err;
+    EXPECT_HAS(outcome.err, "samples were not finite");
     for (const ExrChannel& channel : ReadExr(directory.File("a.exr")).channels)
         EXPECT_TRUE(std::ranges::all_of(channel.values, [](float v) { return std::isfinite(v); }))
             << channel.name;

@@ -8,10 +8,6 @@ namespace {
 
 constexpr const char* kRender = "LULL render scene.pbrt --spp 20 --block 8";
 
-struct SceneDirectory : TemporaryDirectory {
-    SceneDirectory() { Write("scene.pbrt", SceneText(kSphere)); }
-};
-
 // Runs the command, and expects the image to be what it is anyhow.
 void ExpectImage(const SceneDirectory& directory, const std::string& command, int exitCode) {
     ExpectSuccess(RunShell(directory, kRender + std::string(" -o whole.exr --quiet")));
@@ -66,7 +62,7 @@ TEST(Streams, LostResultsAreAnError) {
         const Outcome outcome = RunShell(directory, command);
         EXPECT_EQ(outcome.exitCode, 1) << command << outcome.err;
         EXPECT_EQ(CountErrorLines(outcome.err), 1) << command << outcome.err;
-        EXPECT_TRUE(Contains(outcome.err, "stdout")) << command << outcome.err;
+        EXPECT_HAS(outcome.err, "stdout");
     }
 }
 

@@ -1,6 +1,4 @@
 // Makes studies and collects answers; the page itself is used in study_page.py.
-#include <gtest/gtest.h>
-
 #include "stopping/lab/recordings/recording.h"
 #include "stopping/rules/thresholds.h"
 #include "tests/integration/run_and_signal.h"
@@ -25,7 +23,7 @@ TEST(Study, RecordsWhatRecordDoes) {
     WriteScene(directory);
     const std::string same = " scene.pbrt --resolution 60x40 --cap 60 --name room --quiet ";
     const Outcome judge = ExpectSuccess(directory, "study -o s.html --record a.h5" + same);
-    EXPECT_TRUE(Contains(judge.out, "s.html\na.h5\n"));
+    EXPECT_HAS(judge.out, "s.html\na.h5\n");
     ExpectSuccess(directory, "record -o b.h5" + same);
     const ViewpointRecording a = ReadDataset(directory.File("a.h5")).at(0);
     const ViewpointRecording b = ReadDataset(directory.File("b.h5")).at(0);
@@ -46,7 +44,7 @@ TEST(Study, GoesOnWhereItWasInterrupted) {
     const Outcome interrupted =
         RunAndSignal(directory, command + "a.html", SIGINT, "a.html.checkpoint");
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
-    EXPECT_TRUE(Contains(interrupted.err, "interrupted; to resume: ")) << interrupted.err;
+    EXPECT_HAS(interrupted.err, "interrupted; to resume: ");
     EXPECT_FALSE(Contains(interrupted.err, "--resume")) << interrupted.err;
     EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
     ExpectSuccess(RunShell(directory, command + "a.html"));
@@ -75,7 +73,7 @@ TEST(Study, TakesPicturesOfOtherRenderers) {
         RunLull(directory, "study --images pictures --block 10 --name x -o other.html");
     ASSERT_EQ(own.exitCode, 0) << own.err;
     ASSERT_EQ(other.exitCode, 0) << other.err;
-    EXPECT_TRUE(Contains(other.err, "6 blocks at 3 levels: 20, 40, 80 spp"));
+    EXPECT_HAS(other.err, "6 blocks at 3 levels: 20, 40, 80 spp");
     // The same pictures, bit for bit: the images that lull itself would have rendered.
     const auto pictures = [&](const char* file) {
         const std::string page = StudyIn(ReadBytes(directory.File(file)));
@@ -95,16 +93,16 @@ TEST(Study, CollectsThresholdsAndSaysWhoWasLeftOut) {
         directory, "study --collect a.json b.json c.json d.json -o human.csv --report r.html");
     EXPECT_EQ(outcome.out,
               "human.csv\nhuman.details.csv\nhuman.observers.csv\nhuman.answers.csv\nr.html\n");
-    EXPECT_TRUE(Contains(outcome.err, "c.json: c failed 3 of 4 checks; left out"));
-    EXPECT_TRUE(Contains(outcome.err, "d.json: is not JSON, or cut short; left out"));
+    EXPECT_HAS(outcome.err, "c.json: c failed 3 of 4 checks; left out");
+    EXPECT_HAS(outcome.err, "d.json: is not JSON, or cut short; left out");
     EXPECT_EQ(ReadBytes(directory.File("human.csv")), "room;100;80;160;320;\n");
     const std::string observers = ReadBytes(directory.File("human.observers.csv"));
-    EXPECT_TRUE(Contains(observers, "a.json,room,\"a, \"\"b\"\"\",yes,"));
-    EXPECT_TRUE(Contains(observers, "c.json,room,c,no,failed 3 of 4 checks,"));
-    EXPECT_TRUE(Contains(observers, "d.json,,,no,\"is not JSON, or cut short\","));
-    const std::string details = ReadBytes(directory.File("human.details.csv"));
-    EXPECT_TRUE(Contains(details, "room,0,2,100,40,160,84.85,1.414,2\n"));
-    EXPECT_TRUE(Contains(outcome.err, "rest on as few as 2 answers; they are rough"));
+    EXPECT_HAS(observers, "a.json,room,\"a, \"\"b\"\"\",yes,");
+    EXPECT_HAS(observers, "c.json,room,c,no,failed 3 of 4 checks,");
+    EXPECT_HAS(observers, "d.json,,,no,\"is not JSON, or cut short\",");
+    EXPECT_HAS(ReadBytes(directory.File("human.details.csv")),
+               "room,0,2,100,40,160,84.85,1.414,2\n");
+    EXPECT_HAS(outcome.err, "rest on as few as 2 answers; they are rough");
     EXPECT_TRUE(ReadBytes(directory.File("human.answers.csv"))
                     .starts_with("block,spp,noise_seen,observer,track\n0,40,0,"));
     EXPECT_EQ(ReadThresholds(directory.File("human.csv")).at(0).spp.size(), 4u);

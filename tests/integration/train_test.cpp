@@ -1,5 +1,4 @@
 // Trains models as a user would.
-#include <algorithm>
 
 #include "renderer/files/file_io.h"
 #include "stopping/network/model_file.h"
@@ -31,9 +30,9 @@ bool SameWeights(const Network& a, const Network& b) {
 TEST(Train, WritesTheSameModelOnAnyNumberOfThreads) {
     const TrainingDirectory directory;
     const Outcome first = ExpectSuccess(directory, kSmall + "-o one.h5 --threads 1");
-    EXPECT_TRUE(Contains(first.err, "cellar-c")) << first.err;  // has no thresholds
-    EXPECT_TRUE(Contains(first.err, "epoch 6/6  loss 0.")) << first.err;
-    EXPECT_TRUE(Contains(first.out, "blocks trained on"));
+    EXPECT_HAS(first.err, "cellar-c");  // has no thresholds
+    EXPECT_HAS(first.err, "epoch 6/6  loss 0.");
+    EXPECT_HAS(first.out, "blocks trained on");
     ExpectSuccess(directory, kSmall + "-o two.h5 --threads 3 --quiet");
     const Model one = ReadModel(directory.File("one.h5")),
                 two = ReadModel(directory.File("two.h5"));
@@ -56,8 +55,7 @@ TEST(Train, GoesOnAfterAnInterruption) {
     // Another training cannot go on from there.
     const Outcome other = RunLull(directory, larger + "-o part.h5 --resume --dropout 0.3");
     EXPECT_EQ(other.exitCode, 1);
-    EXPECT_TRUE(Contains(other.err, "part.h5.checkpoint: the saved training had other"))
-        << other.err;
+    EXPECT_HAS(other.err, "part.h5.checkpoint: the saved training had other");
     ExpectSuccess(directory, larger + "-o part.h5 --resume");
     EXPECT_TRUE(SameWeights(ReadModel(directory.File("whole.h5")).network,
                             ReadModel(directory.File("part.h5")).network));
@@ -70,16 +68,15 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
         "--channels H,visible_drop --learning-rate 0.02 --epochs 30 ";
     const Outcome outcome =
         ExpectSuccess(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
-    EXPECT_TRUE(Contains(outcome.out, "each viewpoint left out")) << outcome.out;
-    EXPECT_TRUE(Contains(ReadBytes(directory.File("judged.csv")), "barn-b"));
+    EXPECT_HAS(outcome.out, "each viewpoint left out");
+    EXPECT_HAS(ReadBytes(directory.File("judged.csv")), "barn-b");
     const Model model = ReadModel(directory.File("model.h5"));
     EXPECT_EQ(FeatureNames(model.settings.features), "H,visible_drop");
     ExpectSuccess(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5");
     // Left out, it is judged by the same network as when each is left out in turn.
     const Outcome single = ExpectSuccess(directory, options + "-o one.h5 --leave-out barn-b");
     const size_t at = single.out.find("barn-b"), end = single.out.find('\n', at);
-    EXPECT_TRUE(Contains(outcome.out, single.out.substr(at + 30, end - at - 30)))
-        << outcome.out << single.out;
+    EXPECT_HAS(outcome.out, single.out.substr(at + 30, end - at - 30)) << outcome.out << single.out;
 }
 
 TEST(Train, TakesTheRecipeOfTheShippedModelUnlessThePaperIsAskedFor) {
@@ -120,8 +117,8 @@ TEST(Train, SplitsBlocks) {
     const TrainingDirectory directory;
     directory.Write("split.csv", "attic-a;0;3;\nbarn-b;1;2;3;\n");
     const Outcome outcome = ExpectSuccess(directory, kSmall + "-o m.h5 --split paper:split.csv");
-    EXPECT_TRUE(Contains(outcome.err, "windows of 5 blocks")) << outcome.err;
-    EXPECT_TRUE(Contains(outcome.out, "blocks left out"));
+    EXPECT_HAS(outcome.err, "windows of 5 blocks");
+    EXPECT_HAS(outcome.out, "blocks left out");
     EXPECT_EQ(ExpectSuccess(directory, kSmall + "--split paper:split.csv").out, outcome.out);
 }
 

@@ -1,7 +1,6 @@
 // Finds the values of independent programs that tests compare with.
 #pragma once
 
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>

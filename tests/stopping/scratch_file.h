@@ -5,8 +5,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <span>
 #include <stdexcept>
-#include <string>
+
+#include "tests/expect_has.h"
 
 namespace lull {
 
@@ -27,6 +30,16 @@ class ScratchFile {
 
     std::string path;
 };
+
+inline std::string ContentsOf(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void WriteBytes(const std::string& path, std::span<const std::byte> bytes) {
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+}
 
 // Returns the message of a std::runtime_error thrown by `call`; empty where none was thrown.
 template <typename Call>

@@ -1,5 +1,3 @@
-#include "renderer/base/sampling.h"
-
 #include <gtest/gtest.h>
 
 #include <numeric>

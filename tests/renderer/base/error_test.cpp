@@ -1,6 +1,5 @@
 #include "renderer/base/error.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <thread>

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/base/math.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

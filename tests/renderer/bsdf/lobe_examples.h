@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <string>
-#include <vector>
-
 #include "renderer/bsdf/bsdf.h"
 
 namespace lull::test {

@@ -2,10 +2,6 @@
 // chi-square test.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <vector>
-
 #include "renderer/base/sampling.h"
 
 namespace lull::test {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "renderer/denoise/denoiser.h"
 #include "tests/renderer/denoise/example_pictures.h"
 

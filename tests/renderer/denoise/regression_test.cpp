@@ -1,5 +1,3 @@
-#include "renderer/denoise/denoise.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/renderer/denoise/example_pictures.h"

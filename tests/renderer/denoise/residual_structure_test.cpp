@@ -1,5 +1,3 @@
-#include "renderer/denoise/denoise.h"
-
 #include <gtest/gtest.h>
 
 #include "renderer/denoise/visible_error.h"

@@ -1,14 +1,12 @@
 #include "renderer/files/file_io.h"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <csignal>
 #include <thread>
-#include <vector>
 
 #include "tests/renderer/files/test_files.h"
 
@@ -60,12 +58,12 @@ TEST(WriteFileAtomically, RefusesWithReason) {
         EXPECT_EQ(ErrorOf([&] { CheckWritable(path); }), error);
         return error;
     };
-    EXPECT_TRUE(Contains(reason(directory.path.string()), "it is a directory"));
-    EXPECT_TRUE(Contains(reason(directory.File("new/")), "directory"));
-    EXPECT_TRUE(Contains(reason(directory.File("none/x.exr")), "does not exist"));
-    EXPECT_TRUE(Contains(reason(directory.File("none/x.exr")), "x.exr"));
-    EXPECT_TRUE(Contains(reason(directory.File("file/x.exr")), "director"));
-    EXPECT_TRUE(Contains(reason(""), "empty"));
+    EXPECT_HAS(reason(directory.path.string()), "it is a directory");
+    EXPECT_HAS(reason(directory.File("new/")), "directory");
+    EXPECT_HAS(reason(directory.File("none/x.exr")), "does not exist");
+    EXPECT_HAS(reason(directory.File("none/x.exr")), "x.exr");
+    EXPECT_HAS(reason(directory.File("file/x.exr")), "director");
+    EXPECT_HAS(reason(""), "empty");
     EXPECT_EQ(directory.CountFiles(), 1);
 }
 
@@ -103,7 +101,7 @@ TEST(WriteFileAtomically, WritesDevicesDirectly) {
     EXPECT_NO_THROW(CheckWritable("/dev/null"));
     EXPECT_NO_THROW(WriteFileAtomically("/dev/null", "x"));
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
-    EXPECT_TRUE(Contains(ErrorOf([] { WriteFileAtomically("/dev/full", "x"); }), "No space left"));
+    EXPECT_HAS(ErrorOf([] { WriteFileAtomically("/dev/full", "x"); }), "No space left");
     EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 

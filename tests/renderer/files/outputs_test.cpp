@@ -1,10 +1,7 @@
 #include "renderer/files/outputs.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <thread>
-#include <vector>
 
 #include "renderer/files/file_io.h"
 #include "tests/renderer/files/test_files.h"
@@ -35,8 +32,7 @@ TEST(CheckOutputs, NamesBothOfTheSame) {
     EXPECT_EQ(Check({{"--report", file}, {"--checkpoint", file}}, {}),
               "--checkpoint \"" + file + "\" would replace --report \"" + file +
                   "\"; give it another name");
-    EXPECT_TRUE(Contains(Check({{"-o", file}}, {{"DATA", file}}),
-                         "-o \"" + file + "\" would replace DATA"));
+    EXPECT_HAS(Check({{"-o", file}}, {{"DATA", file}}), "-o \"" + file + "\" would replace DATA");
 }
 
 TEST(CheckOutputs, KnowsFilesByOtherNames) {
@@ -46,8 +42,7 @@ TEST(CheckOutputs, KnowsFilesByOtherNames) {
     fs::create_hard_link(file, directory.File("hard.csv"));
     fs::create_directory(directory.File("folder"));
     for (const char* name : {"link.csv", "hard.csv", "folder/../human.csv", "./human.csv"})
-        EXPECT_TRUE(
-            Contains(Check({{"--csv", directory.File(name)}}, {{"--human", file}}), "--human"))
+        EXPECT_HAS(Check({{"--csv", directory.File(name)}}, {{"--human", file}}), "--human")
             << name;
 }
 
@@ -65,7 +60,7 @@ TEST(BeginningOfNames, IsTheNameOrInAFolderThatIsMade) {
     EXPECT_TRUE(fs::is_directory(folder));
     EXPECT_EQ(BeginningOfNames(folder, "room"), folder + "room");
     const std::string file = directory.Write("file", "");
-    EXPECT_TRUE(Contains(ErrorOf([&] { BeginningOfNames(file + "/", "room"); }), "-o " + file));
+    EXPECT_HAS(ErrorOf([&] { BeginningOfNames(file + "/", "room"); }), "-o " + file);
 }
 
 namespace fs = std::filesystem;
@@ -112,8 +107,8 @@ TEST(ResultFiles, GoElsewhereOneByOne) {
     EXPECT_EQ(results.Names()[2], folder / "c.csv");
     EXPECT_EQ(ReadBytes(folder / "a.csv") + ReadBytes(folder / "c.csv"), "ac");
     const std::string error = ErrorOf([&] { results.Check(); });
-    EXPECT_TRUE(Contains(error, "does not exist")) << error;
-    EXPECT_TRUE(Contains(error, "; in " + folder.string() + " instead: \"")) << error;
+    EXPECT_HAS(error, "does not exist");
+    EXPECT_HAS(error, "; in " + folder.string() + " instead: \"");
 }
 
 TEST(ResultFiles, AreWrittenTogether) {
@@ -131,7 +126,7 @@ TEST(ResultFiles, AreWrittenTogether) {
     EXPECT_EQ(results.Names()[2], directory.File("c.csv"));
     EXPECT_EQ(ReadBytes(results.Names()[1]), "b");
     EXPECT_NE(results.Names()[1], directory.File("missing/b.csv"));
-    EXPECT_TRUE(Contains(ErrorOf([&] { results.Check(); }), "does not exist"));
+    EXPECT_HAS(ErrorOf([&] { results.Check(); }), "does not exist");
 }
 
 TEST(ResultFiles, SayWhatIsLost) {
@@ -140,7 +135,7 @@ TEST(ResultFiles, SayWhatIsLost) {
     ResultFiles results;
     results.WriteText(directory.File("missing/a.csv"), "a");
     EXPECT_TRUE(results.Names().empty());
-    EXPECT_TRUE(Contains(ErrorOf([&] { results.Check(); }), "; lost: \""));
+    EXPECT_HAS(ErrorOf([&] { results.Check(); }), "; lost: \"");
 }
 
 TEST(ResultFiles, RemovesFilesAndNothingElse) {
@@ -207,8 +202,7 @@ TEST(FileLock, IsThereForTheLongestNames) {
 
 TEST(FileLock, NamesWhatCannotBeLocked) {
     const TemporaryDirectory directory;
-    EXPECT_TRUE(
-        Contains(ErrorOf([&] { FileLock::Try(directory.File("none/data.h5")); }), "cannot lock"));
+    EXPECT_HAS(ErrorOf([&] { FileLock::Try(directory.File("none/data.h5")); }), "cannot lock");
 }
 
 }  // namespace

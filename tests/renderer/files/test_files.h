@@ -7,10 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <string>
-#include <string_view>
 
 #include "renderer/base/error.h"
+#include "tests/expect_has.h"
 
 namespace lull {
 
@@ -79,10 +78,6 @@ std::string ErrorOf(const Call& call) {
         return error.what();
     }
     return "";
-}
-
-inline bool Contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace lull

@@ -1,10 +1,6 @@
 #include "renderer/film/display.h"
 
-#include <gtest/gtest.h>
-
-#include <atomic>
 #include <chrono>
-#include <cstdio>
 
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/film/add_sample.h"
@@ -56,8 +52,7 @@ TEST(DisplayAddress, IsHostAndPort) {
     EXPECT_EQ(ParseDisplayAddress("[::1]:80").host, "::1");
     for (const char* bad : {"", "localhost", ":80", "localhost:", "localhost:0", "localhost:65536",
                             "localhost:80x", "::1:80", "[]:80", "localhost:-1"})
-        EXPECT_TRUE(Contains(ErrorOf([&] { ParseDisplayAddress(bad); }), "is not HOST:PORT"))
-            << bad;
+        EXPECT_HAS(ErrorOf([&] { ParseDisplayAddress(bad); }), "is not HOST:PORT") << bad;
 }
 
 // Byte by byte, as tev's Ipc.h has it.

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/base/math.h"
 #include "renderer/film/spp_map.h"
 #include "tests/renderer/film/add_sample.h"
 

@@ -1,9 +1,5 @@
 #include "renderer/film/film.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/renderer/files/test_files.h"
 
 namespace lull::layers_test {
@@ -146,11 +142,7 @@ TEST(AovSet, HasNames) {
     EXPECT_TRUE(ParseAovs({"noise"}).Any());
     EXPECT_FALSE(AovSet().Any());
     for (const char* bad : {"", "Albedo", "albedo normal", "albedo,noise"})
-        EXPECT_TRUE(Contains(ErrorOf([&] {
-                                 ParseAovs({"depth", bad});
-                             }),
-                             "there is no layer"))
-            << bad;
+        EXPECT_HAS(ErrorOf([&] { ParseAovs({"depth", bad}); }), "there is no layer") << bad;
 }
 
 FirstHit HitOf(uint32_t object, float weight = 1) {

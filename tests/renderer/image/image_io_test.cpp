@@ -1,11 +1,5 @@
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
-
-#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
+#include "renderer/base/math.h"
 #include "tests/renderer/files/test_files.h"
 
 namespace lull {
@@ -198,7 +192,7 @@ TEST(ReadImage, RefusesTiffOfOneBit) {
         "00001101040001000000560000001601030001000000020000001701040001000000020000000000000055aa");
     const TemporaryDirectory directory;
     const std::string path = directory.Write("a.tif", tiff);
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadImage(path); }), "one bit a pixel"));
+    EXPECT_HAS(ErrorOf([&] { ReadImage(path); }), "one bit a pixel");
 }
 
 // What was multiplied when it was stored is divided.
@@ -217,7 +211,7 @@ TEST(ReadImage, UndoesExposureOfRadianceHdr) {
     const TemporaryDirectory directory;
     const std::string xyz = directory.Write(
         "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + FromHex("80808084"));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadImage(xyz); }), "X, Y and Z"));
+    EXPECT_HAS(ErrorOf([&] { ReadImage(xyz); }), "X, Y and Z");
 }
 
 TEST(ReadImage, ConvertsRadianceHdrOfOtherPrimaries) {
@@ -242,21 +236,21 @@ TEST(ReadImage, ReadsPfmTopDown) {
 TEST(ReadImage, SaysWhatIsWrong) {
     const TemporaryDirectory directory;
     const auto read = [](const std::string& path) { return ErrorOf([&] { ReadImage(path); }); };
-    EXPECT_TRUE(Contains(read("/nowhere/a.png"), "/nowhere/a.png"));
-    EXPECT_TRUE(Contains(read("/nowhere/a.png"), "no such file"));
-    EXPECT_TRUE(Contains(read(directory.path.string()), "directory"));
-    EXPECT_TRUE(Contains(read(directory.Write("text.png", "hello")), "text.png"));
-    EXPECT_TRUE(Contains(read(directory.Write("a.unknown", "hello")), "a.unknown"));
-    EXPECT_TRUE(Contains(read(directory.Write("empty.exr", "")), "empty.exr"));
+    EXPECT_HAS(read("/nowhere/a.png"), "/nowhere/a.png");
+    EXPECT_HAS(read("/nowhere/a.png"), "no such file");
+    EXPECT_HAS(read(directory.path.string()), "directory");
+    EXPECT_HAS(read(directory.Write("text.png", "hello")), "text.png");
+    EXPECT_HAS(read(directory.Write("a.unknown", "hello")), "a.unknown");
+    EXPECT_HAS(read(directory.Write("empty.exr", "")), "empty.exr");
     const std::string cut = read(directory.Write("cut.png", FromHex(kRgbPng).substr(0, 50)));
-    EXPECT_TRUE(Contains(cut, "cut.png\": it is cut short")) << cut;
+    EXPECT_HAS(cut, "cut.png\": it is cut short");
     const std::string cutPfm =
         read(directory.Write("cut.pfm", "PF\n2 2\n-1.0\n" + std::string(8, 0)));
     // OpenImageIO has a word of its own for it since 3.1.
     EXPECT_TRUE(Contains(cutPfm, "cut.pfm\": it is cut short") ||
                 Contains(cutPfm, "cut.pfm\": Premature end of file"))
         << cutPfm;
-    EXPECT_TRUE(Contains(read(directory.Write("huge.png", FromHex(kHugePng))), "60000x60000x3"));
+    EXPECT_HAS(read(directory.Write("huge.png", FromHex(kHugePng))), "60000x60000x3");
 }
 
 TEST(ReadImage, RefusesWhatIsCutShort) {
@@ -307,7 +301,7 @@ TEST(WritePng, EncodesSixteenBitsToneMapsAndText) {
     const auto wide = Texels<float>(ReadImage(path));  // 16-bit integers become 0 to 1
     const float expected[] = {0, SrgbFromLinear(0.5f), 1, 1, SrgbFromLinear(0.18f), 0};
     for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(wide[i], expected[i], 1e-5f) << i;
-    EXPECT_TRUE(Contains(ReadBytes(path), std::string("tEXtToneMap\0none", 16)));
+    EXPECT_HAS(ReadBytes(path), std::string("tEXtToneMap\0none", 16));
 
     WritePng(path, pixels, 2, 1, {.grade = {.toneMap = ToneMap::Filmic}});
     const auto mapped = Texels<uint8_t>(ReadImage(path));
@@ -335,8 +329,7 @@ TEST(WritePng, StoresAlpha) {
 TEST(WritePng, KeepsTheOldFileWhereItFails) {
     const TemporaryDirectory directory;
     const std::vector<Rgb> pixels(4, Rgb::Constant(1));
-    EXPECT_TRUE(
-        Contains(ErrorOf([&] { WritePng(directory.path.string(), pixels, 2, 2); }), "directory"));
+    EXPECT_HAS(ErrorOf([&] { WritePng(directory.path.string(), pixels, 2, 2); }), "directory");
     EXPECT_THROW(WritePng(directory.File("none/a.png"), pixels, 2, 2), Error);
     EXPECT_EQ(directory.CountFiles(), 0);
 }

@@ -1,7 +1,4 @@
 // EXRs as lull writes them.
-#include <gtest/gtest.h>
-
-#include <array>
 #include <cstring>
 
 #include "renderer/image/image_io.h"
@@ -37,8 +34,8 @@ TEST(Exr, RefusesAbsurdSizes) {
         std::string bytes = exr;
         std::memcpy(&bytes[at], window.data(), sizeof(window));
         const std::string path = directory.Write("b.exr", bytes);
-        EXPECT_TRUE(Contains(ErrorOf([&] { ReadImage(path); }), "b.exr\": ")) << window[2];
-        EXPECT_TRUE(Contains(ErrorOf([&] { ReadExr(path); }), "b.exr\": ")) << window[2];
+        EXPECT_HAS(ErrorOf([&] { ReadImage(path); }), "b.exr\": ") << window[2];
+        EXPECT_HAS(ErrorOf([&] { ReadExr(path); }), "b.exr\": ") << window[2];
     }
 }
 
@@ -112,9 +109,8 @@ TEST(Exr, RoundTripsChannelsAttributesAndWindows) {
     std::memcpy(values, bytes.data() + at + key.size(), sizeof(values));
     EXPECT_EQ(values[1], 2);
     EXPECT_EQ(values[15], 16.5f);
-    EXPECT_NE(bytes.find(std::string("worldToNDC\0m44f\0", 16)), std::string::npos);
-    EXPECT_NE(bytes.find(std::string("compression\0compression\0\1\0\0\0\3", 29)),
-              std::string::npos);
+    EXPECT_HAS(bytes, std::string("worldToNDC\0m44f\0", 16));
+    EXPECT_HAS(bytes, std::string("compression\0compression\0\1\0\0\0\3", 29));
 }
 
 TEST(Exr, RefusesToWriteWhatDoesNotFit) {

@@ -41,9 +41,8 @@ TEST(GltfLights, HaveConesUpToRounding) {
     EXPECT_EQ(angles(0.7, double(0.7f)).second, 0);
     EXPECT_EQ(angles(-1e-9, 0.5).second, angles(0, 0.5).second);
     for (const auto& [inner, outer] : {std::pair(0., 1.58), {0.6, 0.5}, {-0.1, 0.5}, {0., 0.}})
-        EXPECT_NE(kFolder.ErrorOf(cone({{"innerConeAngle", inner}, {"outerConeAngle", outer}}))
-                      .find("the cone's angles are"),
-                  std::string::npos)
+        EXPECT_HAS(kFolder.ErrorOf(cone({{"innerConeAngle", inner}, {"outerConeAngle", outer}})),
+                   "the cone's angles are")
             << inner << " " << outer;
 }
 
@@ -138,8 +137,7 @@ TEST(GltfLights, HaveAProfileOfOurOwn) {
         {{"type", "point"}, {"extras", {{"lull", {{"profile", "a.exr"}, {"radius", 1}}}}}},
         {{"type", "point"}, {"extras", {{"lull", {{"profile", 3}}}}}},
         {{"type", "point"}, {"extras", {{"lull", {{"profile", ""}}}}}}};
-    for (const json& each : bad)
-        EXPECT_NE(kFolder.ErrorOf(fileWith(each)).find("profile"), std::string::npos) << each;
+    for (const json& each : bad) EXPECT_HAS(kFolder.ErrorOf(fileWith(each)), "profile") << each;
 }
 
 TEST(GltfLights, HaveAnAngleOfOurOwn) {
@@ -152,7 +150,7 @@ TEST(GltfLights, HaveAnAngleOfOurOwn) {
     ASSERT_EQ(d.lights.size(), 1u);
     EXPECT_NEAR(d.lights[0].parameters.GetFloat("angle", 0), 1, 1e-6);
     EXPECT_EQ(parse(0).lights[0].parameters.GetFloat("angle", -1), -1);
-    EXPECT_TRUE(Contains(ErrorOf([&] { parse(-1); }), "its angle is -1"));
+    EXPECT_HAS(ErrorOf([&] { parse(-1); }), "its angle is -1");
 }
 
 TEST(GltfLights, AreNamedByTheNodeOrTheLight) {

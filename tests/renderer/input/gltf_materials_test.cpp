@@ -1,6 +1,4 @@
 // Checks materials of glTF files, and their variants.
-#include <numbers>
-
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull::gltf_materials_test {
@@ -292,14 +290,12 @@ TEST(GltfVariants, ChooseMaterialsByNameOrNumber) {
     EXPECT_EQ(namesOf(""), (std::vector<std::string>{"white", "white"}));
     for (const char* sky : {"sky", "1"})
         EXPECT_EQ(namesOf(sky), (std::vector<std::string>{"blue", "white"}));
-    const std::string error = ErrorOf([&] { namesOf("fish"); });
-    EXPECT_NE(error.find("has no variant \"fish\"; it has 0 \"berry\", 1 \"sky\""),
-              std::string::npos)
-        << error;
+    EXPECT_HAS(ErrorOf([&] { namesOf("fish"); }),
+               "has no variant \"fish\"; it has 0 \"berry\", 1 \"sky\"");
     GltfFile plain;
     plain.Node({{"mesh", plain.Triangle()}});
     const std::string none = ErrorOf([&] { kFolder.Parse(plain, {.variant = "0"}); });
-    EXPECT_NE(none.find("has no variant \"0\"; it has none"), std::string::npos) << none;
+    EXPECT_HAS(none, "has no variant \"0\"; it has none");
 }
 
 TEST(GltfMaterials, KeepEmbeddedImagesEncoded) {

@@ -1,6 +1,4 @@
 // Checks what becomes of the arrays of glTF files.
-#include <functional>
-
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull {
@@ -142,7 +140,7 @@ TEST(GltfMeshes, ReadWholeNumbersThatAreWrittenAsFractions) {
     std::string fractions = root.dump();
     for (size_t at; (at = fractions.find("5126.0")) != std::string::npos;)
         fractions.replace(at, 6, "5.126e3");
-    ASSERT_TRUE(Contains(fractions, "\"mesh\":0.0"));
+    ASSERT_HAS(fractions, "\"mesh\":0.0");
     const GltfFolder folder;
     Warnings warnings;
     const Description d = ParseGltf(folder.Write("scene.gltf", fractions), {}, warnings);

@@ -165,8 +165,7 @@ TEST(GltfCameras, AreChosenByNameOrNumber) {
         EXPECT_EQ(d.film.parameters.GetInt("xresolution", 0), 600);
     }
     const std::string error = ErrorOf([&] { kFolder.Parse(WithCameras(), {.camera = "2"}); });
-    EXPECT_NE(error.find("has no camera \"2\"; it has 0 \"\", 1 \"above\""), std::string::npos)
-        << error;
+    EXPECT_HAS(error, "has no camera \"2\"; it has 0 \"\", 1 \"above\"");
 }
 
 TEST(GltfCameras, FrameTheWholeScene) {
@@ -240,7 +239,7 @@ TEST(GltfNodes, MatricesAreAffineUpToRounding) {
     const Description d = kFolder.Parse(file);
     EXPECT_EQ(d.shapes.at(0).worldFromObject.row(3), Eigen::RowVector4d(0, 0, 0, 1));
     file.root["nodes"][0]["matrix"][15] = 0.999;
-    EXPECT_NE(kFolder.ErrorOf(file).find("is not affine"), std::string::npos);
+    EXPECT_HAS(kFolder.ErrorOf(file), "is not affine");
 }
 
 TEST(SceneEdits, LightOnlyWhatIsDark) {

@@ -1,7 +1,6 @@
 // Tests that everything wrong with a pbrt-v3 file is told with its place and its reason.
 #include <sys/stat.h>
 
-#include "renderer/input/pbrt_parser.h"
 #include "tests/renderer/input/test_files.h"
 
 namespace lull {
@@ -227,7 +226,7 @@ TEST_F(PbrtErrors, Files) {
     ASSERT_EQ(mkfifo(folder.File("pipe").c_str(), 0600), 0);
     EXPECT_EQ(parse("pipe"), "cannot read 'pipe': it is not a regular file");
     folder.Write("a.OBJ", "v 0 0 0\n");
-    EXPECT_TRUE(Contains(parse("a.OBJ"), "it is a Wavefront OBJ mesh; export the scene as glTF"));
+    EXPECT_HAS(parse("a.OBJ"), "it is a Wavefront OBJ mesh; export the scene as glTF");
     ExpectInWorld("Include \"none.pbrt\"", "cannot read 'none.pbrt': No such file or directory");
     ExpectInWorld("Include \"room\"", "cannot read 'room': it is a directory");
 }
@@ -245,7 +244,7 @@ TEST_F(PbrtErrors, BackslashesSeparateFolders) {
     };
     EXPECT_EQ(named("new\\\\tile.pbrt"), "");
     EXPECT_EQ(named("new\\tile.pbrt"), "");
-    EXPECT_TRUE(Contains(named("\\new\\tile.pbrt"), "cannot read '\\new\\tile.pbrt'"));
+    EXPECT_HAS(named("\\new\\tile.pbrt"), "cannot read '\\new\\tile.pbrt'");
 }
 
 TEST_F(PbrtErrors, RecursiveInclude) {
@@ -263,9 +262,8 @@ TEST_F(PbrtErrors, IncludesThatMultiply) {
         folder.Write(name(i), next + next);
     }
     folder.Write(name(40), "# end");
-    EXPECT_NE(folder.ErrorOf("Include \"0.pbrt\"")
-                  .find("files included again and again come to more than 1 GiB of text"),
-              std::string::npos);
+    EXPECT_HAS(folder.ErrorOf("Include \"0.pbrt\""),
+               "files included again and again come to more than 1 GiB of text");
 }
 
 TEST_F(PbrtErrors, AmplificationIsBounded) {

@@ -1,7 +1,5 @@
 #include "renderer/input/spectrum.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/renderer/files/test_files.h"
 #include "tests/shared_folder.h"
 

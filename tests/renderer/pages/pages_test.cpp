@@ -1,6 +1,3 @@
-#include <gtest/gtest.h>
-
-#include "renderer/pages/html_page.h"
 #include "tests/renderer/film/add_sample.h"
 #include "tests/renderer/pages/page_data.h"
 
@@ -19,7 +16,7 @@ TEST(MakeRenderPage, HoldsAllFilesAndNeedsNoOther) {
     for (const char* name :
          {"page.css", "page.js", "viewer.js", "render.js", "uPlot.iife.min.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
-        EXPECT_NE(page.find(EmbeddedFile(name)), std::string::npos) << name;
+        EXPECT_HAS(page, EmbeddedFile(name)) << name;
     }
     for (const char* name : {"comparison.css", "comparison.js", "study.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
@@ -27,8 +24,7 @@ TEST(MakeRenderPage, HoldsAllFilesAndNeedsNoOther) {
             << name << " is the laboratory's";
     }
     EXPECT_EQ(EmbeddedFile("no such file"), "");
-    EXPECT_TRUE(
-        Contains(page, "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';"));
+    EXPECT_HAS(page, "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';");
     for (const char* reaching :
          {"src=\"http", "href=\"http", "@import", "url(", "fetch(", "import("})
         EXPECT_EQ(page.find(reaching), std::string::npos) << reaching;
@@ -78,7 +74,7 @@ TEST(PagePicture, IsOfMeansWhereTheImageIsLarge) {
     provenance.scene = "a.pbrt";
     const Json data = DataOf(MakeRenderPage(provenance, result, film, {}, {}, nullptr));
     EXPECT_EQ(data["width"], 2901);
-    EXPECT_NE(data["notes"][0].get<std::string>().find("2x2"), std::string::npos);
+    EXPECT_HAS(data["notes"][0].get<std::string>(), "2x2");
 }
 
 TEST(MakeRenderPage, HasCurvesAndDecisions) {

@@ -1,10 +1,7 @@
 #include "renderer/progress/progress.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <limits>
-#include <memory>
 
 #include "tests/renderer/files/test_files.h"
 
@@ -71,12 +68,11 @@ TEST(ProgressText, PredictsTheEndWhereItCan) {
     EXPECT_EQ(ProgressText(StateOf(progress, 50000, true)),
               " 80%  9/16 blocks done  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
               "about 30.0s left");
-    EXPECT_TRUE(Contains(
-        ProgressJson(StateOf(progress, 50000, true)),
-        R"("remainingSeconds":30.000,"remainingRange":null,"remainingIsUpperBound":false)"));
+    EXPECT_HAS(ProgressJson(StateOf(progress, 50000, true)),
+               R"("remainingSeconds":30.000,"remainingRange":null,"remainingIsUpperBound":false)");
     // A clock can end it before.
     progress.secondsLeft = 12;
-    EXPECT_TRUE(Contains(ProgressText(StateOf(progress, 50000, true)), "at most 12.0s left"));
+    EXPECT_HAS(ProgressText(StateOf(progress, 50000, true)), "at most 12.0s left");
     // Nothing is left when all have stopped.
     progress.samplesToCap = 0;
     progress.predictedSamples = 0;
@@ -89,8 +85,8 @@ TEST(ProgressText, HasNoTimeBeforeThereAreData) {
     RenderProgress progress = Halfway();
     progress.stoppedBlocks = 0;
     EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).ends_with("1:40 elapsed"));
-    EXPECT_TRUE(Contains(ProgressJson(StateOf(progress, 50000, true)),
-                         R"("remainingSeconds":null,"remainingRange":null)"));
+    EXPECT_HAS(ProgressJson(StateOf(progress, 50000, true)),
+               R"("remainingSeconds":null,"remainingRange":null)");
     EXPECT_TRUE(ProgressText(StateOf(progress, 50000, false)).ends_with("  1:40 left"));
     progress.secondsLeft = 500;
     EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).ends_with("at most 8:20 left"));
@@ -103,8 +99,8 @@ TEST(ProgressText, HasARangeOfTimes) {
     progress.secondsRange = {{550, 830}};
     EXPECT_TRUE(
         ProgressText(StateOf(progress, 50000, true)).ends_with("  done in 9 to 14 min (80 %)"));
-    EXPECT_TRUE(Contains(ProgressJson(StateOf(progress, 50000, true)),
-                         R"("remainingSeconds":650.000,"remainingRange":[550.000,830.000])"));
+    EXPECT_HAS(ProgressJson(StateOf(progress, 50000, true)),
+               R"("remainingSeconds":650.000,"remainingRange":[550.000,830.000])");
     progress.secondsLeft = 700;  // of a clock that ends it within the range
     EXPECT_TRUE(
         ProgressText(StateOf(progress, 50000, true)).ends_with("  done in 9 to 12 min (80 %)"));
@@ -120,7 +116,7 @@ TEST(FormatRange, IsRoundedOutwards) {
 
 TEST(ProgressText, GuessesNothingWithoutARate) {
     EXPECT_FALSE(Contains(ProgressText(StateOf(Halfway(), 0, true)), "left"));
-    EXPECT_TRUE(Contains(ProgressText(StateOf({}, 0, true)), "100%"));
+    EXPECT_HAS(ProgressText(StateOf({}, 0, true)), "100%");
 }
 
 TEST(ProgressJson, IsOneLineOfJson) {
@@ -129,7 +125,7 @@ TEST(ProgressJson, IsOneLineOfJson) {
         R"({"event":"progress","percent":50.00,"blocks":16,"cleanBlocks":9,)"
         R"("blocksAtCap":0,"medianSpp":1240,"samples":5000000,"samplesPerSecond":50000.0,"elapsedSeconds":100.000,)"
         R"("remainingSeconds":100.000,"remainingRange":null,"remainingIsUpperBound":true})");
-    EXPECT_TRUE(Contains(ProgressJson(StateOf(Halfway(), 0, true)), R"("remainingSeconds":null)"));
+    EXPECT_HAS(ProgressJson(StateOf(Halfway(), 0, true)), R"("remainingSeconds":null)");
 }
 
 // Of a long render, where numbers are as long as they get.

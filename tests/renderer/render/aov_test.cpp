@@ -1,8 +1,4 @@
 // Layers go the way of the image: any threads and blocks, clocks, checkpoints.
-#include <gtest/gtest.h>
-
-#include <atomic>
-
 #include "renderer/render/session.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/film/add_sample.h"
@@ -108,11 +104,11 @@ TEST(Aovs, CanBeLeftOutAfterACheckpoint) {
 
     WriteCheckpoint(path, identity, state, fewer.film);
     for (const AovSet& more : {AovSet{.albedo = true}, AovSet{.alpha = true}})
-        EXPECT_TRUE(Contains(ErrorOf([&] {
-                                 Rendered other(more);
-                                 ReadCheckpoint(path, identity, &other.film);
-                             }),
-                             "it was written without the "));
+        EXPECT_HAS(ErrorOf([&] {
+                       Rendered other(more);
+                       ReadCheckpoint(path, identity, &other.film);
+                   }),
+                   "it was written without the ");
     Rendered through({.depth = true, .throughSpecular = true});
     EXPECT_THROW(ReadCheckpoint(path, identity, &through.film), Error);
 }

@@ -1,14 +1,8 @@
 #include "renderer/render/session.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
 #include <random>
 
 #include "stopping/base/hdf5_file.h"
-#include "stopping/base/input_file.h"
-#include "stopping/base/state.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 
@@ -156,12 +150,12 @@ TEST(Checkpoint, SaysWhatIsNotTheSame) {
     const std::string error = ErrorOf([&] {
         ReadCheckpoint(begun.path, {{"scene", "a"}, {"seed", "1"}}, &film);
     });
-    EXPECT_TRUE(Contains(error, begun.path)) << error;
-    EXPECT_TRUE(Contains(error, "another seed (0 there, 1 here)")) << error;
-    EXPECT_TRUE(Contains(ErrorOf([&] {
-                             ReadCheckpoint(begun.path, {{"scene", "a"}, {"crop", "1"}}, &film);
-                         }),
-                         "another crop (none there, 1 here)"));
+    EXPECT_HAS(error, begun.path);
+    EXPECT_HAS(error, "another seed (0 there, 1 here)");
+    EXPECT_HAS(ErrorOf([&] {
+                   ReadCheckpoint(begun.path, {{"scene", "a"}, {"crop", "1"}}, &film);
+               }),
+               "another crop (none there, 1 here)");
 }
 
 // Whoever needs the half has to have asked for it from the start.
@@ -177,8 +171,8 @@ TEST(Checkpoint, IsReadWithoutTheHalfWhereThatIsNotNeeded) {
     Film again(kRegion, {.withHalf = false});
     EXPECT_NO_THROW(ReadCheckpoint(begun.path, kIdentity, &again));
     EXPECT_EQ(again.MeanImage(), whole.MeanImage());
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadCheckpoint(begun.path, kIdentity, &whole); }),
-                         "without the sums of the half"));
+    EXPECT_HAS(ErrorOf([&] { ReadCheckpoint(begun.path, kIdentity, &whole); }),
+               "without the sums of the half");
 }
 
 TEST(Checkpoint, KeepsTheSharesOfLightPaths) {
@@ -195,7 +189,7 @@ TEST(Checkpoint, KeepsTheSharesOfLightPaths) {
     EXPECT_EQ(same.lightPaths, 0.25f);
     EXPECT_EQ(same.connections, 0.125f);
     for (const BdptShares damaged : {BdptShares{2, 1}, {0, 0}, {std::nanf(""), 1}})
-        EXPECT_TRUE(Contains(ErrorOf([&] { takenUp(damaged); }), "its shares of light paths"));
+        EXPECT_HAS(ErrorOf([&] { takenUp(damaged); }), "its shares of light paths");
 }
 
 TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
@@ -213,8 +207,8 @@ TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
         return ErrorOf([&] { ReadCheckpoint(path, kIdentity, &film); });
     };
     const std::string path = fileOf("lull checkpoint 5"), error = errorOf(path);
-    EXPECT_TRUE(Contains(error, path + ": it was written by an older lull; ")) << error;
-    EXPECT_TRUE(Contains(errorOf(fileOf("something else")), "it is not a checkpoint"));
+    EXPECT_HAS(error, path + ": it was written by an older lull; ");
+    EXPECT_HAS(errorOf(fileOf("something else")), "it is not a checkpoint");
 }
 
 // Sizes are checked before anything is read, whoever has sealed the file.
@@ -222,8 +216,8 @@ TEST(Checkpoint, RefusesPlanesOfAnotherSize) {
     const SmallCheckpoint begun;
     Film film(kRegion, {.grid = {.blockSize = 50, .tileSize = 8}});
     const std::string error = ErrorOf([&] { ReadCheckpoint(begun.path, kIdentity, &film); });
-    EXPECT_TRUE(Contains(error, begun.path)) << error;
-    EXPECT_TRUE(Contains(error, "'tiles': it does not have the shape 392")) << error;
+    EXPECT_HAS(error, begun.path);
+    EXPECT_HAS(error, "'tiles': it does not have the shape 392");
 }
 
 TEST(Checkpoint, RefusesDamagedFiles) {
@@ -242,8 +236,8 @@ TEST(Checkpoint, RefusesDamagedFiles) {
         std::string flipped = bytes;
         flipped[random() % bytes.size()] ^= char(1 << random() % 8);
         const std::string damaged = begun.directory.Write("flipped", flipped);
-        EXPECT_TRUE(Contains(ErrorOf([&] { ReadCheckpoint(damaged, kIdentity, &film); }),
-                             damaged + ": it is "));
+        EXPECT_HAS(ErrorOf([&] { ReadCheckpoint(damaged, kIdentity, &film); }),
+                   damaged + ": it is ");
     }
     // Another image's pixels do not fit.
     Film smaller({{0, 0}, {40, 97}});

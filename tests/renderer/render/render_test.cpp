@@ -2,11 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <chrono>
 #include <condition_variable>
-#include <mutex>
-#include <set>
 #include <thread>
 
 #include "tests/renderer/render/synthetic_samples.h"

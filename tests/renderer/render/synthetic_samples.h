@@ -1,10 +1,6 @@
 // Gives tests samples without a scene.
 #pragma once
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-
 #include "renderer/render/render.h"
 
 namespace lull {

@@ -1,11 +1,5 @@
 // Numbers that have to be at least 0 are 0 where an exporter's rounding has left them just below.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "renderer/input/spectrum.h"
-#include "renderer/scene/geometry/shapes/mesh.h"
-#include "renderer/scene/scene.h"
-#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene_of.h"
 
 namespace lull::rounded_zeros_test {
@@ -49,8 +43,7 @@ TEST(RoundedZeros, AreZeroInScenes) {
     for (const Place& place : places) {
         EXPECT_EQ(ErrorWith(place, "-1e-9"), "") << place.options << place.world;
         EXPECT_EQ(ErrorWith(place, "-0"), "") << place.options << place.world;
-        EXPECT_TRUE(Contains(ErrorWith(place, "-0.1"), "test.pbrt:"))
-            << place.options << place.world;
+        EXPECT_HAS(ErrorWith(place, "-0.1"), "test.pbrt:") << place.options << place.world;
     }
 }
 
@@ -83,9 +76,9 @@ TEST(RoundedLimits, OfSubsurfaceScatteringAreTheirLimits) {
             ErrorWith({"", "Material \"subsurface\" \"float eta\" [{}]\nShape \"sphere\""}, value),
             "")
             << value;
-    EXPECT_TRUE(Contains(
+    EXPECT_HAS(
         ErrorWith({"", "Material \"subsurface\" \"float eta\" [{}]\nShape \"sphere\""}, "0.99"),
-        "has to lie between 1 and 4"));
+        "has to lie between 1 and 4");
 }
 
 }  // namespace

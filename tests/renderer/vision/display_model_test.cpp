@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <tuple>
 
 #include "renderer/base/error.h"
 #include "renderer/vision/visible_difference.h"

@@ -1,10 +1,4 @@
-#include <gtest/gtest.h>
-
-#include <fstream>
 #include <iterator>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"
@@ -12,11 +6,6 @@
 
 namespace lull {
 namespace {
-
-std::string ContentsOf(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::string TextIn(const std::string& path) {
     try {
@@ -65,10 +54,6 @@ TEST(Hdf5Group, SaysWhyAFileCannotBeOpened) {
     const ScratchFile text(".h5", "this is no HDF5 file");
     EXPECT_EQ(TextIn(text.path), "cannot open it as HDF5");
 }
-
-}  // namespace
-
-namespace {
 
 TEST(State, SaysWhatIsDamaged) {
     StateWriter writer;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <random>
-#include <vector>
 
 #include "stopping/network/lstm.h"
 

@@ -2,11 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <memory>
-#include <stdexcept>
-#include <vector>
-
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

@@ -1,17 +1,7 @@
 #include "stopping/rules/rule_table.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <regex>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
-#include "stopping/base/block_view.h"
-#include "stopping/base/input_file.h"
 #include "stopping/network/model_file.h"
 #include "tests/stopping/cut_states.h"
 #include "tests/stopping/network/random_network.h"
@@ -72,10 +62,8 @@ TEST(RuleTable, HelpFitsItsWidth) {
     for (const size_t width : {80u, 100u}) {
         const std::string help = RuleHelp(width);
         for (const RuleEntry& rule : RuleTable())
-            EXPECT_NE(
-                ("\n" + help)
-                    .find("\n  " + std::string(rule.name) + std::string(rule.argument) + "  "),
-                std::string::npos)
+            EXPECT_HAS(("\n" + help),
+                       "\n  " + std::string(rule.name) + std::string(rule.argument) + "  ")
                 << help;
         for (size_t begin = 0; begin < help.size(); begin = help.find('\n', begin) + 1)
             EXPECT_LE(help.find('\n', begin) - begin, width) << help;
@@ -105,9 +93,7 @@ TEST(RuleTable, IsThatOfTheDocuments) {
         ASSERT_EQ(lines.size(), 1u) << rule.name;
         // Documents may add to it, and name references.
         const std::string line = std::regex_replace(lines[0], std::regex(R"( \[\d+\])"), "");
-        EXPECT_NE(line.find("| " + WhenItStops(rule)), std::string::npos)
-            << line << "\nshould say\n"
-            << WhenItStops(rule);
+        EXPECT_HAS(line, "| " + WhenItStops(rule)) << line << "\nshould say\n" << WhenItStops(rule);
     }
 }
 
@@ -180,8 +166,8 @@ TEST(Rule, SaysWhatIsWrongWithIt) {
                              "thresholds:",
                              "Fixed:20",
                              "oracle:1"})
-        EXPECT_NE(ErrorOf<Invalid>(rule).find("stopping rule '"), std::string::npos) << rule;
-    EXPECT_NE(ErrorOf<Invalid>("oracle:1").find("luxtile:T"), std::string::npos);
+        EXPECT_HAS(ErrorOf<Invalid>(rule), "stopping rule '") << rule;
+    EXPECT_HAS(ErrorOf<Invalid>("oracle:1"), "luxtile:T");
 }
 
 TEST(Rule, TakesThresholdsFromAFile) {
@@ -199,13 +185,12 @@ TEST(Rule, TakesThresholdsFromAFile) {
 
     using Failed = std::runtime_error;
     const std::string rule = "thresholds:" + file.path;
-    EXPECT_NE(ErrorOf<Failed>(rule).find("name one, such as 'kitchen'"), std::string::npos);
-    EXPECT_NE(ErrorOf<Failed>(rule + ":dragon").find("no row 'dragon'"), std::string::npos);
-    EXPECT_NE(ErrorOf<Failed>(rule + ":crown", {.blockCount = 16}).find("2 blocks"),
-              std::string::npos);
+    EXPECT_HAS(ErrorOf<Failed>(rule), "name one, such as 'kitchen'");
+    EXPECT_HAS(ErrorOf<Failed>(rule + ":dragon"), "no row 'dragon'");
+    EXPECT_HAS(ErrorOf<Failed>(rule + ":crown", {.blockCount = 16}), "2 blocks");
     EXPECT_NE(ErrorOf<Failed>("thresholds:/no/such/file.csv"), "");
     const ScratchFile empty(".csv", "\n");
-    EXPECT_NE(ErrorOf<Failed>("thresholds:" + empty.path).find("no rows"), std::string::npos);
+    EXPECT_HAS(ErrorOf<Failed>("thresholds:" + empty.path), "no rows");
 }
 
 TEST(Rule, TakesTheOnlyRowAndPathsWithColons) {
@@ -227,10 +212,9 @@ TEST(Rule, LoadsAModel) {
     EXPECT_EQ(StopSpp(MakeCriterion(factory).get()), 100);
     EXPECT_EQ(StopSpp(MakeCriterion(ParseRule("learned:" + file.path)).get()), 100);
     using Failed = std::runtime_error;
-    EXPECT_NE(ErrorOf<Failed>("learned:" + file.path, {.passSpp = 16}).find("16 spp"),
-              std::string::npos);
+    EXPECT_HAS(ErrorOf<Failed>("learned:" + file.path, {.passSpp = 16}), "16 spp");
     EXPECT_NE(ErrorOf<Failed>("learned:/no/such/model.h5"), "");
-    EXPECT_NE(ErrorOf<Failed>("learned").find("learned:MODEL.h5"), std::string::npos);
+    EXPECT_HAS(ErrorOf<Failed>("learned"), "learned:MODEL.h5");
 }
 
 TEST(Rule, FindsInstalledModelsByName) {
@@ -242,8 +226,8 @@ TEST(Rule, FindsInstalledModelsByName) {
     EXPECT_EQ(factory.checksum, FileChecksum(file.path));
     EXPECT_EQ(factory.text, "learned:" + path.stem().string());
     const std::string error = ErrorOf<std::runtime_error>("learned:none_such", context);
-    EXPECT_NE(error.find("no model 'none_such'"), std::string::npos) << error;
-    EXPECT_NE(error.find(path.stem().string()), std::string::npos) << error;
+    EXPECT_HAS(error, "no model 'none_such'");
+    EXPECT_HAS(error, path.stem().string());
 }
 
 TEST(Rule, DividesThresholdsOfVisibleNoiseByCaution) {
@@ -256,12 +240,11 @@ TEST(Rule, DividesThresholdsOfVisibleNoiseByCaution) {
     }
     for (const char* rule : {"dammertz:0.02", "cycles:0.02", "luxtile:0.1", "fixed:20"}) {
         const std::string error = ErrorOf<std::invalid_argument>(rule, careful);
-        EXPECT_NE(error.find("caution"), std::string::npos) << rule << ": " << error;
+        EXPECT_HAS(error, "caution") << rule << ": " << error;
     }
     const ScratchFile entropies(".h5"), noise(".h5");
     WriteModel(entropies.path, RandomNetwork(25, {4}, 1), {.k = 3, .n = 20, .m = 25});
-    EXPECT_NE(ErrorOf<std::runtime_error>("learned:" + entropies.path, careful).find("caution"),
-              std::string::npos);
+    EXPECT_HAS(ErrorOf<std::runtime_error>("learned:" + entropies.path, careful), "caution");
     WriteModel(noise.path, RandomNetwork(100, {4}, 1),
                {.k = 3, .n = 20, .features = {Feature::VisibleDrop}});
     EXPECT_EQ(ParseRule("learned:" + noise.path, careful).checksum, FileChecksum(noise.path));

@@ -1,9 +1,7 @@
 // Makes blocks to judge.
 #pragma once
 
-#include <cmath>
 #include <random>
-#include <vector>
 
 #include "stopping/rules/rule.h"
 

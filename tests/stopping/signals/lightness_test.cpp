@@ -2,11 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <vector>
 
 namespace lull {
 namespace {

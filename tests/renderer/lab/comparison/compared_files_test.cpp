@@ -1,9 +1,5 @@
 #include "renderer/lab/comparison/compared_files.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "renderer/image/image_io.h"
 #include "tests/renderer/files/test_files.h"
 
@@ -98,15 +94,15 @@ TEST(ComparedFiles, LetPicturesForDisplaysBeOfAnyPart) {
     EXPECT_NEAR(display.image.image.values[0], 0.25f, 0.005f);
     const Comparison comparison = ComparisonOf({display, exr}, "b.exr", {});
     EXPECT_EQ(comparison.region, exr.region);
-    EXPECT_TRUE(Contains(DisplayNote(comparison), "displays: automatic."));
+    EXPECT_HAS(DisplayNote(comparison), "displays: automatic.");
     EXPECT_EQ(DisplayNote(ComparisonOf({exr}, "b.exr", {})), "");
 
     Comparison scene = BeginComparison(exr.region, {});
     EXPECT_EQ(ReadImageBeside(directory.File("a.png"), "human", scene).wallSeconds, 0);
     EXPECT_EQ(ReadImageBeside(directory.File("b.exr"), "human", scene).name, "human");
     scene = BeginComparison({{0, 0}, {kWidth, kHeight}}, {});
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadImageBeside(directory.File("b.exr"), "human", scene); }),
-                         "b.exr: shows another part of the image than the scene would"));
+    EXPECT_HAS(ErrorOf([&] { ReadImageBeside(directory.File("b.exr"), "human", scene); }),
+               "b.exr: shows another part of the image than the scene would");
 }
 
 // Writes a pair whose views have these names, the first brighter than 0.25 in its left half.
@@ -154,8 +150,8 @@ TEST(ComparedFiles, MayBePairs) {
     EXPECT_EQ(turned.image.image.values[3 * 19], 0.25f);
     EXPECT_EQ(turned.image.image.values[3 * 20], 0.5f);
     const std::string others = WritePair(directory, "d.exr", 0, {"left", "middle", "right"});
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadComparedFile(others, "x"); }), "its views are left, "));
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadShownPicture(directory.File("a.exr")); }), "a pair"));
+    EXPECT_HAS(ErrorOf([&] { ReadComparedFile(others, "x"); }), "its views are left, ");
+    EXPECT_HAS(ErrorOf([&] { ReadShownPicture(directory.File("a.exr")); }), "a pair");
 }
 
 // Of other programs' layers, as `lull denoise` does.
@@ -183,8 +179,8 @@ TEST(ComparedFiles, SayWhatDoesNotFit) {
     grey.width = grey.height = 1;
     grey.channels.push_back({"R", {1.f}});
     WriteExr(directory.File("c.exr"), grey);
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadComparedFile(directory.File("c.exr"), "x"); }),
-                         "c.exr: it has no channels R, G and B, nor Y; its channels are R"));
+    EXPECT_HAS(ErrorOf([&] { ReadComparedFile(directory.File("c.exr"), "x"); }),
+               "c.exr: it has no channels R, G and B, nor Y; its channels are R");
 }
 
 }  // namespace

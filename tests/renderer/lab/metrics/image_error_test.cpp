@@ -2,13 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 #include <numeric>
 #include <random>
-#include <vector>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"

@@ -1,12 +1,7 @@
 #include "renderer/lab/viewpoints/picture_folder.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <random>
 
-#include "renderer/base/error.h"
 #include "renderer/image/image_io.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "stopping/rules/rule_table.h"
@@ -153,9 +148,8 @@ TEST(ComparePictures, TellsOfRulesThatLookAtNothing) {
     EXPECT_TRUE(ComparePictures(found, schedule, Rules({"entropy:0.5"}, 0)).blind.empty());
     const std::string model = std::string(LULL_TESTS_DIR) + "/../stopping/models/entropy.h5";
     EXPECT_EQ(ComparePictures(found, schedule, Rules({"learned:" + model}, 0)).blind.size(), 1u);
-    EXPECT_TRUE(
-        Contains(ErrorOf([&] { ComparePictures(found, schedule, Rules({"lnoise:0.5"}, 0)); }),
-                 "lnoise:0.5: the rule needs a half buffer"));
+    EXPECT_HAS(ErrorOf([&] { ComparePictures(found, schedule, Rules({"lnoise:0.5"}, 0)); }),
+               "lnoise:0.5: the rule needs a half buffer");
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 
-#include <gtest/gtest.h>
-
 #include "renderer/lab/viewpoints/study.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
@@ -44,10 +42,9 @@ TEST(RecordingLimits, EndPastWhatPeopleSaid) {
     std::vector<int> limits = {100, 80, 0};
     LimitByHuman(human, "room", 1.5, &limits);
     EXPECT_EQ(limits, (std::vector<int>{45, 80, 0}));
-    EXPECT_TRUE(
-        Contains(ErrorOf([&] { LimitByHuman(human, "attic", 1, &limits); }), "has no row 'attic'"));
-    EXPECT_TRUE(Contains(ErrorOf([&] { LimitByHuman(human, "hall", 1, &limits); }),
-                         "'hall' has 1 blocks, the image 3"));
+    EXPECT_HAS(ErrorOf([&] { LimitByHuman(human, "attic", 1, &limits); }), "has no row 'attic'");
+    EXPECT_HAS(ErrorOf([&] { LimitByHuman(human, "hall", 1, &limits); }),
+               "'hall' has 1 blocks, the image 3");
 }
 
 TEST(RecordedViewpoint, HasTheNamesThatFilesHaveRoomFor) {

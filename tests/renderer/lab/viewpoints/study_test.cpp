@@ -1,11 +1,5 @@
 #include "renderer/lab/viewpoints/study.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "renderer/base/error.h"
 #include "renderer/image/image_io.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/signals/lightness.h"
@@ -70,13 +64,13 @@ TEST(MakeStudy, CutsPicturesIntoBlocksAtTheLevelsOfALadder) {
 
 TEST(MakeStudy, NamesWhatDoesNotFit) {
     const TemporaryDirectory folder;
-    EXPECT_TRUE(Contains(ProblemOf(folder), "has no pictures"));
+    EXPECT_HAS(ProblemOf(folder), "has no pictures");
     WriteGrey(folder.File("a-20spp.png"), 8, 8, 0.5f);
-    EXPECT_TRUE(Contains(ProblemOf(folder), "a-20spp.png: is the only picture"));
+    EXPECT_HAS(ProblemOf(folder), "a-20spp.png: is the only picture");
     WriteGrey(folder.File("a-40spp.png"), 8, 9, 0.5f);
-    EXPECT_TRUE(Contains(ProblemOf(folder), "a-40spp.png: has 8x9 pixels"));
+    EXPECT_HAS(ProblemOf(folder), "a-40spp.png: has 8x9 pixels");
     WriteGrey(folder.File("b-20.png"), 8, 8, 0.5f);
-    EXPECT_TRUE(Contains(ProblemOf(folder), "both of 20 spp"));
+    EXPECT_HAS(ProblemOf(folder), "both of 20 spp");
     folder.Write("notes.txt", "x");
     EXPECT_TRUE(Contains(ProblemOf(folder), "notes.txt: has no spp in its name") ||
                 Contains(ProblemOf(folder), "both of 20 spp"));

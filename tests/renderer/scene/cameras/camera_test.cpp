@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "renderer/scene/cameras/camera.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 #include "tests/renderer/scene_of.h"
 
@@ -39,29 +36,28 @@ Vec3f Direction(const Camera& camera, float x, float y) {
 
 TEST(Camera, LooksAlongZWithTheFieldOfViewOnTheShorterAxis) {
     const float t = std::tan(kPi / 6);  // half of 60 degrees
-    const Camera wide = MakeTestCamera(FilmOf(200, 100), {FloatParameter("fov", {60})});
+    const Camera wide = MakeTestCamera(FilmOf(200, 100), {Float("fov", 60)});
     ExpectNear(Direction(wide, 100, 50), Vec3f(0, 0, 1));
     // Film y points down, camera y up, and x to the right.
     ExpectNear(Direction(wide, 0, 0), Vec3f(-2 * t, t, 1).normalized());
     ExpectNear(Direction(wide, 200, 0), Vec3f(2 * t, t, 1).normalized());
     ExpectNear(Direction(wide, 0, 100), Vec3f(-2 * t, -t, 1).normalized());
     ExpectNear(Direction(wide, 200, 100), Vec3f(2 * t, -t, 1).normalized());
-    const Camera tall = MakeTestCamera(FilmOf(100, 200), {FloatParameter("halffov", {30})});
+    const Camera tall = MakeTestCamera(FilmOf(100, 200), {Float("halffov", 30)});
     ExpectNear(Direction(tall, 0, 0), Vec3f(-t, 2 * t, 1).normalized());
     ExpectNear(wide.GenerateRay({{3, 4}, {0, 0}}).o, Vec3f::Zero());
 }
 
 TEST(Camera, FollowsScreenWindowAndAspect) {
     const Camera window =
-        MakeTestCamera(FilmOf(100, 100), {FloatParameter("screenwindow", {-0.5f, 0.25f, -1, 2})});
+        MakeTestCamera(FilmOf(100, 100), {Floats("screenwindow", {-0.5f, 0.25f, -1, 2})});
     ExpectNear(Direction(window, 0, 0), Vec3f(-0.5f, 2, 1).normalized());
     ExpectNear(Direction(window, 100, 100), Vec3f(0.25f, -1, 1).normalized());
-    const Camera aspect =
-        MakeTestCamera(FilmOf(100, 100), {FloatParameter("frameaspectratio", {3})});
+    const Camera aspect = MakeTestCamera(FilmOf(100, 100), {Float("frameaspectratio", 3)});
     ExpectNear(Direction(aspect, 0, 0), Vec3f(-3, 1, 1).normalized());
     // By a quarter of its width to the right and a half of its height down.
     const Camera shifted =
-        MakeTestCamera(FilmOf(200, 100), {FloatParameter("screenshift", {0.25f, -0.5f})});
+        MakeTestCamera(FilmOf(200, 100), {Floats("screenshift", {0.25f, -0.5f})});
     ExpectNear(Direction(shifted, 0, 0), Vec3f(-1, 0, 1).normalized());
     ExpectNear(Direction(shifted, 200, 100), Vec3f(3, -2, 1).normalized());
 }
@@ -69,17 +65,16 @@ TEST(Camera, FollowsScreenWindowAndAspect) {
 TEST(Camera, SeesBetweenTwoPlanes) {
     for (const char* kind : {"perspective", "orthographic"})
         for (const float lens : {0.f, 0.1f}) {
-            const Camera camera = MakeTestCamera(
-                FilmOf(200, 100),
-                {FloatParameter("clipstart", {2}), FloatParameter("clipend", {5}),
-                 FloatParameter("lensradius", {lens}), FloatParameter("focaldistance", {3})},
-                Mat4d::Identity(), kind);
+            const Camera camera =
+                MakeTestCamera(FilmOf(200, 100),
+                               {Float("clipstart", 2), Float("clipend", 5),
+                                Float("lensradius", lens), Float("focaldistance", 3)},
+                               Mat4d::Identity(), kind);
             const Ray ray = camera.GenerateRay({{20, 10}, {0.9f, 0.3f}});
             EXPECT_NEAR(ray.o.z(), 2, 1e-5f) << kind;
             EXPECT_NEAR((ray.o + ray.tMax * ray.d).z(), 5, 1e-5f) << kind;
             const Ray whole = MakeTestCamera(FilmOf(200, 100),
-                                             {FloatParameter("lensradius", {lens}),
-                                              FloatParameter("focaldistance", {3})},
+                                             {Float("lensradius", lens), Float("focaldistance", 3)},
                                              Mat4d::Identity(), kind)
                                   .GenerateRay({{20, 10}, {0.9f, 0.3f}});
             ExpectNear(ray.d, whole.d);
@@ -90,8 +85,8 @@ TEST(Camera, SeesBetweenTwoPlanes) {
 // glTF's cameras: all of what they show is in images of any aspect, and nothing is stretched.
 TEST(Camera, FitsWhatItHasToShow) {
     const auto corner = [](int width, int height, float x, float y, const char* kind) {
-        const Camera camera = MakeTestCamera(
-            FilmOf(width, height), {FloatParameter("screenfit", {x, y})}, Mat4d::Identity(), kind);
+        const Camera camera = MakeTestCamera(FilmOf(width, height), {Floats("screenfit", {x, y})},
+                                             Mat4d::Identity(), kind);
         const Ray ray = camera.GenerateRay({{float(width), 0}, {0.5f, 0.5f}});
         return ray.d.x() == 0 ? Vec2f(ray.o.x(), ray.o.y()) : Vec2f(ray.d.head<2>() / ray.d.z());
     };
@@ -150,8 +145,7 @@ TEST(Camera, StandsWhereItsTransformSays) {
 TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
     const Mat4d worldFromCamera = RigidTransform();
     const Camera lens =
-        MakeTestCamera(FilmOf(100, 80),
-                       {FloatParameter("lensradius", {0.3f}), FloatParameter("focaldistance", {4})},
+        MakeTestCamera(FilmOf(100, 80), {Float("lensradius", 0.3f), Float("focaldistance", 4)},
                        worldFromCamera.inverse());
     const Camera pinhole = MakeTestCamera(FilmOf(100, 80), {}, worldFromCamera.inverse());
     test::Random random(1);
@@ -177,7 +171,7 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
 TEST(Camera, OrthographicRaysAreParallel) {
     const Mat4d worldFromCamera = RigidTransform();
     const FilmSettings film = FilmOf(200, 100);
-    const Camera camera = MakeTestCamera(film, {FloatParameter("screenwindow", {-3, 1, -2, 4})},
+    const Camera camera = MakeTestCamera(film, {Floats("screenwindow", {-3, 1, -2, 4})},
                                          worldFromCamera.inverse(), "orthographic");
     const Vec2f lens(0.5f, 0.5f);
     for (const Vec2f& p : {Vec2f(0, 0), Vec2f(200, 0), Vec2f(50, 70)}) {
@@ -197,8 +191,7 @@ TEST(Camera, OrthographicRaysAreParallel) {
 
 TEST(Camera, OrthographicLensKeepsThePlaneOfFocus) {
     const Camera camera =
-        MakeTestCamera(FilmOf(10, 10),
-                       {FloatParameter("lensradius", {0.2f}), FloatParameter("focaldistance", {3})},
+        MakeTestCamera(FilmOf(10, 10), {Float("lensradius", 0.2f), Float("focaldistance", 3)},
                        Mat4d::Identity(), "orthographic");
     test::Random random(2);
     for (int i = 0; i < 1000; ++i) {
@@ -214,8 +207,8 @@ TEST(Camera, OrthographicLensKeepsThePlaneOfFocus) {
 TEST(Camera, EnvironmentSeesAllDirections) {
     const Mat4d worldFromCamera = RigidTransform();
     const FilmSettings film = FilmOf(40, 20);
-    const Camera camera = MakeTestCamera(film, {FloatParameter("lensradius", {2})},
-                                         worldFromCamera.inverse(), "environment");
+    const Camera camera =
+        MakeTestCamera(film, {Float("lensradius", 2)}, worldFromCamera.inverse(), "environment");
     const auto inCamera = [&](float x, float y) {
         const Ray ray = camera.GenerateRay({{x, y}, {0.1f, 0.2f}});
         ExpectNear(ray.o, Vec3f(3, -2, 5));
@@ -233,39 +226,30 @@ TEST(Camera, EnvironmentSeesAllDirections) {
 // 180 degrees, which a plane does not show, and what rounding makes of them.
 TEST(Camera, IsNearlyAsWideAsAsked) {
     for (const float fov : {180.f, 180.0001f, 179.94f}) {
-        const Camera camera = MakeTestCamera(FilmOf(10, 10), {FloatParameter("fov", {fov})});
+        const Camera camera = MakeTestCamera(FilmOf(10, 10), {Float("fov", fov)});
         EXPECT_NEAR(std::acos(Direction(camera, 0, 5).z()) * 180 / kPi, 89.97, 1e-3) << fov;
     }
 }
 
 TEST(Camera, RefusesNonsense) {
     for (const float fov : {0.f, -5.f, 181.f, std::nanf("")})
-        EXPECT_TRUE(
-            Contains(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {FloatParameter("fov", {fov})}); }),
-                     "scene.pbrt:3: "));
+        EXPECT_HAS(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {Float("fov", fov)}); }),
+                   "scene.pbrt:3: ");
     EXPECT_NE(ErrorOf([] { MakeTestCamera(FilmOf(9, 9), {}, Mat4d::Zero()); }), "");
-    EXPECT_NE(ErrorOf([] {
-                  MakeTestCamera(FilmOf(9, 9), {FloatParameter("screenwindow", {1, 2})});
-              }),
-              "");
+    EXPECT_NE(ErrorOf([] { MakeTestCamera(FilmOf(9, 9), {Floats("screenwindow", {1, 2})}); }), "");
     for (const float aspect : {0.f, -1.f, kInfinity})
-        EXPECT_TRUE(Contains(ErrorOf([&] {
-                                 MakeTestCamera(FilmOf(9, 9),
-                                                {FloatParameter("frameaspectratio", {aspect})});
-                             }),
-                             "has to be above 0"));
-    EXPECT_TRUE(
-        Contains(ErrorOf([] {
-                     MakeTestCamera(FilmOf(9, 9), {FloatParameter("screenwindow", {1, 1, -1, 1})});
-                 }),
-                 "no extent"));
+        EXPECT_HAS(
+            ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {Float("frameaspectratio", aspect)}); }),
+            "has to be above 0");
+    EXPECT_HAS(ErrorOf([] {
+                   MakeTestCamera(FilmOf(9, 9), {Floats("screenwindow", {1, 1, -1, 1})});
+               }),
+               "no extent");
     // No ray through these is finite.
     for (const Parameter& parameter :
-         {FloatParameter("screenwindow", {-3e38f, 3e38f, -1, 1}),
-          FloatParameter("frameaspectratio", {1e-38f}), FloatParameter("screenfit", {1, 1e30f}),
-          FloatParameter("screenshift", {0, 1e20f})})
-        EXPECT_TRUE(Contains(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {parameter}); }),
-                             "is the farthest"))
+         {Floats("screenwindow", {-3e38f, 3e38f, -1, 1}), Float("frameaspectratio", 1e-38f),
+          Floats("screenfit", {1, 1e30f}), Floats("screenshift", {0, 1e20f})})
+        EXPECT_HAS(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {parameter}); }), "is the farthest")
             << parameter.name;
     Description description;
     description.camera.name = "fisheye";

@@ -1,7 +1,4 @@
 // Tests lenses: their files, that they focus, and that their rays carry the light that passes.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "renderer/scene/cameras/camera.h"
 #include "renderer/scene/cameras/lens_system.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
@@ -28,8 +25,7 @@ Camera MakeLensCamera(const std::string& lens, std::vector<Parameter> parameters
     Description description;
     description.camera.name = "realistic";
     description.camera.loc = LocAt(3);
-    description.camera.parameters.Add(
-        StringParameter("lensfile", directory.Write("lens.dat", lens)));
+    description.camera.parameters.Add(String("lensfile", directory.Write("lens.dat", lens)));
     for (Parameter& p : parameters) description.camera.parameters.Add(std::move(p));
     Warnings silent;
     return MakeCamera(description, SquareFilm(), warnings ? *warnings : silent);
@@ -43,8 +39,8 @@ std::string CameraError(const std::string& lens, std::vector<Parameter> paramete
 // the side of the image where that point is.
 TEST(RealisticCamera, FocusesAtTheDistance) {
     const Camera camera = MakeLensCamera(
-        kLens, {FloatParameter("aperturediameter", {6}), FloatParameter("focusdistance", {2}),
-                BoolParameter("simpleweighting", false)});
+        kLens,
+        {Float("aperturediameter", 6), Float("focusdistance", 2), Bool("simpleweighting", false)});
     EXPECT_TRUE(camera.HasLens());
     test::Random random(1);
     for (const Vec2f& film : {Vec2f(50, 50), Vec2f(70, 45), Vec2f(20, 30)}) {
@@ -69,10 +65,10 @@ TEST(RealisticCamera, FocusesAtTheDistance) {
 
 // The mean weight of a point of the film equals the light through all of the rear lens.
 TEST(RealisticCamera, WeighsByTheLightThatPasses) {
-    const Camera camera = MakeLensCamera(
-        kLens, {FloatParameter("aperturediameter", {17}), BoolParameter("simpleweighting", false),
-                FloatParameter("shutteropen", {1}), FloatParameter("shutterclose", {3})});
-    const Camera simple = MakeLensCamera(kLens, {FloatParameter("aperturediameter", {17})});
+    const Camera camera =
+        MakeLensCamera(kLens, {Float("aperturediameter", 17), Bool("simpleweighting", false),
+                               Float("shutteropen", 1), Float("shutterclose", 3)});
+    const Camera simple = MakeLensCamera(kLens, {Float("aperturediameter", 17)});
     test::Random random(2);
     const auto mean = [&](const Camera& c, const Vec2f& film) {
         double sum = 0;
@@ -101,7 +97,7 @@ TEST(RealisticCamera, MayLetNothingPass) {
     // narrower than the aperture that is asked for.
     Warnings warnings;
     const Camera camera = MakeLensCamera("50 2 1.5 20\n0 60 0 1\n0 30 0 1\n-50 40 1 20\n",
-                                         {FloatParameter("aperturediameter", {2})}, &warnings);
+                                         {Float("aperturediameter", 2)}, &warnings);
     EXPECT_EQ(warnings.Total(), 2);
     int dark = 0;
     test::Random random(3);
@@ -113,24 +109,22 @@ TEST(RealisticCamera, MayLetNothingPass) {
         EXPECT_FALSE(camera.NextRay(ray, {{3, 3}}, 0).has_value());
     }
     EXPECT_EQ(dark, 1000);
-    EXPECT_TRUE(Contains(CameraError(kLens, {FloatParameter("aperturediameter", {0})}),
-                         "scene.pbrt:3: no light passes the lenses of '"));
+    EXPECT_HAS(CameraError(kLens, {Float("aperturediameter", 0)}),
+               "scene.pbrt:3: no light passes the lenses of '");
 }
 
 TEST(RealisticCamera, RefusesNonsense) {
-    EXPECT_TRUE(Contains(CameraError("48 5 1.52"), "has 3 numbers; four are needed"));
-    EXPECT_TRUE(Contains(CameraError(""), "has 0 numbers"));
-    EXPECT_TRUE(Contains(CameraError("1 2 3\n4 five"), "lens.dat:2: 'five' in a lens file"));
-    EXPECT_TRUE(Contains(CameraError("48 5 1.5 inf"), "not a number"));
-    EXPECT_TRUE(Contains(CameraError("48 5 1.5 -3"), "diameter of -3 mm in row 1"));
-    EXPECT_TRUE(Contains(CameraError("48 5 1.5 3 48 5 -1 3"), "refraction of -1 in row 2"));
-    EXPECT_TRUE(Contains(CameraError("48 1e20 1.5 3"), "thickness beyond"));
-    EXPECT_TRUE(Contains(CameraError(kLens, {FloatParameter("focusdistance", {0.05f})}),
-                         "cannot focus at 0.05 m"));
-    EXPECT_TRUE(Contains(CameraError(kLens, {FloatParameter("focusdistance", {-1})}), "above 0"));
-    EXPECT_TRUE(Contains(CameraError(kLens, {StringParameter("lensfile", "")}), "\"lensfile\""));
-    EXPECT_TRUE(Contains(CameraError(kLens, {StringParameter("lensfile", "nowhere.dat")}),
-                         "scene.pbrt:3: "));
+    EXPECT_HAS(CameraError("48 5 1.52"), "has 3 numbers; four are needed");
+    EXPECT_HAS(CameraError(""), "has 0 numbers");
+    EXPECT_HAS(CameraError("1 2 3\n4 five"), "lens.dat:2: 'five' in a lens file");
+    EXPECT_HAS(CameraError("48 5 1.5 inf"), "not a number");
+    EXPECT_HAS(CameraError("48 5 1.5 -3"), "diameter of -3 mm in row 1");
+    EXPECT_HAS(CameraError("48 5 1.5 3 48 5 -1 3"), "refraction of -1 in row 2");
+    EXPECT_HAS(CameraError("48 1e20 1.5 3"), "thickness beyond");
+    EXPECT_HAS(CameraError(kLens, {Float("focusdistance", 0.05f)}), "cannot focus at 0.05 m");
+    EXPECT_HAS(CameraError(kLens, {Float("focusdistance", -1)}), "above 0");
+    EXPECT_HAS(CameraError(kLens, {String("lensfile", "")}), "\"lensfile\"");
+    EXPECT_HAS(CameraError(kLens, {String("lensfile", "nowhere.dat")}), "scene.pbrt:3: ");
 }
 
 }  // namespace

@@ -1,7 +1,4 @@
 // Tests curves: their directives, and where rays meet them.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/geometry/shapes/shape_factory.h"
 #include "renderer/scene/scene.h"
@@ -56,9 +53,9 @@ TEST(Curves, AreHitWithinTheirWidth) {
     Random random(1);
     for (const char* kind : {"flat", "cylinder"})
         for (const int depth : {0, 3, 6}) {
-            const Curves curves = Read(
-                {Points(kBend), StringParameter("type", kind), IntParameter("splitdepth", depth),
-                 FloatParameter("width0", {0.1f}), FloatParameter("width1", {0.04f})});
+            const Curves curves =
+                Read({Points(kBend), String("type", kind), Int("splitdepth", depth),
+                      Float("width0", 0.1f), Float("width1", 0.04f)});
             ASSERT_EQ(curves.PrimitiveCount(), 1u << depth);
             const CurvePiece& piece = curves.pieces[0];
             for (int i = 0; i < 1000; ++i) {
@@ -101,7 +98,7 @@ TEST(Curves, AreHitWithinTheirWidth) {
 TEST(Curves, RibbonsAreSeenFromTheSideAsThin) {
     const Curves ribbon =
         Read({Points({-1, 0, 0, -0.3f, 0, 0, 0.3f, 0, 0, 1, 0, 0}), Normals({0, 0, 1, 0, 1, 0}),
-              StringParameter("type", "ribbon"), FloatParameter("width", {0.2f})});
+              String("type", "ribbon"), Float("width", 0.2f)});
     const auto isHit = [&](float x, float y, const Vec3f& d) {
         return Nearest(ribbon, {Vec3f(x, y, 0) - 5 * d, d, kInfinity}).has_value();
     };
@@ -121,7 +118,7 @@ TEST(Curves, RibbonsAreSeenFromTheSideAsThin) {
     // Normals that are the same at both ends are not a quotient of zeros.
     const Curves straight =
         Read({Points({-1, 0, 0, -0.3f, 0, 0, 0.3f, 0, 0, 1, 0, 0}), Normals({0, 0, 1, 0, 0, 1}),
-              StringParameter("type", "ribbon"), FloatParameter("width", {0.2f})});
+              String("type", "ribbon"), Float("width", 0.2f)});
     const auto middle = Nearest(straight, {Vec3f(0, 0.09f, 5), down, kInfinity});
     ASSERT_TRUE(middle.has_value());
     EXPECT_NEAR(std::abs(middle->b2 - 0.5f), 0.45f, 1e-3f);
@@ -131,15 +128,15 @@ TEST(Curves, RibbonsAreSeenFromTheSideAsThin) {
 TEST(Curves, KnowBothBasesAndDegrees) {
     const std::vector<float> five = {0, 0, 0, 1, 2, 0, 2, -1, 1, 3, 0, 2, 4, 1, 1};
     const auto at = [&](int i) { return Vec3f(five[3 * i], five[3 * i + 1], five[3 * i + 2]); };
-    const Curves quadratic = Read({Points(five), IntParameter("degree", 2)});
+    const Curves quadratic = Read({Points(five), Int("degree", 2)});
     ASSERT_EQ(quadratic.pieces.size(), 2u);
     for (const float u : {0.f, 0.3f, 1.f})
         EXPECT_NEAR((PointAt(quadratic.pieces[1], u) -
                      (Sqr(1 - u) * at(2) + 2 * u * (1 - u) * at(3) + u * u * at(4)))
                         .norm(),
                     0, 1e-6f);
-    const Curves spline = Read({Points(five), StringParameter("basis", "bspline"),
-                                FloatParameter("width0", {1}), FloatParameter("width1", {3})});
+    const Curves spline =
+        Read({Points(five), String("basis", "bspline"), Float("width0", 1), Float("width1", 3)});
     ASSERT_EQ(spline.pieces.size(), 2u);
     EXPECT_EQ(spline.pieces[0].width, (std::array{1.f, 2.f}));
     EXPECT_EQ(spline.pieces[1].width, (std::array{2.f, 3.f}));
@@ -150,8 +147,7 @@ TEST(Curves, KnowBothBasesAndDegrees) {
             6;
         EXPECT_NEAR((PointAt(spline.pieces[1], u) - expected).norm(), 0, 1e-5f);
     }
-    const Curves square =
-        Read({Points(five), StringParameter("basis", "bspline"), IntParameter("degree", 2)});
+    const Curves square = Read({Points(five), String("basis", "bspline"), Int("degree", 2)});
     ASSERT_EQ(square.pieces.size(), 3u);
     for (const float u : {0.f, 0.3f, 1.f}) {
         const Vec3f expected =
@@ -167,8 +163,8 @@ TEST(Curves, MayBePlacedByAnyTransform) {
                                   Eigen::Scaling(1.5);
     Eigen::Affine3d stretched = rigid;
     stretched.matrix().topLeftCorner<3, 1>() *= 1.001;
-    const std::vector<Parameter> parameters = {Points(kBend), FloatParameter("width", {0.2f}),
-                                               StringParameter("type", "cylinder")};
+    const std::vector<Parameter> parameters = {Points(kBend), Float("width", 0.2f),
+                                               String("type", "cylinder")};
     const Curves moved = Read(parameters, rigid.matrix());
     const Curves kept = Read(parameters, stretched.matrix());
     EXPECT_FALSE(moved.place.has_value());
@@ -197,7 +193,7 @@ TEST(Curves, MayBePlacedByAnyTransform) {
 }
 
 TEST(Curves, MayHaveNoWidthOrLength) {
-    const Curves thin = Read({Points(kBend), FloatParameter("width", {0})});
+    const Curves thin = Read({Points(kBend), Float("width", 0)});
     Random random(4);
     for (int i = 0; i < 1000; ++i) {
         const Vec3f d = random.Direction();
@@ -205,8 +201,8 @@ TEST(Curves, MayHaveNoWidthOrLength) {
             Nearest(thin, {PointAt(thin.pieces[0], random.Float()) - d, d, kInfinity}).has_value());
     }
     // It tapers to a point; whatever is hit is finite.
-    const Curves tip = Read({Points(kBend), FloatParameter("width0", {1e-3f}),
-                             FloatParameter("width1", {0}), StringParameter("type", "cylinder")});
+    const Curves tip = Read(
+        {Points(kBend), Float("width0", 1e-3f), Float("width1", 0), String("type", "cylinder")});
     for (int i = 0; i < 1000; ++i) {
         const Vec3f d = random.Direction();
         const float u = 1 - 1e-4f * random.Float();
@@ -232,35 +228,30 @@ TEST(Curves, RefuseNonsense) {
     const auto error = [](const std::vector<Parameter>& parameters) {
         return ErrorOf([&] { Read(parameters); });
     };
-    EXPECT_TRUE(Contains(error({}), "scene.pbrt:3: the curve has 0 points"));
-    EXPECT_TRUE(Contains(error({Points({1, 2, 3, 4, 5, 6})}), "4 + n * 3 are needed"));
-    EXPECT_TRUE(Contains(error({Points(kBend), IntParameter("degree", 2)}), "3 + n * 2"));
-    EXPECT_TRUE(
-        Contains(error({Points({1, 2, 3}), StringParameter("basis", "bspline")}), "4 or more"));
-    EXPECT_TRUE(Contains(error({Points(kBend), IntParameter("degree", 4)}), "degree 4"));
-    EXPECT_TRUE(Contains(error({Points(kBend), StringParameter("basis", "hermite")}), "hermite"));
-    EXPECT_TRUE(Contains(error({Points(kBend), StringParameter("type", "tube")}), "tube"));
-    EXPECT_TRUE(Contains(error({Points(kBend), FloatParameter("width", {-1})}), "is -1"));
-    EXPECT_TRUE(Contains(
-        error({Points(kBend), FloatParameter("width", {-1}), FloatParameter("width0", {1})}),
-        "\"width1\" is -1"));
-    EXPECT_EQ(error({Points(kBend), FloatParameter("width", {-1}), FloatParameter("width0", {1}),
-                     FloatParameter("width1", {1})}),
+    EXPECT_HAS(error({}), "scene.pbrt:3: the curve has 0 points");
+    EXPECT_HAS(error({Points({1, 2, 3, 4, 5, 6})}), "4 + n * 3 are needed");
+    EXPECT_HAS(error({Points(kBend), Int("degree", 2)}), "3 + n * 2");
+    EXPECT_HAS(error({Points({1, 2, 3}), String("basis", "bspline")}), "4 or more");
+    EXPECT_HAS(error({Points(kBend), Int("degree", 4)}), "degree 4");
+    EXPECT_HAS(error({Points(kBend), String("basis", "hermite")}), "hermite");
+    EXPECT_HAS(error({Points(kBend), String("type", "tube")}), "tube");
+    EXPECT_HAS(error({Points(kBend), Float("width", -1)}), "is -1");
+    EXPECT_HAS(error({Points(kBend), Float("width", -1), Float("width0", 1)}), "\"width1\" is -1");
+    EXPECT_EQ(error({Points(kBend), Float("width", -1), Float("width0", 1), Float("width1", 1)}),
               "");
-    EXPECT_TRUE(Contains(error({Points(kBend), FloatParameter("width0", {kInfinity})}), "width"));
-    EXPECT_TRUE(Contains(error({Points(kBend), IntParameter("splitdepth", 11)}), "is 11"));
-    EXPECT_TRUE(Contains(error({Points(kBend), FloatParameter("splitdepth", {-4e20f})}), "is -1"));
-    EXPECT_TRUE(Contains(error({Points(kBend), StringParameter("type", "ribbon")}), "2 normals"));
-    EXPECT_TRUE(Contains(
-        error({Points(kBend), StringParameter("type", "ribbon"), Normals({0, 0, 0, 0, 0, 1})}),
-        "zero"));
+    EXPECT_HAS(error({Points(kBend), Float("width0", kInfinity)}), "width");
+    EXPECT_HAS(error({Points(kBend), Int("splitdepth", 11)}), "is 11");
+    EXPECT_HAS(error({Points(kBend), Float("splitdepth", -4e20f)}), "is -1");
+    EXPECT_HAS(error({Points(kBend), String("type", "ribbon")}), "2 normals");
+    EXPECT_HAS(error({Points(kBend), String("type", "ribbon"), Normals({0, 0, 0, 0, 0, 1})}),
+               "zero");
     std::vector<float> broken = kBend;
     broken[4] = std::nanf("");
-    EXPECT_TRUE(Contains(error({Points(broken)}), "not finite"));
+    EXPECT_HAS(error({Points(broken)}), "not finite");
     ShapeEntity lamp = ShapeOf("curve", {Points(kBend)});
     lamp.areaLight = Entity{};
     Warnings warnings;
-    EXPECT_TRUE(Contains(ErrorOf([&] { ReadCurves(lamp, warnings); }), "pbrt-v3 cannot sample"));
+    EXPECT_HAS(ErrorOf([&] { ReadCurves(lamp, warnings); }), "pbrt-v3 cannot sample");
 }
 
 // Hair comes as one directive a strand and makes one shape where nothing else changes.

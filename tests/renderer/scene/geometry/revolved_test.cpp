@@ -1,11 +1,5 @@
 // Tests cylinders, cones, paraboloids and hyperboloids against their parametric forms.
-#include "renderer/scene/geometry/shapes/quadric.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "tests/renderer/bsdf/sphere_statistics.h"
-#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/geometry/hit_at.h"
 #include "tests/renderer/scene_of.h"
 
@@ -314,11 +308,10 @@ TEST(Revolved, RefusesWhatHasNoArea) {
              "Shape \"hyperboloid\" \"point p1\" [1 0 1]",
              "Shape \"hyperboloid\" \"point p1\" [0 0 0] \"point p2\" [0 0 1]",
          })
-        EXPECT_NE(ErrorOfWorld(world).find("test.pbrt:3: "), std::string::npos) << world;
+        EXPECT_HAS(ErrorOfWorld(world), "test.pbrt:3: ") << world;
     for (const char* kind : {"cone", "paraboloid", "hyperboloid"})
-        EXPECT_NE(ErrorOfWorld(fmt::format("AreaLightSource \"diffuse\"\nShape \"{}\"", kind))
-                      .find("test.pbrt:4: a light of shape"),
-                  std::string::npos)
+        EXPECT_HAS(ErrorOfWorld(fmt::format("AreaLightSource \"diffuse\"\nShape \"{}\"", kind)),
+                   "test.pbrt:4: a light of shape")
             << kind;
     // The defaults of pbrt-v3, with which its own hyperboloid does not end.
     for (const char* kind : {"cylinder", "cone", "paraboloid", "hyperboloid"})

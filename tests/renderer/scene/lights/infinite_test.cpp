@@ -1,11 +1,7 @@
 #include "renderer/scene/lights/infinite.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <numeric>
 
-#include "renderer/base/math.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/lights/light_scene.h"
 
@@ -248,8 +244,7 @@ TEST(SunLight, HasAPenumbra) {
 
 TEST(SunLight, RefusesAnglesThatAreNone) {
     for (const double angle : {-1., 181.}) {
-        const std::string error = ErrorOf([&] { LightScene scene(Sun(angle)); });
-        EXPECT_TRUE(Contains(error, "\"angle\" is")) << error;
+        EXPECT_HAS(ErrorOf([&] { LightScene scene(Sun(angle)); }), "\"angle\" is");
     }
 }
 

@@ -1,12 +1,6 @@
 // Compares what sampling lights finds with what rays in random directions find.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "renderer/base/math.h"
-#include "renderer/scene/lights/light_distribution.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/lights/light_scene.h"
-#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {
@@ -161,7 +155,7 @@ TEST(Lights, RefuseToBeStretched) {
                             "Shape \"{0}\"\nAttributeEnd\nShape \"{0}\"",
                             shape));
         });
-        EXPECT_TRUE(Contains(error, "test.pbrt:6: a light of shape")) << error;
+        EXPECT_HAS(error, "test.pbrt:6: a light of shape");
     }
 }
 

@@ -1,13 +1,7 @@
 #include "renderer/scene/lights/point.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <numbers>
-
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/lights/light_scene.h"
-#include "tests/renderer/scene_of.h"
 
 namespace lull::emission_profile_test {
 namespace {
@@ -61,7 +55,7 @@ TEST(EmissionProfile, RefusesOtherAngles) {
             SceneOf(WorldText(std::string("AreaLightSource \"diffuse\" \"float spread\" [") + bad +
                               "]\nShape \"sphere\"\n"));
         });
-        EXPECT_TRUE(Contains(error, "above 0 and at most 180 degrees")) << bad << error;
+        EXPECT_HAS(error, "above 0 and at most 180 degrees") << bad << error;
     }
 }
 
@@ -199,7 +193,7 @@ TEST(ImageLights, RefuseWhatTheyCannotRead) {
                               "\"projection\" \"string mapname\" \"missing.exr\""}) {
         const std::string error =
             ErrorOf([&] { LightScene scene(std::string("LightSource ") + light); });
-        EXPECT_TRUE(Contains(error, "test.pbrt:3: ")) << light << ": " << error;
+        EXPECT_HAS(error, "test.pbrt:3: ") << light << ": " << error;
     }
 }
 

@@ -1,8 +1,4 @@
 // Tests tabulated scattering: its file format, and that it is evaluated and sampled as it says.
-#include <gtest/gtest.h>
-
-#include <cstring>
-
 #include "renderer/scene/materials/basic.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
@@ -165,8 +161,8 @@ TEST(Fourier, RefusesBrokenFiles) {
     EXPECT_EQ(error([](BsdfFile*) {}), "");
     const auto expect = [&](const char* part, const auto& spoil) {
         const std::string e = error(spoil);
-        EXPECT_TRUE(Contains(e, part)) << e;
-        EXPECT_TRUE(Contains(e, "a.bsdf")) << e;
+        EXPECT_HAS(e, part);
+        EXPECT_HAS(e, "a.bsdf");
     };
     expect("is not a .bsdf file", [](BsdfFile* f) { f->magic = "SCATFUN\x02"; });
     expect("not supported", [](BsdfFile* f) { f->flags = 3; });

@@ -1,9 +1,5 @@
 // Checks parameters, defaults and lobes of each kind of material.
-#include <gtest/gtest.h>
-
-#include "renderer/bsdf/subsurface.h"
 #include "renderer/input/spectrum.h"
-#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/materials/material_scene.h"
 
 namespace lull::test {
@@ -70,7 +66,7 @@ TEST(Subsurface, UnknownNamesAreWarnedOf) {
     b.AddMaterial("subsurface", {String("name", "Marbel")});
     b.Make();
     ASSERT_EQ(b.messages.size(), 1u);
-    EXPECT_TRUE(Contains(b.messages[0], "Marbel")) << b.messages[0];
+    EXPECT_HAS(b.messages[0], "Marbel");
 }
 
 TEST(Plastic, Defaults) {

@@ -1,38 +1,19 @@
 // Builds descriptions of materials and textures for tests, and looks into the Bsdfs made of them.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "renderer/scene/materials/material.h"
 #include "tests/renderer/files/test_files.h"
+#include "tests/renderer/scene/parameters.h"
 
 namespace lull::test {
 
 using DielectricReflection = MicrofacetReflection<DielectricInterface>;
 using ConductorReflection = MicrofacetReflection<ConductorInterface>;
 
-inline FileLoc At(int line) { return {std::make_shared<const std::string>("scene.pbrt"), line}; }
-
-// Make parameters.
-inline Parameter Float(const std::string& name, float value) {
-    return {ParameterType::Float, name, At(3), std::vector<float>{value}};
-}
-inline Parameter Bool(const std::string& name, bool value) {
-    return {ParameterType::Bool, name, At(3), std::vector<int>{value}};
-}
-inline Parameter String(const std::string& name, const std::string& value) {
-    return {ParameterType::String, name, At(3), std::vector<std::string>{value}};
-}
-inline Parameter Color(const std::string& name, const Rgb& c) {
-    return {ParameterType::Spectrum, name, At(3), std::vector<float>{c.x(), c.y(), c.z()}};
-}
-inline Parameter Grey(const std::string& name, float value) {
-    return Color(name, Rgb::Constant(value));
-}
 inline Parameter Textured(const std::string& name, int texture, bool isSpectrum) {
     TextureRef ref{"checks"};
     (isSpectrum ? ref.spectrumIndex : ref.floatIndex) = texture;
-    return {ParameterType::Texture, name, At(3), std::vector<TextureRef>{ref}};
+    return {ParameterType::Texture, name, LocAt(3), std::vector<TextureRef>{ref}};
 }
 
 // Builds descriptions of materials and textures.
@@ -48,7 +29,7 @@ struct MaterialScene {
                                 const std::vector<Parameter>& parameters = {}) {
         MaterialEntity& m = description.materials.emplace_back();
         m.name = kind;
-        m.loc = At(10 * int(description.materials.size()));
+        m.loc = LocAt(10 * int(description.materials.size()));
         for (const Parameter& parameter : parameters) m.parameters.Add(parameter);
         return m;
     }
@@ -58,8 +39,8 @@ struct MaterialScene {
         t.name = "checkerboard";
         t.textureName = "checks";
         t.isSpectrum = isSpectrum;
-        t.loc = At(1);
-        t.parameters.Add({ParameterType::Integer, "dimension", At(2), std::vector<int>{dimension}});
+        t.loc = LocAt(1);
+        t.parameters.Add(Int("dimension", dimension));
         t.parameters.Add(isSpectrum ? Grey("tex1", value) : Float("tex1", value));
     }
     TextureTable textures;

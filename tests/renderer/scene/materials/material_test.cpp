@@ -1,6 +1,4 @@
 // Checks mixtures, refusals and what materials ask of a hit.
-#include <gtest/gtest.h>
-
 #include "tests/renderer/scene/materials/material_scene.h"
 
 namespace lull::test {
@@ -146,7 +144,7 @@ TEST(Materials, SubsurfaceIsChecked) {
         error("subsurface", "eta", 0.5f),
         "scene.pbrt:10: \"eta\" of material \"subsurface\" has to lie between 1 and 4, \"g\" "
         "between -0.99 and 0.99; they are 0.5 and 0; with --substitute a matte material stands in");
-    EXPECT_NE(error("kdsubsurface", "g", 1).find("they are 1.33 and 1"), std::string::npos);
+    EXPECT_HAS(error("kdsubsurface", "g", 1), "they are 1.33 and 1");
     EXPECT_EQ(error("kdsubsurface", "scale", -1),
               "scene.pbrt:10: \"scale\" of material \"kdsubsurface\" is -1; it cannot be negative; "
               "with --substitute a matte "
@@ -156,8 +154,7 @@ TEST(Materials, SubsurfaceIsChecked) {
     b.AddMaterial("subsurface");
     MaterialEntity& mix = b.AddMaterial("mix");
     mix.operands = {0, 1};
-    EXPECT_NE(ErrorOf(&b).find("scene.pbrt:30: a mix with a material that scatters below"),
-              std::string::npos);
+    EXPECT_HAS(ErrorOf(&b), "scene.pbrt:30: a mix with a material that scatters below");
 }
 
 TEST(Materials, UnusedParametersAreReported) {
@@ -166,8 +163,8 @@ TEST(Materials, UnusedParametersAreReported) {
     m.parameters.Add(String("type", "matte"));
     b.Make();
     ASSERT_EQ(b.messages.size(), 1u);
-    EXPECT_NE(b.messages[0].find("scene.pbrt:3"), std::string::npos);
-    EXPECT_NE(b.messages[0].find("roughness"), std::string::npos);
+    EXPECT_HAS(b.messages[0], "scene.pbrt:7");
+    EXPECT_HAS(b.messages[0], "roughness");
 }
 
 TEST(Materials, AskOnlyForWhatTheyNeed) {

@@ -3,35 +3,10 @@
 
 #include <fmt/core.h>
 
-#include <memory>
-
 #include "renderer/scene/textures/texture.h"
+#include "tests/renderer/scene/parameters.h"
 
 namespace lull {
-
-inline FileLoc LocAt(int line) { return {std::make_shared<const std::string>("scene.pbrt"), line}; }
-
-inline Parameter FloatParameter(const std::string& name, std::vector<float> values) {
-    return {ParameterType::Float, name, LocAt(7), std::move(values)};
-}
-inline Parameter RgbParameter(const std::string& name, float r, float g, float b) {
-    return {ParameterType::Spectrum, name, LocAt(7), std::vector<float>{r, g, b}};
-}
-inline Parameter VectorParameter(const std::string& name, float x, float y, float z) {
-    return {ParameterType::Vector3, name, LocAt(7), std::vector<float>{x, y, z}};
-}
-inline Parameter IntParameter(const std::string& name, int value) {
-    return {ParameterType::Integer, name, LocAt(7), std::vector<int>{value}};
-}
-inline Parameter BoolParameter(const std::string& name, bool value) {
-    return {ParameterType::Bool, name, LocAt(7), std::vector<int>{value}};
-}
-inline Parameter PointParameter(const std::string& name, std::vector<float> values) {
-    return {ParameterType::Point3, name, LocAt(7), std::move(values)};
-}
-inline Parameter StringParameter(const std::string& name, const std::string& value) {
-    return {ParameterType::String, name, LocAt(7), std::vector<std::string>{value}};
-}
 
 // Makes a shape's directive, at line 3.
 inline ShapeEntity ShapeOf(const std::string& name, const std::vector<Parameter>& parameters) {

@@ -1,16 +1,13 @@
-#include <gtest/gtest.h>
-
-#include "renderer/base/math.h"
+#include "renderer/scene/textures/texture_image.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/textures/imagemap.h"
-#include "renderer/scene/textures/texture_image.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 
 namespace lull {
 namespace {
 
-Parameter Filename(const std::string& name) { return StringParameter("filename", name); }
+Parameter Filename(const std::string& name) { return String("filename", name); }
 
 void ExpectRgb(const Rgb& a, const Rgb& b, float tolerance = 1e-6f) {
     EXPECT_LE((a - b).abs().maxCoeff(), tolerance) << a.transpose() << " | " << b.transpose();
@@ -85,7 +82,7 @@ float V(int y) { return (float(y) + 0.5f) / ImageFiles::kHeight; }
 
 TEST(ImageMap, ReadsEveryFormatFromTheLowerLeft) {
     const ImageFiles files;
-    const Parameter raw = BoolParameter("gamma", false);
+    const Parameter raw = Bool("gamma", false);
     for (int y = 0; y < files.kHeight; ++y)
         for (int x = 0; x < files.kWidth; ++x) {
             const Rgb expected = files.At(x, y);
@@ -99,20 +96,19 @@ TEST(ImageMap, ReadsEveryFormatFromTheLowerLeft) {
 TEST(ImageMap, LinearisesThenScales) {
     const ImageFiles files;
     const Rgb texel = files.At(1, 0);
-    const Parameter scale = FloatParameter("scale", {3});
+    const Parameter scale = Float("scale", 3);
     for (const std::string& file : {files.tga, files.png})
         ExpectRgb(EvaluateSpectrum({Filename(file), scale}, U(1), V(0)), 3 * Linear(texel), 1e-5f);
     ExpectRgb(EvaluateSpectrum({Filename(files.exrFloat), scale}, U(1), V(0)), 3 * texel, 1e-5f);
     for (const std::string& file : {files.exrHalf, files.exrFloat})
-        ExpectRgb(
-            EvaluateSpectrum({Filename(file), scale, BoolParameter("gamma", true)}, U(1), V(0)),
-            3 * Linear(texel), 2e-3f);
+        ExpectRgb(EvaluateSpectrum({Filename(file), scale, Bool("gamma", true)}, U(1), V(0)),
+                  3 * Linear(texel), 2e-3f);
 }
 
 TEST(ImageMap, TakesLuminanceBeforeLinearising) {
     const ImageFiles files;
     const float luminance = Luminance(files.At(1, 1));  // (200, 30, 40)
-    const Parameter scale = FloatParameter("scale", {2});
+    const Parameter scale = Float("scale", 2);
     EXPECT_NEAR(EvaluateFloat({Filename(files.tga), scale}, U(1), V(1)),
                 2 * LinearFromSrgb(luminance), 1e-5f);
     EXPECT_NEAR(EvaluateFloat({Filename(files.exrFloat), scale}, U(1), V(1)), 2 * luminance, 1e-5f);
@@ -132,7 +128,7 @@ TEST(ImageMap, InterpolatesLinearValues) {
 TEST(ImageMap, Wraps) {
     const ImageFiles files;
     const auto at = [&](const char* wrap, float u, float v) {
-        return EvaluateSpectrum({Filename(files.exrFloat), StringParameter("wrap", wrap)}, u, v);
+        return EvaluateSpectrum({Filename(files.exrFloat), String("wrap", wrap)}, u, v);
     };
     // On the left edge, half of the texel beyond it counts.
     ExpectRgb(at("repeat", 0, V(0)), 0.5f * (files.At(0, 0) + files.At(2, 0)), 1e-5f);
@@ -155,9 +151,9 @@ TEST(ImageMap, SharesImages) {
     builder.Add(true, "imagemap", {Filename(files.tga)});
     const size_t once = builder.Build().Bytes();
     EXPECT_EQ(once, 3u * 2 * 3);
-    builder.Add(true, "imagemap",
-                {Filename(files.tga), FloatParameter("uscale", {3}), FloatParameter("scale", {2}),
-                 StringParameter("wrap", "clamp")});
+    builder.Add(
+        true, "imagemap",
+        {Filename(files.tga), Float("uscale", 3), Float("scale", 2), String("wrap", "clamp")});
     EXPECT_EQ(builder.Build().Bytes(), once);
     builder.Add(true, "imagemap", {Filename(files.grey)});
     builder.Add(false, "imagemap", {Filename(files.grey)});
@@ -169,12 +165,9 @@ TEST(ImageMap, FoldsUniformImages) {
     const std::string file = directory.File("uniform.png");
     WritePng(file, std::vector<Rgb>(6, Rgb(1, 0, 0.25f)), 3, 2);
     TextureBuilder builder;
-    const int folded =
-        builder.Add(true, "imagemap", {Filename(file), FloatParameter("scale", {0.5f})});
-    const int black =
-        builder.Add(true, "imagemap", {Filename(file), StringParameter("wrap", "black")});
-    const int luminance =
-        builder.Add(false, "imagemap", {Filename(file), BoolParameter("gamma", false)});
+    const int folded = builder.Add(true, "imagemap", {Filename(file), Float("scale", 0.5f)});
+    const int black = builder.Add(true, "imagemap", {Filename(file), String("wrap", "black")});
+    const int luminance = builder.Add(false, "imagemap", {Filename(file), Bool("gamma", false)});
     const TextureTable table = builder.Build();
     const SpectrumTexture texture = builder.Spectrum(table, folded);
     EXPECT_TRUE(texture.IsConstant());
@@ -194,8 +187,7 @@ TEST(ImageMap, CountsWhatIsNotFiniteAsZero) {
         image.channels.push_back({name, {.5f, name[0] == 'G' ? kInfinity : NAN}, false});
     WriteExr(file, image);
     TextureBuilder builder;
-    const int texture =
-        builder.Add(true, "imagemap", {Filename(file), StringParameter("wrap", "clamp")});
+    const int texture = builder.Add(true, "imagemap", {Filename(file), String("wrap", "clamp")});
     const TextureTable table = builder.Build();
     const SpectrumTexture map = builder.Spectrum(table, texture);
     ExpectRgb(table.Evaluate(map, At(.9f, .5f)), Rgb::Zero());
@@ -207,16 +199,16 @@ TEST(ImageMap, SaysWhichTextureCannotBeRead) {
     TextureBuilder strict, builder(true);
     for (TextureBuilder* b : {&strict, &builder}) {
         b->description.directory = "/nowhere";
-        b->Add(true, "imagemap", {Filename("none.png"), FloatParameter("scale", {2})});
+        b->Add(true, "imagemap", {Filename("none.png"), Float("scale", 2)});
         b->Add(false, "imagemap", {Filename("none.exr")});
         b->Add(false, "imagemap", {});
     }
     const std::string error = ErrorOf([&] { strict.Build(); });
-    EXPECT_TRUE(Contains(error, "scene.pbrt:10: texture \"t0\"")) << error;
-    EXPECT_TRUE(Contains(error, "/nowhere/none.png")) << error;
-    EXPECT_TRUE(Contains(error, "no such file")) << error;
-    EXPECT_TRUE(Contains(error, "\nscene.pbrt:11: texture \"t1\"")) << error;
-    EXPECT_TRUE(Contains(error, "\nscene.pbrt:12: texture \"t2\"")) << error;
+    EXPECT_HAS(error, "scene.pbrt:10: texture \"t0\"");
+    EXPECT_HAS(error, "/nowhere/none.png");
+    EXPECT_HAS(error, "no such file");
+    EXPECT_HAS(error, "\nscene.pbrt:11: texture \"t1\"");
+    EXPECT_HAS(error, "\nscene.pbrt:12: texture \"t2\"");
 
     // pbrt-v3 converts its grey like a texel.
     const TextureTable table = builder.Build();
@@ -229,8 +221,8 @@ TEST(ImageMap, AcceptsFilteringParameters) {
     const ImageFiles files;
     TextureBuilder builder;
     builder.Add(true, "imagemap",
-                {Filename(files.tga), BoolParameter("trilinear", true),
-                 FloatParameter("maxanisotropy", {16}), StringParameter("wrap", "mirror")});
+                {Filename(files.tga), Bool("trilinear", true), Float("maxanisotropy", 16),
+                 String("wrap", "mirror")});
     builder.Build();
     EXPECT_EQ(builder.warnings.Total(), 1);  // of the wrap mode
 }

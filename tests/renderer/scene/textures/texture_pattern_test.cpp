@@ -1,6 +1,4 @@
 // Tests bilerp, uv, dots, windy and wrinkled textures. That noise is pbrt-v3's is tested elsewhere.
-#include <gtest/gtest.h>
-
 #include "renderer/scene/textures/noise.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
@@ -13,10 +11,10 @@ constexpr bool kFloat = false, kSpectrum = true;
 TEST(Bilerp, InterpolatesCorners) {
     TextureBuilder b;
     const int plain = b.Add(kFloat, "bilerp", {});
-    const int colored = b.Add(kSpectrum, "bilerp",
-                              {RgbParameter("v00", 1, 0, 0), RgbParameter("v01", 0, 1, 0),
-                               RgbParameter("v10", 0, 0, 1), RgbParameter("v11", 2, 2, 2),
-                               FloatParameter("uscale", {2}), FloatParameter("vdelta", {0.5f})});
+    const int colored =
+        b.Add(kSpectrum, "bilerp",
+              {Color("v00", {1, 0, 0}), Color("v01", {0, 1, 0}), Color("v10", {0, 0, 1}),
+               Grey("v11", 2), Float("uscale", 2), Float("vdelta", 0.5f)});
     const TextureTable table = b.Build();
     EXPECT_EQ(b.warnings.Total(), 0);
     // By default the value is t.
@@ -31,7 +29,7 @@ TEST(Bilerp, InterpolatesCorners) {
 
 TEST(Uv, ShowsFractions) {
     TextureBuilder b;
-    const int uv = b.Add(kSpectrum, "uv", {FloatParameter("uscale", {3})});
+    const int uv = b.Add(kSpectrum, "uv", {Float("uscale", 3)});
     const TextureTable table = b.Build();
     const Rgb c = table.Evaluate(b.Spectrum(table, uv), At(0.75f, -0.25f));
     EXPECT_NEAR((c - Rgb(0.25f, 0.75f, 0)).abs().maxCoeff(), 0, 1e-6);
@@ -45,8 +43,7 @@ TEST(Uv, ShowsFractions) {
 // the texture called "outside" as it does in pbrt-v3.
 TEST(Dots, LieInSomeSquares) {
     TextureBuilder b;
-    const int dots =
-        b.Add(kFloat, "dots", {FloatParameter("inside", {2}), FloatParameter("outside", {5})});
+    const int dots = b.Add(kFloat, "dots", {Float("inside", 2), Float("outside", 5)});
     const TextureTable table = b.Build();
     EXPECT_EQ(b.warnings.Total(), 0);
     const FloatTexture texture = b.Float(table, dots);
@@ -78,8 +75,7 @@ TEST(Windy, MultipliesTwoNoises) {
 
 TEST(Wrinkled, SumsMagnitudes) {
     TextureBuilder b;
-    const int wrinkled = b.Add(kFloat, "wrinkled",
-                               {IntParameter("octaves", 3), FloatParameter("roughness", {0.7f})});
+    const int wrinkled = b.Add(kFloat, "wrinkled", {Int("octaves", 3), Float("roughness", 0.7f)});
     const TextureTable table = b.Build();
     const Vec3f p(3.3f, -1.7f, 8.2f);
     float expected = 0, frequency = 1, amplitude = 1;
@@ -177,8 +173,8 @@ TEST(Fbm, AppliesTheTransformationAsPbrt) {
     Mat4d scale = Mat4d::Identity();
     scale.topLeftCorner<3, 3>() *= 2;
     const int gray = builder.Add(true, "fbm", {}, scale);
-    const int rough = builder.Add(
-        false, "fbm", {IntParameter("octaves", 3), FloatParameter("roughness", {0.7f})}, scale);
+    const int rough =
+        builder.Add(false, "fbm", {Int("octaves", 3), Float("roughness", 0.7f)}, scale);
     const TextureTable table = builder.Build();
     for (const NoiseCase& c : kNoiseCases) {
         const TextureContext at = AtPoint(c.p / 2);
@@ -193,10 +189,9 @@ TEST(Fbm, AppliesTheTransformationAsPbrt) {
 TEST(Marble, EqualsPbrt) {
     TextureBuilder builder;
     const int plain = builder.Add(true, "marble", {});
-    const int other =
-        builder.Add(true, "marble",
-                    {FloatParameter("scale", {4}), FloatParameter("variation", {1.5f}),
-                     FloatParameter("roughness", {0.4f}), IntParameter("octaves", 5)});
+    const int other = builder.Add(
+        true, "marble",
+        {Float("scale", 4), Float("variation", 1.5f), Float("roughness", 0.4f), Int("octaves", 5)});
     const TextureTable table = builder.Build();
     for (const MarbleCase& c : kMarbleCases) {
         const Rgb a = table.Evaluate(builder.Spectrum(table, plain), AtPoint(c.p));

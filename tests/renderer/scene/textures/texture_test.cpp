@@ -1,7 +1,5 @@
-#include <gtest/gtest.h>
-
-#include "renderer/scene/textures/mapping.h"
 #include "renderer/scene/textures/texture.h"
+#include "renderer/scene/textures/mapping.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 
@@ -10,15 +8,15 @@ namespace {
 
 constexpr bool kFloat = false, kSpectrum = true;
 
-Parameter Filename(const std::string& name) { return StringParameter("filename", name); }
+Parameter Filename(const std::string& name) { return String("filename", name); }
 
 TEST(TextureTable, ReadsParameters) {
     TextureBuilder builder;
     const TextureTable table = builder.Build();
     Entity entity;
-    entity.parameters.Add(FloatParameter("sigma", {0.25f}));
-    entity.parameters.Add(FloatParameter("excess", {1, 2}));
-    entity.parameters.Add(RgbParameter("Kd", 1, 2, 3));
+    entity.parameters.Add(Float("sigma", 0.25f));
+    entity.parameters.Add(Floats("excess", {1, 2}));
+    entity.parameters.Add(Color("Kd", {1, 2, 3}));
     EXPECT_EQ(table.GetFloat(entity, "sigma", 9).constant, 0.25f);
     EXPECT_EQ(table.GetFloat(entity, "excess", 9).constant, 1);
     EXPECT_EQ(table.GetFloat(entity, "absent", 9).constant, 9);
@@ -36,7 +34,7 @@ TEST(TextureTable, RefusesTexturesThatAreNotThere) {
     EXPECT_EQ(ErrorOf([&] { builder.Float(table, -1); }),
               "scene.pbrt:7: parameter \"x\": there is no float texture \"t-1\"; with "
               "--substitute the parameter is left out");
-    EXPECT_TRUE(Contains(ErrorOf([&] { builder.Float(table, spectrum); }), "of the other type"));
+    EXPECT_HAS(ErrorOf([&] { builder.Float(table, spectrum); }), "of the other type");
     EXPECT_EQ(ErrorOf([&] { builder.Spectrum(table, spectrum); }), "");
 }
 
@@ -44,7 +42,7 @@ TEST(TextureTable, RefusesReferencesToItself) {
     TextureBuilder builder;
     const int texture = builder.Add(kFloat, "scale", {});
     builder.description.textures[0].parameters.Add(builder.Ref("tex1", texture));
-    EXPECT_TRUE(Contains(ErrorOf([&] { builder.Build(); }), "there is no float texture"));
+    EXPECT_HAS(ErrorOf([&] { builder.Build(); }), "there is no float texture");
 }
 
 TEST(TextureTable, RefusesKindsByNameFileAndLine) {
@@ -53,12 +51,12 @@ TEST(TextureTable, RefusesKindsByNameFileAndLine) {
             TextureBuilder strict;
             strict.Add(isSpectrum, kind, {});
             const std::string error = ErrorOf([&] { strict.Build(); });
-            EXPECT_TRUE(Contains(error, "scene.pbrt:10: ")) << error;
-            EXPECT_TRUE(Contains(error, kind)) << error;
-            EXPECT_TRUE(Contains(error, "with --substitute 1 stands in")) << error;
+            EXPECT_HAS(error, "scene.pbrt:10: ");
+            EXPECT_HAS(error, kind);
+            EXPECT_HAS(error, "with --substitute 1 stands in");
 
             TextureBuilder builder(true);
-            const int texture = builder.Add(isSpectrum, kind, {FloatParameter("whatever", {1})});
+            const int texture = builder.Add(isSpectrum, kind, {Float("whatever", 1)});
             const TextureTable table = builder.Build();
             EXPECT_EQ(builder.warnings.Total(), 1);
             if (isSpectrum)
@@ -70,12 +68,12 @@ TEST(TextureTable, RefusesKindsByNameFileAndLine) {
     // pbrt-v3 has no float marble either.
     TextureBuilder builder;
     builder.Add(kFloat, "marble", {});
-    EXPECT_TRUE(Contains(ErrorOf([&] { builder.Build(); }), "float texture \"t0\""));
+    EXPECT_HAS(ErrorOf([&] { builder.Build(); }), "float texture \"t0\"");
 }
 
 TEST(TextureTable, WarnsOfUnusedParameters) {
     TextureBuilder builder;
-    builder.Add(kFloat, "fbm", {IntParameter("octaves", 3), FloatParameter("octave", {1})});
+    builder.Add(kFloat, "fbm", {Int("octaves", 3), Float("octave", 1)});
     builder.Build();
     EXPECT_EQ(builder.warnings.Total(), 1);
 }
@@ -95,8 +93,8 @@ TEST(TextureTable, CanBeMovedAndBeEmpty) {
 TEST(Constant, HasPbrtDefaults) {
     TextureBuilder builder;
     const int one = builder.Add(kFloat, "constant", {});
-    const int half = builder.Add(kFloat, "constant", {FloatParameter("value", {0.5f})});
-    const int rgb = builder.Add(kSpectrum, "constant", {RgbParameter("value", 1, 2, 3)});
+    const int half = builder.Add(kFloat, "constant", {Float("value", 0.5f)});
+    const int rgb = builder.Add(kSpectrum, "constant", {Color("value", {1, 2, 3})});
     const TextureTable table = builder.Build();
     EXPECT_EQ(builder.Float(table, one).constant, 1);
     EXPECT_EQ(builder.Float(table, half).constant, 0.5f);
@@ -106,9 +104,9 @@ TEST(Constant, HasPbrtDefaults) {
 TEST(Scale, Multiplies) {
     TextureBuilder builder;
     const int board = builder.Add(kSpectrum, "checkerboard",
-                                  {RgbParameter("tex1", 1, 2, 3), RgbParameter("tex2", 4, 5, 6)});
-    const int scale = builder.Add(kSpectrum, "scale",
-                                  {builder.Ref("tex1", board), RgbParameter("tex2", 2, 3, 4)});
+                                  {Color("tex1", {1, 2, 3}), Color("tex2", {4, 5, 6})});
+    const int scale =
+        builder.Add(kSpectrum, "scale", {builder.Ref("tex1", board), Color("tex2", {2, 3, 4})});
     const TextureTable table = builder.Build();
     const SpectrumTexture texture = builder.Spectrum(table, scale);
     EXPECT_FALSE(texture.IsConstant());
@@ -120,13 +118,11 @@ TEST(Scale, Multiplies) {
 TEST(Scale, FoldsConstants) {
     TextureBuilder builder;
     const int fbm = builder.Add(kFloat, "fbm", {});
-    const int product =
-        builder.Add(kFloat, "scale", {FloatParameter("tex1", {3}), FloatParameter("tex2", {0.5f})});
+    const int product = builder.Add(kFloat, "scale", {Float("tex1", 3), Float("tex2", 0.5f)});
     const int chained =
-        builder.Add(kFloat, "scale", {builder.Ref("tex1", product), FloatParameter("tex2", {2})});
+        builder.Add(kFloat, "scale", {builder.Ref("tex1", product), Float("tex2", 2)});
     const int same = builder.Add(kFloat, "scale", {builder.Ref("tex2", fbm)});
-    const int zero =
-        builder.Add(kFloat, "scale", {builder.Ref("tex1", fbm), FloatParameter("tex2", {0})});
+    const int zero = builder.Add(kFloat, "scale", {builder.Ref("tex1", fbm), Float("tex2", 0)});
     const TextureTable table = builder.Build();
     EXPECT_EQ(builder.Float(table, product).constant, 1.5f);
     EXPECT_TRUE(builder.Float(table, chained).IsConstant());
@@ -138,11 +134,11 @@ TEST(Scale, FoldsConstants) {
 
 TEST(Mix, Interpolates) {
     TextureBuilder builder;
-    const int amount = builder.Add(kFloat, "checkerboard",
-                                   {FloatParameter("tex1", {0.25f}), FloatParameter("tex2", {2})});
-    const int mix = builder.Add(kSpectrum, "mix",
-                                {RgbParameter("tex1", 0, 4, 8), RgbParameter("tex2", 4, 4, 4),
-                                 builder.Ref("amount", amount)});
+    const int amount =
+        builder.Add(kFloat, "checkerboard", {Float("tex1", 0.25f), Float("tex2", 2)});
+    const int mix =
+        builder.Add(kSpectrum, "mix",
+                    {Color("tex1", {0, 4, 8}), Grey("tex2", 4), builder.Ref("amount", amount)});
     const TextureTable table = builder.Build();
     const SpectrumTexture texture = builder.Spectrum(table, mix);
     EXPECT_TRUE((table.Evaluate(texture, At(0.5f, 0.5f)) == Rgb(1, 4, 7)).all());
@@ -154,13 +150,10 @@ TEST(Mix, HasPbrtDefaultsAndFoldsConstants) {
     TextureBuilder builder;
     const int fbm = builder.Add(kFloat, "fbm", {});
     const int plain = builder.Add(kFloat, "mix", {});
-    const int first =
-        builder.Add(kFloat, "mix", {builder.Ref("tex1", fbm), FloatParameter("amount", {0})});
-    const int second =
-        builder.Add(kFloat, "mix", {builder.Ref("tex1", fbm), FloatParameter("amount", {1})});
-    const int equal = builder.Add(
-        kFloat, "mix",
-        {FloatParameter("tex1", {3}), FloatParameter("tex2", {3}), builder.Ref("amount", fbm)});
+    const int first = builder.Add(kFloat, "mix", {builder.Ref("tex1", fbm), Float("amount", 0)});
+    const int second = builder.Add(kFloat, "mix", {builder.Ref("tex1", fbm), Float("amount", 1)});
+    const int equal = builder.Add(kFloat, "mix",
+                                  {Float("tex1", 3), Float("tex2", 3), builder.Ref("amount", fbm)});
     const TextureTable table = builder.Build();
     EXPECT_EQ(builder.Float(table, plain).constant, 0.5f);
     EXPECT_EQ(builder.Float(table, first).index, builder.Float(table, fbm).index);
@@ -171,10 +164,9 @@ TEST(Mix, HasPbrtDefaultsAndFoldsConstants) {
 
 TEST(Checkerboard, AlternatesInTwoDimensions) {
     TextureBuilder builder;
-    const int board =
-        builder.Add(kFloat, "checkerboard",
-                    {FloatParameter("uscale", {2}), FloatParameter("vscale", {4}),
-                     FloatParameter("udelta", {1}), StringParameter("aamode", "none")});
+    const int board = builder.Add(
+        kFloat, "checkerboard",
+        {Float("uscale", 2), Float("vscale", 4), Float("udelta", 1), String("aamode", "none")});
     const TextureTable table = builder.Build();
     const FloatTexture texture = builder.Float(table, board);
     // (2 u + 1, 4 v): tex1 (1) where the sum of the floors is even, else tex2 (0).
@@ -191,7 +183,7 @@ TEST(Checkerboard, AlternatesInThreeDimensions) {
     TextureBuilder builder;
     Mat4d scale = Mat4d::Identity();
     scale.topLeftCorner<3, 3>() *= 10;
-    const int board = builder.Add(kFloat, "checkerboard", {IntParameter("dimension", 3)}, scale);
+    const int board = builder.Add(kFloat, "checkerboard", {Int("dimension", 3)}, scale);
     const TextureTable table = builder.Build();
     const FloatTexture texture = builder.Float(table, board);
     EXPECT_FALSE(table.Needs(texture) & kNeedsUv);
@@ -204,16 +196,16 @@ TEST(Checkerboard, AlternatesInThreeDimensions) {
 
 TEST(Checkerboard, RefusesOtherDimensions) {
     TextureBuilder strict, builder(true);
-    strict.Add(kFloat, "checkerboard", {IntParameter("dimension", 4)});
-    EXPECT_TRUE(Contains(ErrorOf([&] { strict.Build(); }), "scene.pbrt:10: 4-dimensional"));
-    const int board = builder.Add(kFloat, "checkerboard", {IntParameter("dimension", 4)});
+    strict.Add(kFloat, "checkerboard", {Int("dimension", 4)});
+    EXPECT_HAS(ErrorOf([&] { strict.Build(); }), "scene.pbrt:10: 4-dimensional");
+    const int board = builder.Add(kFloat, "checkerboard", {Int("dimension", 4)});
     EXPECT_EQ(builder.Float(builder.Build(), board).constant, 1);
 }
 
 TEST(Checkerboard, FoldsEqualColors) {
     TextureBuilder builder;
     const int board = builder.Add(kSpectrum, "checkerboard",
-                                  {RgbParameter("tex1", 1, 2, 3), RgbParameter("tex2", 1, 2, 3)});
+                                  {Color("tex1", {1, 2, 3}), Color("tex2", {1, 2, 3})});
     const TextureTable table = builder.Build();
     EXPECT_TRUE(builder.Spectrum(table, board).IsConstant());
 }
@@ -225,15 +217,15 @@ TEST(Texture, SurvivesAnyCoordinates) {
     TextureBuilder builder;
     std::vector<int> textures;
     for (const char* mapping : {"uv", "spherical", "cylindrical", "planar"}) {
-        const Parameter map = StringParameter("mapping", mapping);
+        const Parameter map = String("mapping", mapping);
         for (const char* wrap : {"repeat", "black", "clamp"})
-            textures.push_back(builder.Add(kSpectrum, "imagemap",
-                                           {Filename(tga), StringParameter("wrap", wrap), map}));
+            textures.push_back(
+                builder.Add(kSpectrum, "imagemap", {Filename(tga), String("wrap", wrap), map}));
         textures.push_back(builder.Add(kSpectrum, "checkerboard", {map}));
     }
-    textures.push_back(builder.Add(kSpectrum, "checkerboard", {IntParameter("dimension", 3)}));
-    textures.push_back(builder.Add(kSpectrum, "fbm", {IntParameter("octaves", 1000000000)}));
-    textures.push_back(builder.Add(kSpectrum, "fbm", {IntParameter("octaves", -5)}));
+    textures.push_back(builder.Add(kSpectrum, "checkerboard", {Int("dimension", 3)}));
+    textures.push_back(builder.Add(kSpectrum, "fbm", {Int("octaves", 1000000000)}));
+    textures.push_back(builder.Add(kSpectrum, "fbm", {Int("octaves", -5)}));
     textures.push_back(builder.Add(kSpectrum, "marble", {}));
     const TextureTable table = builder.Build();
 
@@ -296,15 +288,14 @@ TEST(UvMapping, ScalesAndShifts) {
     EXPECT_TRUE(Needs(plain) & kNeedsUv);
     EXPECT_EQ(Map(plain, At(0.25f, 0.5f)), Vec2f(0.25f, 0.5f));
     const Mapping2D mapping =
-        Make({FloatParameter("uscale", {2}), FloatParameter("vscale", {-3}),
-              FloatParameter("udelta", {10}), FloatParameter("vdelta", {20})});
+        Make({Float("uscale", 2), Float("vscale", -3), Float("udelta", 10), Float("vdelta", 20)});
     EXPECT_EQ(Map(mapping, At(0.25f, 0.5f)), Vec2f(10.5f, 18.5f));
 }
 
 TEST(SphericalMapping, GivesAnglesOverPi) {
     Mat4d shift = Mat4d::Identity();
     shift(0, 3) = 100;  // the inverse is applied, unlike for solid textures
-    const Mapping2D mapping = Make({StringParameter("mapping", "spherical")}, shift);
+    const Mapping2D mapping = Make({String("mapping", "spherical")}, shift);
     EXPECT_FALSE(Needs(mapping) & kNeedsUv);
     ExpectMap(mapping, {100, 0, 5}, 0, 0);
     ExpectMap(mapping, {103, 0, 0}, 0.5f, 0);
@@ -315,7 +306,7 @@ TEST(SphericalMapping, GivesAnglesOverPi) {
 }
 
 TEST(CylindricalMapping, GivesAngleAndHeightOfTheUnitDirection) {
-    const Mapping2D mapping = Make({StringParameter("mapping", "cylindrical")});
+    const Mapping2D mapping = Make({String("mapping", "cylindrical")});
     EXPECT_FALSE(Needs(mapping) & kNeedsUv);
     ExpectMap(mapping, {2, 0, 0}, 0.5f, 0);
     ExpectMap(mapping, {0, 2, 0}, 0.75f, 0);
@@ -326,18 +317,17 @@ TEST(CylindricalMapping, GivesAngleAndHeightOfTheUnitDirection) {
 TEST(PlanarMapping, ProjectsWorldPoints) {
     Mat4d shift = Mat4d::Identity();
     shift(0, 3) = 100;  // has no effect
-    const Parameter planar = StringParameter("mapping", "planar");
+    const Parameter planar = String("mapping", "planar");
     ExpectMap(Make({planar}, shift), {1, 2, 3}, 1, 2);
     ExpectMap(Make({planar, VectorParameter("v1", 0, 0, 2), VectorParameter("v2", 1, 1, 0),
-                    FloatParameter("udelta", {0.5f}), FloatParameter("vdelta", {-1})}),
+                    Float("udelta", 0.5f), Float("vdelta", -1)}),
               {1, 2, 3}, 6.5f, 2);
 }
 
 TEST(Mapping, RefusesUnknownNames) {
-    EXPECT_TRUE(Contains(ErrorOf([] { Make({StringParameter("mapping", "toroidal")}); }),
-                         "scene.pbrt:10: texture mapping \"toroidal\""));
-    const Mapping2D mapping =
-        Make({StringParameter("mapping", "toroidal")}, Mat4d::Identity(), true);
+    EXPECT_HAS(ErrorOf([] { Make({String("mapping", "toroidal")}); }),
+               "scene.pbrt:10: texture mapping \"toroidal\"");
+    const Mapping2D mapping = Make({String("mapping", "toroidal")}, Mat4d::Identity(), true);
     EXPECT_EQ(Map(mapping, At(0.25f, 0.5f)), Vec2f(0.25f, 0.5f));
 }
 

@@ -1,12 +1,6 @@
 #include "stopping/lab/evaluation/answer_scores.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
 #include <sstream>
-#include <stdexcept>
 
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/scratch_file.h"
@@ -44,9 +38,8 @@ TEST(SingleAnswers, HaveObserversAndTracks) {
     EXPECT_EQ(answers[1].track, 0);
     EXPECT_EQ(answers[1].observer, "ada");
     for (const char* line : {"5,640,1", "5,640,1,ada", "5,640,1,ada,x", "5,640,1,ada,0"})
-        EXPECT_NE(
-            ErrorOf(std::string("block,spp,noise_seen,observer,track\n") + line).find("a.csv:2: '"),
-            std::string::npos)
+        EXPECT_HAS(ErrorOf(std::string("block,spp,noise_seen,observer,track\n") + line),
+                   "a.csv:2: '")
             << line;
 }
 

@@ -1,11 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <random>
-#include <stdexcept>
-#include <vector>
 
 #include "stopping/lab/evaluation/evaluation.h"
 #include "stopping/rules/thresholds.h"
@@ -128,10 +123,6 @@ TEST(Scores, TakesAStopForADecision) {
     EXPECT_EQ(Score({&right, 1}, {}).accuracy, 1);
     EXPECT_EQ(Score({&right, 1}, {}).auc, 1);
 }
-
-}  // namespace
-
-namespace {
 
 TEST(Bootstrap, IsAPointWhereAllIsTheSame) {
     const std::vector<std::vector<double>> values = {{0.25, 0.25}, {0.25}};

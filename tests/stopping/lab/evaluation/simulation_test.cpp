@@ -1,11 +1,5 @@
 #include "stopping/lab/evaluation/simulation.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <stdexcept>
-
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
@@ -186,7 +180,7 @@ TEST(Simulation, TakesTheRecordedStopsOfCycles) {
         SimulateCycles(block, 0.05);
         FAIL();
     } catch (const std::invalid_argument& error) {
-        EXPECT_NE(std::string(error.what()).find("0.08 0.06 0.04"), std::string::npos);
+        EXPECT_HAS(std::string(error.what()), "0.08 0.06 0.04");
     }
 }
 
@@ -201,7 +195,7 @@ TEST(Simulation, RefusesWhatCannotBeSimulated) {
         MakeSimulator("denoised:0.5");
         FAIL();
     } catch (const std::invalid_argument& e) {
-        EXPECT_NE(std::string(e.what()).find("denoised"), std::string::npos);
+        EXPECT_HAS(std::string(e.what()), "denoised");
     }
     EXPECT_THROW(MakeSimulator("learned:/no/such/model.h5"), std::runtime_error);
     EXPECT_THROW(MakeSimulator("learned"), std::runtime_error);

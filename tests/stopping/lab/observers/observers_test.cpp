@@ -1,17 +1,9 @@
 #include "stopping/lab/observers/observers.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "stopping/base/input_file.h"
 #include "stopping/lab/evaluation/answer_scores.h"
 #include "stopping/lab/observers/observer_answers.h"
+#include "tests/expect_has.h"
 #include "tests/stopping/lab/observers/example_answers.h"
 
 namespace lull {
@@ -32,7 +24,7 @@ std::string ProblemOf(const std::string& text) try {
 }
 
 void ExpectProblem(const std::string& text, const std::string& part) {
-    EXPECT_NE(ProblemOf(text).find(part), std::string::npos) << ProblemOf(text);
+    EXPECT_HAS(ProblemOf(text), part);
 }
 
 TEST(ParseAnswers, ReadsWhatThePageSaves) {
@@ -107,8 +99,7 @@ void ExpectRefused(const Collected& collected, size_t i, const std::string& file
                    const std::string& part) {
     ASSERT_GT(collected.refused.size(), i);
     EXPECT_EQ(collected.refused[i].file, file);
-    EXPECT_NE(collected.refused[i].reason.find(part), std::string::npos)
-        << collected.refused[i].reason;
+    EXPECT_HAS(collected.refused[i].reason, part);
 }
 
 TEST(CollectObservers, TakesMeans) {
@@ -272,13 +263,12 @@ TEST(ObserverTables, HaveARowForEachBlockAndEachFile) {
         "room,0,2,100,40,160,84.85,1.414,2\n"))
         << details;
     const std::string observers = ObserversCsv(collected);
-    EXPECT_NE(observers.find("\n1,room,\"a, b\",yes,,4,0,0,,"), std::string::npos) << observers;
-    EXPECT_NE(observers.find("\n3,room,d,no,failed 3 of 4 checks,"), std::string::npos);
+    EXPECT_HAS(observers, "\n1,room,\"a, b\",yes,,4,0,0,,");
+    EXPECT_HAS(observers, "\n3,room,d,no,failed 3 of 4 checks,");
     EXPECT_TRUE(observers.ends_with("\nx.json,,,no,\"is not JSON, or cut short\"" +
                                     std::string(14, ',') + "\n"));
-    const auto columns = std::ranges::count(observers.substr(0, observers.find('\n')), ',');
-    EXPECT_EQ(columns, 4 + 14);
-    EXPECT_NE(observers.find(",2.2,,60,,,,,"), std::string::npos) << observers;
+    EXPECT_EQ(std::ranges::count(observers.substr(0, observers.find('\n')), ','), 4 + 14);
+    EXPECT_HAS(observers, ",2.2,,60,,,,,");
 }
 
 // `lull evaluate --answers` reads the written file; excluded observers have no answers in it.

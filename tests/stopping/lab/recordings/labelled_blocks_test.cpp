@@ -1,13 +1,6 @@
 #include "stopping/lab/recordings/labelled_blocks.h"
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-
-#include "stopping/features/model_inputs.h"
-#include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/lab/training/learning_data.h"
-#include "tests/stopping/scratch_file.h"
 
 namespace lull {
 namespace {
@@ -127,8 +120,7 @@ TEST(LabelledBlocks, NameTheFileThatDoesNotFit) {
 
 TEST(LabelledBlocks, AreReadFromSeveralFilesAsOne) {
     const LearningData data, other;
-    const std::vector<ViewpointRecording> all = ReadDatasets({data.dataset.path});
-    EXPECT_EQ(all.size(), 3u);
+    EXPECT_EQ(ReadDatasets({data.dataset.path}).size(), 3u);
     EXPECT_EQ(ReadDatasets({data.dataset.path, other.dataset.path}).size(), 3u);
     EXPECT_THROW(ReadDatasets({data.human.path}), std::runtime_error);
 }

@@ -1,11 +1,5 @@
 #include "stopping/lab/recordings/recording.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <stdexcept>
-
-#include "stopping/features/model_inputs.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/recordings/extension.h"
@@ -132,11 +126,6 @@ ViewpointRecording MakeViewpoint(const std::string& name) {
     return viewpoint;
 }
 
-void WriteBytes(const std::string& path, std::span<const std::byte> bytes) {
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-}
-
 TEST(Dataset, KeepsWhatWasRecorded) {
     const std::vector<ViewpointRecording> written = {MakeViewpoint("a"), MakeViewpoint("b")};
     const ScratchFile file(".h5");
@@ -224,10 +213,10 @@ TEST(Dataset, AddsBlocksOfTheSameRecordingOnly) {
     };
     more = MakeViewpoint("a");
     more.provenance["seed"] = "7";
-    EXPECT_NE(errorOf(more).find("another seed (0, now 7)"), std::string::npos) << errorOf(more);
+    EXPECT_HAS(errorOf(more), "another seed (0, now 7)");
     more = MakeViewpoint("a");
     more.cap = 200;
-    EXPECT_NE(errorOf(more).find("another cap"), std::string::npos);
+    EXPECT_HAS(errorOf(more), "another cap");
 }
 
 TEST(Dataset, RefusesWhatIsNone) {
@@ -276,9 +265,8 @@ TEST(PictureRecords, StayWithoutHalvesInFiles) {
     viewpoint.blockCount = 1;
     viewpoint.cap = 128;
     viewpoint.blocks[0] = Record({64, 128});
-    const std::vector<std::byte> bytes = EncodeDataset(std::span(&viewpoint, 1));
-    const ScratchFile file(".h5",
-                           std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    const ScratchFile file(".h5");
+    WriteBytes(file.path, EncodeDataset(std::span(&viewpoint, 1)));
     const ViewpointRecording read = ReadDataset(file.path).at(0);
     EXPECT_EQ(read.passSpp, 0);
     EXPECT_EQ(read.blocks.at(0).absent, viewpoint.blocks[0].absent);
@@ -311,9 +299,8 @@ TEST(PictureRecords, CannotBeComparedWithHalves) {
     const BlockRecording recording = Record({20, 40, 60});
     const LabelledBlock block = Labelled(recording);
     for (const char* rule : {"lnoise:0.5", "dammertz:0.01", "luxtile:0.1"})
-        EXPECT_NE(
-            WhatOf([&] { MakeSimulator(rule, {.passSpp = 0})(block); }).find("half of the samples"),
-            std::string::npos)
+        EXPECT_HAS(WhatOf([&] { MakeSimulator(rule, {.passSpp = 0})(block); }),
+                   "half of the samples")
             << rule;
     EXPECT_THROW(SimulateCycles(block, 0.01), std::invalid_argument);
     const std::vector<LabelledBlock> blocks = {block, Labelled(recording, "hall")};
@@ -326,9 +313,7 @@ TEST(PictureRecords, SayWhereTheyLieTooFarApart) {
     const std::string model = std::string(LULL_SOURCE_DIR) + "/stopping/models/entropy.h5";
     const std::string said =
         WhatOf([&] { MakeSimulator("learned:" + model, {.passSpp = 0})(Labelled(recording)); });
-    EXPECT_NE(said.find("pictures at 64, 128, 256, 512, ... spp lie too far apart"),
-              std::string::npos)
-        << said;
+    EXPECT_HAS(said, "pictures at 64, 128, 256, 512, ... spp lie too far apart");
 }
 
 TEST(PictureRecords, GoOnAsFarApartAsTheLast) {

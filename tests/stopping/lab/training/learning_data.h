@@ -1,10 +1,6 @@
 // Writes the recordings and thresholds of a small training to files.
 #pragma once
 
-#include <fstream>
-#include <string>
-#include <vector>
-
 #include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/lab/training/training_plan.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
@@ -27,11 +23,7 @@ struct LearningData {
     ScratchFile human{".csv", Line(MakeHumanRow("attic")) + Line(MakeHumanRow("barn"))};
     ScratchFile dataset{".h5"};
 
-    LearningData() {
-        const std::vector<std::byte> bytes = EncodeDataset(viewpoints);
-        std::ofstream(dataset.path, std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-    }
+    LearningData() { WriteBytes(dataset.path, EncodeDataset(viewpoints)); }
 
     std::vector<LabelledBlock> Blocks() const {
         return ReadLabelledBlocks(viewpoints, human.path, {}, [](const std::string&) {});

@@ -1,11 +1,5 @@
 #include "stopping/lab/training/training_plan.h"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
-
 #include "stopping/network/model_file.h"
 #include "tests/stopping/lab/training/learning_data.h"
 
@@ -89,7 +83,7 @@ TEST(TrainingPlan, IsRecorded) {
     EXPECT_EQ(record.at("training_blocks"), "attic: 0 1 2 3\nbarn: 0 1 2");
     EXPECT_EQ(record.at("test_blocks"), "none");
     EXPECT_EQ(record.at("learning_rate"), "0.001");
-    EXPECT_NE(record.at("human").find(".csv crc32:"), std::string::npos);
+    EXPECT_HAS(record.at("human"), ".csv crc32:");
     EXPECT_EQ(MakeRecord(plan, split, {}, {}), record);
 }
 
@@ -98,11 +92,6 @@ TEST(TrainingPlan, IsRecorded) {
 
 namespace lull::training_run_test {
 namespace {
-
-void WriteFile(const std::string& path, std::span<const std::byte> bytes) {
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-}
 
 // Lets trainings continue for a number of steps, and counts their events.
 struct Watcher {
@@ -124,7 +113,7 @@ TEST(TrainAll, ScoresEachNetworkByWhatItHasNotSeen) {
     TrainingPlan plan = data.Plan();
     plan.crossValidate = true;
     const std::vector<BlockSplit> splits = MakeSplits(plan, data.Blocks());
-    TrainingCheckpoint none("", 0, WriteFile);
+    TrainingCheckpoint none("", 0, WriteBytes);
     Watcher watcher;
     const auto result = TrainAll(plan, splits, &none, watcher.Events());
     ASSERT_TRUE(result);
@@ -160,7 +149,7 @@ TEST(TrainAll, GoesOnFromItsCheckpoint) {
     TrainingPlan plan = data.Plan();
     plan.crossValidate = true;
     const std::vector<BlockSplit> splits = MakeSplits(plan, data.Blocks());
-    TrainingCheckpoint none("", 0, WriteFile);
+    TrainingCheckpoint none("", 0, WriteBytes);
     Watcher whole;
     const auto expected = TrainAll(plan, splits, &none, whole.Events());
     const int steps = (1 << 30) - whole.left;
@@ -168,10 +157,10 @@ TEST(TrainAll, GoesOnFromItsCheckpoint) {
     const ScratchFile file(".checkpoint");
     for (const int before : {0, steps / 2, steps - 1}) {
         Watcher first{before};
-        TrainingCheckpoint checkpoint(file.path, 1e6, WriteFile);
+        TrainingCheckpoint checkpoint(file.path, 1e6, WriteBytes);
         EXPECT_FALSE(TrainAll(plan, splits, &checkpoint, first.Events()));
         EXPECT_EQ(first.begun, before == 0 ? 1 : first.begun);
-        TrainingCheckpoint again(file.path, 1e6, WriteFile);
+        TrainingCheckpoint again(file.path, 1e6, WriteBytes);
         again.Read();
         Watcher rest;
         const auto result = TrainAll(plan, splits, &again, rest.Events());
@@ -188,7 +177,7 @@ TEST(TrainingCheckpoint, IsOfOneTrainingAndWhole) {
     TrainingPlan plan = data.Plan();
     const std::vector<BlockSplit> splits = MakeSplits(plan, data.Blocks());
     const ScratchFile file(".checkpoint");
-    TrainingCheckpoint checkpoint(file.path, 1e6, WriteFile);
+    TrainingCheckpoint checkpoint(file.path, 1e6, WriteBytes);
     EXPECT_THROW(checkpoint.Read(), std::runtime_error);
     Watcher watcher{3};
     EXPECT_FALSE(TrainAll(plan, splits, &checkpoint, watcher.Events()));
@@ -196,12 +185,12 @@ TEST(TrainingCheckpoint, IsOfOneTrainingAndWhole) {
     // Another training cannot go on from there.
     TrainingPlan other = plan;
     other.training.batch = 32;
-    TrainingCheckpoint read(file.path, 1e6, WriteFile);
+    TrainingCheckpoint read(file.path, 1e6, WriteBytes);
     read.Read();
     EXPECT_THROW(TrainAll(other, splits, &read, Watcher().Events()), std::runtime_error);
     // Neither can this one from a part of the file.
     std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 1);
-    TrainingCheckpoint cut(file.path, 1e6, WriteFile);
+    TrainingCheckpoint cut(file.path, 1e6, WriteBytes);
     EXPECT_THROW(cut.Read(), std::runtime_error);
 
     TrainingCheckpoint full(file.path, 0, [](const std::string&, std::span<const std::byte>) {

@@ -1,9 +1,5 @@
 #include "stopping/lab/training/training.h"
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-
 #include "stopping/base/parallel.h"
 #include "stopping/lab/evaluation/evaluation.h"
 #include "stopping/rules/learned.h"
