@@ -1,4 +1,5 @@
 // Calls the C interface of the denoiser as a program in C++ would.
+#include <gtest/gtest.h>
 #include <lull/lull.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "tests/expect_has.h"

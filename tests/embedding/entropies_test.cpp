@@ -1,6 +1,9 @@
 // Entropies, attributes and warnings by the C interface.
+#include <array>
+
 #include "stopping/signals/attributes26.h"
 #include "stopping/signals/lightness.h"
+#include "stopping/signals/svd_entropy.h"
 #include "tests/embedding/stopper_of.h"
 
 namespace lull {

@@ -1,4 +1,6 @@
 // Errors have a message, and change nothing.
+#include <cstdlib>
+#include <limits>
 #include <thread>
 
 #include "tests/embedding/stopper_of.h"

@@ -1,7 +1,10 @@
 // Calls the C interface as a program in C++ would.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <lull/lull.h>
+
+#include <memory>
 
 #include "tests/expect_has.h"
 #include "tests/stopping/signals/block_images.h"

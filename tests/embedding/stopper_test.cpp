@@ -1,4 +1,7 @@
 // Answers to other programs: the same as lull's own, whatever the layout of their pictures.
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <thread>
 
 #include "stopping/rules/baselines.h"

@@ -1,6 +1,9 @@
 #include "tests/fuzz/fuzz_targets.h"
 
+#include <algorithm>
+#include <array>
 #include <sstream>
+#include <stdexcept>
 
 #include "renderer/image/image_io.h"
 #include "renderer/input/gltf_loader.h"

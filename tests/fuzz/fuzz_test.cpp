@@ -1,4 +1,8 @@
 // Replays the seeds of the fuzzers and everything they have found.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/renderer/files/test_files.h"
 

@@ -1,4 +1,6 @@
 // Pictures in which noise and detail are hard to tell apart.
+#include <fmt/format.h>
+
 #include "renderer/denoise/visible_error.h"
 #include "renderer/vision/visible_difference.h"
 #include "tests/hard_cases/hard_case.h"

@@ -1,5 +1,7 @@
 // Scenes that are tiny, huge or far from the origin: nothing may leak, and no surface may shade
 // itself; and geometry that has no business to be there, but is.
+#include <fmt/format.h>
+
 #include "tests/hard_cases/known_scene.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

@@ -1,5 +1,9 @@
 #include "tests/hard_cases/heavy_tails.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "renderer/film/film.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/hard_cases/hard_case.h"

@@ -1,5 +1,10 @@
 #include "tests/hard_cases/known_scene.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

@@ -1,6 +1,9 @@
 // Makes small scenes from pbrt-v3 text and compares their radiance with known answers.
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "renderer/transport/integrator.h"
 #include "tests/hard_cases/hard_case.h"
 

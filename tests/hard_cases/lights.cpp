@@ -1,4 +1,9 @@
 // Light that comes from next to nothing, or is next to nothing.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
 #include "tests/hard_cases/known_scene.h"
 #include "tests/renderer/files/test_files.h"
 

@@ -1,5 +1,9 @@
 // Energy that must neither be lost nor made, glass, and surfaces that are all but smooth or looked
 // at from all but their own plane.
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "tests/hard_cases/known_scene.h"
 
 namespace lull {

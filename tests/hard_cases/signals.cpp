@@ -1,4 +1,9 @@
 // Blocks that are no pictures, and windows all but without change.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "stopping/features/model_inputs.h"
 #include "stopping/rules/learned.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/hard_cases/hard_case.h"

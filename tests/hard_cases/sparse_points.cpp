@@ -1,5 +1,7 @@
 // Blocks in which few pixels have nearly all noise: thin lights and fireflies. A mean over a block
 // does not see them, people see them first.
+#include <fmt/format.h>
+
 #include "stopping/rules/rule_table.h"
 #include "stopping/signals/lightness.h"
 #include "stopping/signals/lightness_noise.h"

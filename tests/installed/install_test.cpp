@@ -1,4 +1,5 @@
 // What is installed works where it is put: the program, the library, the module, the manual.
+#include <cmath>
 #include <random>
 #include <regex>
 #include <set>

@@ -1,4 +1,5 @@
 // Runs the program as its help describes it.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 

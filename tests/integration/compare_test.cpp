@@ -1,4 +1,5 @@
 // Runs `lull compare` as its help describes it.
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "renderer/image/image_io.h"

@@ -1,4 +1,5 @@
 // Denoises renders: by the render itself, afterwards, and those of others.
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "renderer/image/image_io.h"

@@ -1,5 +1,8 @@
 // Judges rules and thresholds as a user would.
+#include <cmath>
+
 #include "renderer/files/file_io.h"
+#include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_lull.h"
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"

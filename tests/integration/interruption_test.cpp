@@ -1,4 +1,6 @@
 // Interrupts renders in all ways and compares what they come to in the end.
+#include <fmt/format.h>
+
 #include <chrono>
 #include <random>
 

@@ -4,6 +4,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
+#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>

@@ -1,6 +1,7 @@
 // Uses the pictures of another renderer as a laboratory would.
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <random>
 
 #include "renderer/image/image_io.h"

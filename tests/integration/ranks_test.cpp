@@ -1,4 +1,6 @@
 // Renders under mpirun, and compares with what one process makes.
+#include <fmt/format.h>
+
 #include "renderer/image/image_io.h"
 #include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_and_signal.h"

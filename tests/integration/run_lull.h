@@ -1,6 +1,8 @@
 // Runs the program as a user would.
 #pragma once
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include "tests/renderer/files/test_files.h"

@@ -1,4 +1,7 @@
 // Renders sequences: the frames of an animation in one run.
+#include <array>
+#include <span>
+
 #include "renderer/image/image_io.h"
 #include "tests/integration/run_lull.h"
 

@@ -1,6 +1,9 @@
 // Tests what is no regular file, names that would command a terminal, and writers that meet.
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "renderer/image/image_io.h"
 #include "stopping/lab/recordings/recording.h"
 #include "tests/integration/run_lull.h"

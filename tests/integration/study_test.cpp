@@ -1,4 +1,6 @@
 // Makes studies and collects answers; the page itself is used in study_page.py.
+#include <gtest/gtest.h>
+
 #include "stopping/lab/recordings/recording.h"
 #include "stopping/rules/thresholds.h"
 #include "tests/integration/run_and_signal.h"

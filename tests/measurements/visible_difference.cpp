@@ -9,7 +9,11 @@
 //       and prints the sensitivities of the three channels
 #include <fmt/core.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <iostream>
+#include <span>
+#include <string>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"

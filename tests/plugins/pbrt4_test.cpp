@@ -1,5 +1,10 @@
 // Compares public scenes for pbrt-v4 with pbrt-v4's own means of blocks, pbrt4.csv, by Z-tests with
 // both variances known. tests/measurements/against_pbrt4.py wrote these.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/renderer/scene_of.h"

@@ -1,5 +1,10 @@
 // Compares renders of small scenes, which show one plug-in each, with pbrt-v3's own (make.py):
 // energy, tiles and pixels by Z-tests with both variances known.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

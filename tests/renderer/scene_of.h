@@ -1,6 +1,9 @@
 // Compiles the scenes that tests write down.
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "renderer/base/math.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/scene.h"

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <span>
 #include <stdexcept>
+#include <string>
 
 #include "tests/expect_has.h"
 

@@ -1,10 +1,12 @@
 // Tests the small things everything uses: geometry, color and memory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <new>
 #include <numeric>
 
 #include "renderer/base/error.h"
+#include "renderer/base/math.h"
 #include "renderer/base/memory.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

@@ -1,3 +1,5 @@
+#include "renderer/base/sampling.h"
+
 #include <gtest/gtest.h>
 
 #include <numeric>

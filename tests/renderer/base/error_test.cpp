@@ -1,5 +1,6 @@
 #include "renderer/base/error.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <thread>

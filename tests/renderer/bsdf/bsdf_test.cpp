@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/base/math.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

@@ -1,5 +1,7 @@
 // Tests the scattering of hair: that nothing is lost without absorption, and that it is sampled
 // with the density claimed.
+#include "renderer/bsdf/hair_lobe.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/renderer/bsdf/lobe_examples.h"

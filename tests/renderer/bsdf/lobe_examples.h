@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <vector>
+
 #include "renderer/bsdf/bsdf.h"
 
 namespace lull::test {

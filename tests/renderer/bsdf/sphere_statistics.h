@@ -2,6 +2,10 @@
 // chi-square test.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <vector>
+
 #include "renderer/base/sampling.h"
 
 namespace lull::test {

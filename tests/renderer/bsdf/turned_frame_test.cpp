@@ -1,6 +1,7 @@
 // Shading normals that the surface does not have: no light goes through, and none is lost.
 #include <gtest/gtest.h>
 
+#include "renderer/bsdf/bsdf.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <limits>
+
 #include "tests/renderer/denoise/example_pictures.h"
 
 namespace lull {

@@ -1,6 +1,8 @@
 // Makes pictures whose truth is known, and noise for them.
 #pragma once
 
+#include <cmath>
+#include <functional>
 #include <random>
 
 #include "renderer/denoise/denoise.h"

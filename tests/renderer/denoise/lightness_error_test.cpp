@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "renderer/denoise/denoiser.h"
 #include "tests/renderer/denoise/example_pictures.h"
 

@@ -1,3 +1,5 @@
+#include "renderer/denoise/denoise.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/renderer/denoise/example_pictures.h"

@@ -1,3 +1,5 @@
+#include "renderer/denoise/denoise.h"
+
 #include <gtest/gtest.h>
 
 #include "renderer/denoise/visible_error.h"

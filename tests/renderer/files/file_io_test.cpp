@@ -1,12 +1,14 @@
 #include "renderer/files/file_io.h"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <csignal>
 #include <thread>
+#include <vector>
 
 #include "tests/renderer/files/test_files.h"
 

@@ -1,7 +1,10 @@
 #include "renderer/files/outputs.h"
 
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <thread>
+#include <vector>
 
 #include "renderer/files/file_io.h"
 #include "tests/renderer/files/test_files.h"

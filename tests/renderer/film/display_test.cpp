@@ -1,6 +1,10 @@
 #include "renderer/film/display.h"
 
+#include <gtest/gtest.h>
+
+#include <atomic>
 #include <chrono>
+#include <cstdio>
 
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/film/add_sample.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/base/math.h"
 #include "renderer/film/spp_map.h"
 #include "tests/renderer/film/add_sample.h"
 

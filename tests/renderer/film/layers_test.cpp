@@ -1,5 +1,9 @@
 #include "renderer/film/film.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
 #include "tests/renderer/files/test_files.h"
 
 namespace lull::layers_test {

@@ -11,8 +11,10 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
+#include <gtest/gtest.h>
 
 #include <numeric>
+#include <stdexcept>
 
 #include "renderer/image/files/exr_header.h"
 #include "renderer/image/image_io.h"

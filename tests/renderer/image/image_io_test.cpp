@@ -1,5 +1,11 @@
-#include "renderer/image/image_io.h"
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "renderer/base/math.h"
+#include "renderer/image/image_io.h"
 #include "tests/renderer/files/test_files.h"
 
 namespace lull {

@@ -1,4 +1,7 @@
 // EXRs as lull writes them.
+#include <gtest/gtest.h>
+
+#include <array>
 #include <cstring>
 
 #include "renderer/image/image_io.h"

@@ -1,4 +1,7 @@
 // Checks that broken and hostile glTF files give one clear error, with the place.
+#include <algorithm>
+#include <cmath>
+
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull {

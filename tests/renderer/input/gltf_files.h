@@ -1,8 +1,12 @@
 // Makes glTF files for tests.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "renderer/base/math.h"
 #include "renderer/input/gltf_loader.h"

@@ -1,4 +1,6 @@
 // Checks materials of glTF files, and their variants.
+#include <numbers>
+
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull::gltf_materials_test {

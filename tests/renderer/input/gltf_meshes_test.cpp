@@ -1,4 +1,6 @@
 // Checks what becomes of the arrays of glTF files.
+#include <functional>
+
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull {

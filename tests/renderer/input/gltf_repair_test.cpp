@@ -1,4 +1,6 @@
 // Files that break the specification where it does no harm.
+#include <fmt/format.h>
+
 #include "tests/renderer/input/gltf_files.h"
 
 namespace lull {

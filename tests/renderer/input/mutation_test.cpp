@@ -1,8 +1,10 @@
 // Tests that damaged input is read or refused with an Error, and nothing else: no crash, no other
 // exception, no endless loop. The mutations are the same in every run.
+#include <functional>
 #include <random>
 
 #include "renderer/input/loop_subdivision.h"
+#include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"
 #include "renderer/input/spectrum.h"
 #include "tests/renderer/input/test_files.h"

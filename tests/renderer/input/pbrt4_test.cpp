@@ -1,5 +1,9 @@
 // Tests that scenes for pbrt-v4 are told from those for pbrt-v3, and what becomes of their
 // directives and errors.
+#include <fmt/format.h>
+
+#include <fstream>
+
 #include "renderer/input/pbrt/pbrt_lexer.h"
 #include "renderer/input/pbrt/v4.h"
 #include "tests/renderer/input/test_files.h"

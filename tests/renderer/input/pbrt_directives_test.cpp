@@ -1,6 +1,7 @@
 // Tests every directive of the pbrt-v3 parser for what it does to the description.
 #include <Eigen/LU>
 
+#include "renderer/input/pbrt_parser.h"
 #include "tests/renderer/input/test_files.h"
 
 namespace lull {

@@ -1,6 +1,7 @@
 // Tests that everything wrong with a pbrt-v3 file is told with its place and its reason.
 #include <sys/stat.h>
 
+#include "renderer/input/pbrt_parser.h"
 #include "tests/renderer/input/test_files.h"
 
 namespace lull {

@@ -1,4 +1,5 @@
 // Tests every form in which the pbrt-v3 parser reads parameters.
+#include "renderer/input/pbrt_parser.h"
 #include "tests/renderer/input/test_files.h"
 
 namespace lull {

@@ -1,7 +1,9 @@
 #include "renderer/input/ply_loader.h"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "tests/renderer/input/test_files.h"

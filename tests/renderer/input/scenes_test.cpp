@@ -1,4 +1,9 @@
 // Tests that the shared real scenes are read as their inventory says.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
 #include "renderer/input/loop_subdivision.h"
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/input/ply_loader.h"

@@ -1,5 +1,7 @@
 #include "renderer/input/spectrum.h"
 
+#include <gtest/gtest.h>
+
 #include "tests/renderer/files/test_files.h"
 #include "tests/shared_folder.h"
 

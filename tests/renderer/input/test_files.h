@@ -1,6 +1,11 @@
 // Gives input tests files of their own.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
 #include "renderer/input/pbrt_parser.h"
 #include "tests/renderer/files/test_files.h"
 

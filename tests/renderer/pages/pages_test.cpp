@@ -1,3 +1,6 @@
+#include <gtest/gtest.h>
+
+#include "renderer/pages/html_page.h"
 #include "tests/renderer/film/add_sample.h"
 #include "tests/renderer/pages/page_data.h"
 

@@ -1,7 +1,10 @@
 #include "renderer/progress/progress.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "tests/renderer/files/test_files.h"
 

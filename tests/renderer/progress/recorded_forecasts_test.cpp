@@ -1,7 +1,12 @@
 // Compares forecasts with the stops of recorded blocks, from which their ranges come.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "renderer/progress/forecast.h"
 #include "stopping/lab/evaluation/simulation.h"

@@ -1,4 +1,8 @@
 // Layers go the way of the image: any threads and blocks, clocks, checkpoints.
+#include <gtest/gtest.h>
+
+#include <atomic>
+
 #include "renderer/render/session.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/film/add_sample.h"

@@ -1,8 +1,14 @@
 #include "renderer/render/session.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
 #include <random>
 
 #include "stopping/base/hdf5_file.h"
+#include "stopping/base/input_file.h"
+#include "stopping/base/state.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 

@@ -1,7 +1,13 @@
 // Renders by simulated clocks, on which every sample takes the same time.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstring>
+#include <ctime>
+#include <memory>
+
 #include "renderer/progress/forecast.h"
+#include "renderer/render/render.h"
 #include "stopping/rules/baselines.h"
 #include "tests/renderer/render/synthetic_samples.h"
 

@@ -1,7 +1,12 @@
 // Renders with light paths: the same bits however they are cut, with the mean that paths have.
 #include "renderer/render/light_rounds.h"
 
+#include <gtest/gtest.h>
+
+#include <atomic>
+
 #include "renderer/render/session.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
 

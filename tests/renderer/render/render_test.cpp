@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <mutex>
+#include <set>
 #include <thread>
 
 #include "tests/renderer/render/synthetic_samples.h"

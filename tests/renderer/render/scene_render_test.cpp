@@ -1,4 +1,7 @@
 // Renders small scenes all the way from pbrt text to pixels.
+#include <gtest/gtest.h>
+
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
 

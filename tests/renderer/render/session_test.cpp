@@ -1,6 +1,11 @@
 // Sessions go on where they were interrupted, to the same bits, and say what there is to say.
 #include "renderer/render/session.h"
 
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"
 #include "tests/renderer/scene_of.h"
 

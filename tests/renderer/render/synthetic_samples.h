@@ -1,6 +1,9 @@
 // Gives tests samples without a scene.
 #pragma once
 
+#include <atomic>
+#include <cmath>
+
 #include "renderer/render/render.h"
 
 namespace lull {

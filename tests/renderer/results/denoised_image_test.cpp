@@ -1,5 +1,8 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "renderer/base/error.h"
 #include "renderer/denoise/visible_error.h"
 #include "renderer/render/film_picture.h"
 #include "renderer/results/denoised_image.h"

@@ -1,5 +1,10 @@
 // Channels of layers, where pixels have samples, none, or a background that is left out; windows of
 // EXRs.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
 #include <random>
 
 #include "renderer/results/channel_names.h"

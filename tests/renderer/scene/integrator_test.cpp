@@ -1,6 +1,9 @@
 // Reads the scene's Integrator.
 #include "renderer/scene/integrator.h"
 
+#include <gtest/gtest.h>
+
+#include "renderer/base/error.h"
 #include "renderer/input/pbrt_parser.h"
 #include "tests/renderer/files/test_files.h"
 

@@ -1,6 +1,9 @@
 // Which group a light is in, by its names.
 #include "renderer/scene/light_groups.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/scene_of.h"
 
 namespace lull::light_groups_test {

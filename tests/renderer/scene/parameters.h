@@ -1,6 +1,10 @@
 // Makes parameters for tests, as a parser would.
 #pragma once
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "renderer/input/description.h"
 
 namespace lull {

@@ -1,5 +1,11 @@
 // Numbers that have to be at least 0 are 0 where an exporter's rounding has left them just below.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "renderer/input/spectrum.h"
+#include "renderer/scene/geometry/shapes/mesh.h"
+#include "renderer/scene/scene.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene_of.h"
 
 namespace lull::rounded_zeros_test {

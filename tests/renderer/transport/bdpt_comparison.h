@@ -1,6 +1,11 @@
 // Compares the means of blocks by bidirectional path tracing and by paths from the camera.
 #pragma once
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
 #include "renderer/transport/bdpt.h"
 #include "stopping/base/parallel.h"
 #include "tests/renderer/scene_of.h"

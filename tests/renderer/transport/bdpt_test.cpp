@@ -1,4 +1,7 @@
 // Compares bidirectional path tracing with paths from the camera where these find all light.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/transport/bdpt_comparison.h"
 #include "tests/shared_folder.h"
 

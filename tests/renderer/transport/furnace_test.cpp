@@ -1,4 +1,8 @@
 // Compares path tracing with scenes whose radiance is known, and its estimators with each other.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/bsdf/fresnel.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

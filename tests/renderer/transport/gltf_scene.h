@@ -1,6 +1,10 @@
 // Makes scenes of glTF files, and measures their radiance.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include "renderer/base/math.h"
+#include "renderer/image/image_io.h"
 #include "tests/renderer/input/gltf_files.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"

@@ -1,4 +1,6 @@
 // Renders glTF files whose radiance is known, or that exist as pbrt files as well.
+#include <fmt/format.h>
+
 #include "tests/renderer/transport/gltf_scene.h"
 
 namespace lull::gltf_test {

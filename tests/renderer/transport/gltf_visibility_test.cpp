@@ -1,6 +1,12 @@
 // Renders glTF files of which the camera or shadow rays do not see all.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "renderer/input/scene_edits.h"
+#include "renderer/scene/cameras/camera.h"
+#include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/gltf_scene.h"
+#include "tests/renderer/transport/pixel_statistics.h"
 
 namespace lull::gltf_test {
 namespace {

@@ -1,5 +1,8 @@
 #include "renderer/transport/integrator.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/scene_of.h"
 
 namespace lull {

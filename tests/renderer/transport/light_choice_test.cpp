@@ -1,4 +1,7 @@
 // Compares images whose lights are chosen in different ways: their means are the same.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

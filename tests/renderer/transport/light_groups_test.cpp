@@ -1,6 +1,10 @@
 // The light of groups: it adds up to that of the sample, and each part is that of its lights alone.
 #include "renderer/scene/light_groups.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/transport/integrator.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

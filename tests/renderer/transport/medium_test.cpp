@@ -1,5 +1,8 @@
 // Compares path tracing in media with scenes whose radiance is known, and its estimators with each
 // other.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

@@ -2,6 +2,7 @@
 // bidirectional path tracing, and in renders that learn.
 #include "renderer/transport/path_media.h"
 
+#include "renderer/base/math.h"
 #include "tests/renderer/transport/bdpt_comparison.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 

@@ -1,6 +1,11 @@
 // Renders scenes for pbrt-v4 whose values are known, and checks coats by themselves.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
 #include <sstream>
 
+#include "renderer/bsdf/bsdf.h"
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 #include "tests/shared_folder.h"

@@ -1,6 +1,13 @@
 // Measures mean and variance of single samples, pixel by pixel, and reads those of pbrt-v3.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <string>
+#include <variant>
+#include <vector>
+
 #include "renderer/image/image_io.h"
 #include "renderer/transport/integrator.h"
 #include "stopping/base/parallel.h"

@@ -1,5 +1,11 @@
 // Compares renders of the real scenes with pbrt-v3's own: means by Z-tests with both variances
 // known, and the variance of one sample, which is what human thresholds transfer by.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
 #include "tests/shared_folder.h"

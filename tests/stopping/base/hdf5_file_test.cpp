@@ -1,4 +1,10 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
 #include <iterator>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/state.h"

@@ -1,9 +1,12 @@
 #include "stopping/base/input_file.h"
 
+#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <iterator>
 #include <sstream>
+#include <stdexcept>
+#include <vector>
 
 #include "tests/stopping/scratch_file.h"
 

@@ -1,5 +1,14 @@
 #include "stopping/features/model_inputs.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
 #include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/rules/learned.h"
 #include "tests/stopping/cut_states.h"

@@ -1,6 +1,13 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "stopping/base/hdf5_file.h"
 #include "stopping/base/input_file.h"

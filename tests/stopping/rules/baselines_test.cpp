@@ -2,6 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "stopping/base/block_view.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/signals/block_images.h"
 

@@ -1,5 +1,16 @@
 #include "stopping/rules/learned.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "stopping/base/block_view.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/network/random_network.h"

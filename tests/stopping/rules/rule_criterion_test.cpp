@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
 #include "stopping/rules/rule_table.h"
 
 namespace lull {

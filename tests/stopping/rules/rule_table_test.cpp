@@ -1,7 +1,17 @@
 #include "stopping/rules/rule_table.h"
 
-#include <regex>
+#include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "stopping/base/block_view.h"
+#include "stopping/base/input_file.h"
 #include "stopping/network/model_file.h"
 #include "tests/stopping/cut_states.h"
 #include "tests/stopping/network/random_network.h"

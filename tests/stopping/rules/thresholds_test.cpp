@@ -1,6 +1,11 @@
 #include "stopping/rules/thresholds.h"
 
+#include <gtest/gtest.h>
+
 #include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "tests/stopping/golden_data.h"
 #include "tests/stopping/scratch_file.h"

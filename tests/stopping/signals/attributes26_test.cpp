@@ -1,7 +1,13 @@
 #include "stopping/signals/attributes26.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <vector>
 
 #include "stopping/signals/lightness.h"
 #include "tests/shared_folder.h"

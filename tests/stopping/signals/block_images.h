@@ -1,7 +1,9 @@
 // Makes blocks to judge.
 #pragma once
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 #include "stopping/rules/rule.h"
 

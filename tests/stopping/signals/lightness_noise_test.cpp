@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
 #include "stopping/signals/lightness.h"
 #include "tests/stopping/signals/block_images.h"
 

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <vector>
 
 namespace lull {
 namespace {

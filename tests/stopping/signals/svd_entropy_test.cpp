@@ -1,8 +1,15 @@
 #include "stopping/signals/svd_entropy.h"
 
+#include <gtest/gtest.h>
 #include <Eigen/Dense>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "stopping/signals/lightness.h"
 #include "tests/shared_folder.h"

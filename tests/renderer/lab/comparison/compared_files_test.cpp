@@ -1,5 +1,9 @@
 #include "renderer/lab/comparison/compared_files.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+
 #include "renderer/image/image_io.h"
 #include "tests/renderer/files/test_files.h"
 

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/base/error.h"
+#include "stopping/base/block_view.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/renderer/render/synthetic_samples.h"

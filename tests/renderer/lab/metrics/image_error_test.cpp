@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <random>
+#include <vector>
 
 #include "renderer/base/error.h"
 #include "renderer/base/math.h"

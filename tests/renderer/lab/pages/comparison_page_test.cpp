@@ -1,4 +1,9 @@
+#include <gtest/gtest.h>
+
+#include "renderer/image/image_io.h"
 #include "renderer/lab/pages/comparison_page.h"
+#include "renderer/pages/html_page.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/pages/page_data.h"
 
 namespace lull {

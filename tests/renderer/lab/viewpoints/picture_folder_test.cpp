@@ -1,7 +1,12 @@
 #include "renderer/lab/viewpoints/picture_folder.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <random>
 
+#include "renderer/base/error.h"
 #include "renderer/image/image_io.h"
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 #include "stopping/rules/rule_table.h"

@@ -1,5 +1,7 @@
 #include "renderer/lab/viewpoints/recorded_viewpoint.h"
 
+#include <gtest/gtest.h>
+
 #include "renderer/lab/viewpoints/study.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/render/synthetic_samples.h"

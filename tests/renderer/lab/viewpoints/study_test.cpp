@@ -1,5 +1,9 @@
 #include "renderer/lab/viewpoints/study.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/base/error.h"
 #include "renderer/image/image_io.h"
 #include "stopping/rules/baselines.h"
 #include "stopping/signals/lightness.h"

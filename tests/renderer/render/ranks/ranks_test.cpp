@@ -1,4 +1,10 @@
 // Renders are the same with any number of ranks, whatever happens to these.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "renderer/render/ranks/rank.h"
 #include "stopping/rules/baselines.h"
 #include "tests/renderer/render/ranks/shared_render.h"
 #include "tests/renderer/scene_of.h"

@@ -1,7 +1,12 @@
 // Renders with several ranks.
 #pragma once
 
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 #include "renderer/render/light_rounds.h"
 #include "renderer/render/peers.h"

@@ -1,7 +1,10 @@
+#include <gtest/gtest.h>
+
 #include <random>
 
 #include "renderer/scene/cameras/camera.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 #include "tests/renderer/scene_of.h"
 

@@ -1,5 +1,9 @@
 #include "renderer/scene/cameras/film_settings.h"
 
+#include <gtest/gtest.h>
+
+#include <functional>
+
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"

@@ -1,4 +1,7 @@
 // Tests lenses: their files, that they focus, and that their rays carry the light that passes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "renderer/scene/cameras/camera.h"
 #include "renderer/scene/cameras/lens_system.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"

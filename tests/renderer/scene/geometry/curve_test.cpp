@@ -1,4 +1,7 @@
 // Tests curves: their directives, and where rays meet them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "renderer/input/pbrt_parser.h"
 #include "renderer/scene/geometry/shapes/shape_factory.h"
 #include "renderer/scene/scene.h"

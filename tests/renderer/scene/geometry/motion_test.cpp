@@ -1,5 +1,8 @@
 // Tests what moves while the shutter is open: transforms between two, their bounds, and that a
 // moving scene is at each time the scene that stands where it is then.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <Eigen/LU>
 
 #include "tests/renderer/bsdf/sphere_statistics.h"

@@ -1,5 +1,8 @@
 #include "renderer/scene/geometry/shapes/shape_factory.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 

@@ -1,4 +1,10 @@
 // Tests what is too large, too far away or too small for rays to be traced, and what is not.
+#include "renderer/scene/geometry/shape.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene_of.h"
 
 namespace lull {

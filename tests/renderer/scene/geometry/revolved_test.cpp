@@ -1,5 +1,11 @@
 // Tests cylinders, cones, paraboloids and hyperboloids against their parametric forms.
+#include "renderer/scene/geometry/shapes/quadric.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/bsdf/sphere_statistics.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/geometry/hit_at.h"
 #include "tests/renderer/scene_of.h"
 

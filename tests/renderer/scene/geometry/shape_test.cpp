@@ -1,5 +1,9 @@
 // Tests intersection, its error bounds and the sampling of shapes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/bsdf/sphere_statistics.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/geometry/hit_at.h"
 #include "tests/renderer/scene_of.h"
 

@@ -1,7 +1,11 @@
 #include "renderer/scene/lights/infinite.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <numeric>
 
+#include "renderer/base/math.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/lights/light_scene.h"
 

@@ -1,6 +1,8 @@
 // Compares the light that lights send out with their power, and its directions with their density.
 #include "renderer/scene/lights/light_emission.h"
 
+#include <gtest/gtest.h>
+
 #include <random>
 
 #include "tests/renderer/scene_of.h"

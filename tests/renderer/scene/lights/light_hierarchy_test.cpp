@@ -1,5 +1,10 @@
 // Compares what the hierarchy of lights chooses with the probabilities that it states, and with
 // what lights give.
+#include "renderer/scene/lights/light_distribution.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene_of.h"
 

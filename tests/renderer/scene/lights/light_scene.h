@@ -1,6 +1,8 @@
 // Makes scenes of lights alone.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "renderer/image/image_io.h"
 #include "tests/renderer/scene_of.h"
 

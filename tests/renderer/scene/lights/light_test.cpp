@@ -1,6 +1,12 @@
 // Compares what sampling lights finds with what rays in random directions find.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/base/math.h"
+#include "renderer/scene/lights/light_distribution.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/lights/light_scene.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull {
 namespace {

@@ -1,7 +1,13 @@
 #include "renderer/scene/lights/point.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/lights/light_scene.h"
+#include "tests/renderer/scene_of.h"
 
 namespace lull::emission_profile_test {
 namespace {

@@ -1,4 +1,6 @@
 // Tests tabulated scattering: its file format, and that it is evaluated and sampled as it says.
+#include <gtest/gtest.h>
+
 #include "renderer/scene/materials/basic.h"
 #include "tests/renderer/bsdf/lobe_examples.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"

@@ -1,5 +1,14 @@
 // Puts materials of all kinds into a white furnace: at most what arrives leaves towards the viewer,
 // whatever its side and angle.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "renderer/base/math.h"
 #include "tests/renderer/scene/materials/material_scene.h"
 
 namespace lull::test {

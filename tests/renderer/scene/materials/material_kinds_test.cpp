@@ -1,5 +1,9 @@
 // Checks parameters, defaults and lobes of each kind of material.
+#include <gtest/gtest.h>
+
+#include "renderer/bsdf/subsurface.h"
 #include "renderer/input/spectrum.h"
+#include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/materials/material_scene.h"
 
 namespace lull::test {

@@ -1,6 +1,8 @@
 // Builds descriptions of materials and textures for tests, and looks into the Bsdfs made of them.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "renderer/scene/materials/material.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/parameters.h"

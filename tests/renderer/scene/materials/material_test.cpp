@@ -1,4 +1,6 @@
 // Checks mixtures, refusals and what materials ask of a hit.
+#include <gtest/gtest.h>
+
 #include "tests/renderer/scene/materials/material_scene.h"
 
 namespace lull::test {

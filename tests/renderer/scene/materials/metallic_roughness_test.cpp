@@ -1,4 +1,7 @@
 // Checks what glTF's material is made of; its values are checked in bsdf/, its look in transport/.
+#include <gtest/gtest.h>
+
+#include "renderer/bsdf/layered_lobes.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene/materials/material_scene.h"
 

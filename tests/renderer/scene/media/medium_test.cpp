@@ -1,4 +1,6 @@
 // Tests media: what they transmit and where they scatter, and how they are read.
+#include <gtest/gtest.h>
+
 #include "renderer/bsdf/subsurface.h"
 #include "renderer/input/spectrum.h"
 #include "tests/renderer/bsdf/sphere_statistics.h"

@@ -1,6 +1,7 @@
 // Tests media of NanoVDB files.
 #include "renderer/scene/media/nanovdb.h"
 
+#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <cstring>

@@ -1,6 +1,9 @@
-#include "renderer/scene/textures/texture_image.h"
+#include <gtest/gtest.h>
+
+#include "renderer/base/math.h"
 #include "renderer/image/image_io.h"
 #include "renderer/scene/textures/imagemap.h"
+#include "renderer/scene/textures/texture_image.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 

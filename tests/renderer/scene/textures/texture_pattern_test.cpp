@@ -1,4 +1,6 @@
 // Tests bilerp, uv, dots, windy and wrinkled textures. That noise is pbrt-v3's is tested elsewhere.
+#include <gtest/gtest.h>
+
 #include "renderer/scene/textures/noise.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"

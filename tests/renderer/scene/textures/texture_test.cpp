@@ -1,5 +1,7 @@
-#include "renderer/scene/textures/texture.h"
+#include <gtest/gtest.h>
+
 #include "renderer/scene/textures/mapping.h"
+#include "renderer/scene/textures/texture.h"
 #include "tests/renderer/files/test_files.h"
 #include "tests/renderer/scene/textures/texture_builder.h"
 

@@ -1,6 +1,12 @@
 #include "stopping/lab/evaluation/answer_scores.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
 #include <sstream>
+#include <stdexcept>
 
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/scratch_file.h"

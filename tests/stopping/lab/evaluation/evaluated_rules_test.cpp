@@ -1,6 +1,13 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 #include "stopping/lab/evaluation/evaluated_rules.h"
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule_table.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/lab/training/learning_data.h"
 #include "tests/stopping/network/random_network.h"
 

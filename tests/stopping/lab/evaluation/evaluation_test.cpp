@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <stdexcept>
+#include <vector>
 
 #include "stopping/lab/evaluation/evaluation.h"
 #include "stopping/rules/thresholds.h"

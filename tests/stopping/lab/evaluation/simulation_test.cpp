@@ -1,5 +1,10 @@
 #include "stopping/lab/evaluation/simulation.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
 #include "stopping/network/model_file.h"
 #include "stopping/rules/rule_table.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"

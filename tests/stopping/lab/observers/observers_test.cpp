@@ -1,5 +1,14 @@
 #include "stopping/lab/observers/observers.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
 #include "stopping/base/input_file.h"
 #include "stopping/lab/evaluation/answer_scores.h"
 #include "stopping/lab/observers/observer_answers.h"

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
 #include "stopping/lab/evaluation/simulation.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"
 

@@ -1,6 +1,13 @@
 #include "stopping/lab/recordings/labelled_blocks.h"
 
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "stopping/features/model_inputs.h"
+#include "tests/stopping/lab/recordings/made_up_recordings.h"
 #include "tests/stopping/lab/training/learning_data.h"
+#include "tests/stopping/scratch_file.h"
 
 namespace lull {
 namespace {

@@ -1,7 +1,12 @@
 // Makes recordings of blocks that were never rendered.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <random>
+#include <string>
+#include <string_view>
 
 #include "stopping/lab/recordings/recording.h"
 #include "stopping/rules/thresholds.h"

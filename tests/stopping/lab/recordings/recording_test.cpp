@@ -1,5 +1,10 @@
 #include "stopping/lab/recordings/recording.h"
 
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "stopping/features/model_inputs.h"
 #include "stopping/lab/evaluation/evaluated_rules.h"
 #include "stopping/lab/evaluation/simulation.h"
 #include "stopping/lab/recordings/extension.h"

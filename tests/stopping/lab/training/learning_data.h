@@ -1,6 +1,10 @@
 // Writes the recordings and thresholds of a small training to files.
 #pragma once
 
+#include <fstream>
+#include <string>
+#include <vector>
+
 #include "stopping/lab/recordings/labelled_blocks.h"
 #include "stopping/lab/training/training_plan.h"
 #include "tests/stopping/lab/recordings/made_up_recordings.h"

@@ -1,5 +1,11 @@
 #include "stopping/lab/training/training_plan.h"
 
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
 #include "stopping/network/model_file.h"
 #include "tests/stopping/lab/training/learning_data.h"
 

@@ -1,5 +1,9 @@
 #include "stopping/lab/training/training.h"
 
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
 #include "stopping/base/parallel.h"
 #include "stopping/lab/evaluation/evaluation.h"
 #include "stopping/rules/learned.h"
