@@ -11,7 +11,7 @@ import sys
 
 # What CLI11 adds to the name of a value: a check, choices, the default, and other options. (A word
 # in small letters before :FILE is to be written, as in `--split paper:FILE`.)
-VALUE = re.compile(r"^(?P<name>.*?)"
+VALUE = re.compile(r"^(?P<name>.*?(?:\|[A-Z]+=[A-Z]+)?)"
                    r"(?::(?P<check>(?:INT|UINT|FLOAT|POSITIVE|NONNEGATIVE)\b.*?|\{.*?\})"
                    r"|(?<=[A-Z.])(?P<file>[a-z0-9]*):FILE)?"
                    r"(?:=(?P<default>\S*))?(?P<repeated> \.\.\.)?$")

@@ -16,7 +16,7 @@ import manual
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 HEADER = "renderer/embedding/include/lull/lull.h"
 MODULE = ("renderer/python/lull/commands.py", "renderer/python/lull/program.py", "renderer/python/_lull.pyi")
-PUBLIC = {"render", "compare", "evaluate", "Rendering", "Comparison", "Error"}  # of the .py files
+PUBLIC = {"render", "compare", "evaluate", "entropy", "Rendering", "Comparison", "Error"}  # of the .py files
 
 
 def cell(text):

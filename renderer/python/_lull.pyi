@@ -100,13 +100,19 @@ class Stopper:
 
 
 class SvdEntropy(NamedTuple):
+    """The SVD-entropies of the sub-blocks of an image: arrays of their rows x columns, in [0, 1].
+
+    h = h1 + h2, where h1 has the terms of the first quarter of the singular values.
+    """
     h: np.ndarray
     h1: np.ndarray
     h2: np.ndarray
 
 
-def svd_entropy(image: np.ndarray, sub_blocks: int = 100) -> SvdEntropy: ...
-def attributes26(image: np.ndarray) -> np.ndarray: ...
+def svd_entropy(image: np.ndarray, sub_blocks: int = 100) -> SvdEntropy:
+    """Computes the SVD-entropy of the lightness of each sub-block of an image."""
+def attributes26(image: np.ndarray) -> np.ndarray:
+    """Computes the 26 attributes of the paper of an image."""
 
 
 class Denoised:

@@ -26,7 +26,7 @@
  *     lull_block_error block = {0, 0, 200, 200};
  *     lull_denoised_picture clean = {pixels, NULL, &block, 1};
  *     if (lull_denoise(&noisy, &clean) != LULL_OK) puts(lull_error_message());
- *     else if (block.upper < 3.1) ...            // the error is hardly visible
+ *     else if (block.estimate < 3.1) ...         // as lull render --denoise stops
  *
  * Errors. Functions return LULL_OK or another lull_status. In the latter case,
  * lull_error_message() returns the reason and the remedy, in the same thread. No result is written,
@@ -108,7 +108,7 @@ typedef struct lull_picture {
     int width, height;
     int format;       /* a lull_format */
     const void* mean; /* mean of all samples: first channel of the top-left pixel */
-    const void* half; /* half buffer: mean of a fixed half of the samples; or NULL */
+    const void* half; /* half buffer: mean of a fixed half of the samples; NULL: no limit of peak noise */
     ptrdiff_t row_stride, pixel_stride, channel_stride;
 } lull_picture;
 
@@ -220,7 +220,8 @@ typedef struct lull_noisy_picture {
 } lull_noisy_picture;
 
 /* Visible difference of a block from the true picture on a display of 100 cd/m2 and 40 pixels per
- * degree, without the noise of its worst pixels, one of 5,000. `lull render` stops below 3.1. */
+ * degree, without the noise of its worst pixels, one of 5,000. `lull render` stops at an estimate
+ * below 3.1. */
 typedef struct lull_block_error {
     int x, y, width, height; /* set by the caller; at least 10 pixels a side */
     double estimate;         /* estimated visible difference */
