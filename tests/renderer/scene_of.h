@@ -16,6 +16,18 @@ inline std::string WorldText(const std::string& world, const std::string& before
     return before + "\nWorldBegin\n" + world + "\nWorldEnd\n";
 }
 
+// Returns two triangles between four points.
+inline std::string Quad(const std::string& points) {
+    return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [" + points +
+           "]\n";
+}
+
+// A part of a scene's text, and the name of the test with it.
+struct NamedText {
+    std::string name, text;
+};
+inline constexpr auto kByName = [](const auto& info) { return std::string(info.param.name); };
+
 // Compiles the scene of a pbrt-v3 file. Without `warnings` nobody hears of them: many scenes of
 // tests have no lights, or are of odd sizes. Throws Error.
 inline std::unique_ptr<const Scene> SceneIn(const std::string& file,
@@ -31,6 +43,13 @@ inline std::unique_ptr<const Scene> SceneOf(const std::string& text, CompileOpti
                                             Warnings* warnings = nullptr) {
     options.threads = 1;
     return SceneIn(TemporaryDirectory().Write("test.pbrt", text), options, warnings);
+}
+
+// Returns the warnings of a text, by kind.
+inline std::map<std::string, int> WarningsOf(const std::string& text) {
+    Warnings warnings;
+    SceneOf(text, {}, &warnings);
+    return warnings.Counts();
 }
 
 // Returns the pixels that a render of the scene has.

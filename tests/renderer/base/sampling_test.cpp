@@ -18,14 +18,9 @@ constexpr int kSamples = 200000;
 template <typename F>
 void ExpectMean(const F& f, double expected, const char* what) {
     Random random(1);
-    double sum = 0, sum2 = 0;
-    for (int i = 0; i < kSamples; ++i) {
-        const double v = f(random.Point());
-        sum += v;
-        sum2 += v * v;
-    }
-    const double mean = sum / kSamples, variance = sum2 / kSamples - mean * mean;
-    EXPECT_NEAR(mean, expected, 4.5 * std::sqrt(variance / kSamples) + 1e-6) << what;
+    test::SampleMean mean;
+    for (int i = 0; i < kSamples; ++i) mean.Add(f(random.Point()));
+    EXPECT_NEAR(mean.Value(), expected, 4.5 * mean.Error() + 1e-6) << what;
 }
 
 TEST(SineCosine, IsAsPreciseAsFloats) {

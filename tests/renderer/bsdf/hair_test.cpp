@@ -15,20 +15,14 @@ TEST(Hair, LosesNothingWithoutAbsorption) {
     Random random(1);
     for (const float betaM : {0.1f, 0.4f, 0.8f, 1.f})
         for (const float betaN : {0.1f, 0.4f, 1.f}) {
-            double sum = 0, squares = 0;
-            constexpr int kSamples = 60000;
+            SampleMean mean;
             const Vec3f wo = random.Direction();
-            for (int i = 0; i < kSamples; ++i) {
+            for (int i = 0; i < 60000; ++i) {
                 const HairLobe hair(Rgb::Zero(), -1 + 2 * random.Float(), 1.55f, betaM, betaN, 0);
                 const Vec3f wi = random.Direction();
-                const double v = hair.Evaluate(wo, wi).f.y() * std::abs(wi.z()) * 4 * kPi;
-                sum += v;
-                squares += v * v;
+                mean.Add(hair.Evaluate(wo, wi).f.y() * std::abs(wi.z()) * 4 * kPi);
             }
-            const double mean = sum / kSamples;
-            EXPECT_NEAR(mean, 1,
-                        4.5 * std::sqrt((squares / kSamples - mean * mean) / kSamples) + 0.01)
-                << betaM << " " << betaN;
+            EXPECT_NEAR(mean.Value(), 1, 4.5 * mean.Error() + 0.01) << betaM << " " << betaN;
         }
 }
 

@@ -134,25 +134,19 @@ TEST(BsdfSampling, ByShareLeavesTheMeanAsItIs) {
         const Bsdf uniform = MakeBsdf(lobes);
         Bsdf byShare = uniform;
         byShare.ChooseByShare(wo);
-        constexpr int kSamples = 40'000;
-        double mean[2] = {}, variance[2] = {};
+        SampleMean means[2];
         for (const int which : {0, 1}) {
             const Bsdf& bsdf = which ? byShare : uniform;
             Random random(5 + which);
-            double sum = 0, squares = 0;
-            for (int i = 0; i < kSamples; ++i) {
+            for (int i = 0; i < 40'000; ++i) {
                 const auto s = bsdf.Sample(wo, random.Point(), LobeSet::All);
-                if (!s) continue;
-                const double value = s->f.sum() * std::abs(s->wi.z()) / s->pdf;
-                sum += value;
-                squares += value * value;
+                means[which].Add(s ? s->f.sum() * std::abs(s->wi.z()) / s->pdf : 0);
             }
-            mean[which] = sum / kSamples;
-            variance[which] = squares / kSamples - mean[which] * mean[which];
         }
-        EXPECT_NEAR(mean[0], mean[1], 4.5 * std::sqrt((variance[0] + variance[1]) / kSamples))
+        EXPECT_NEAR(means[0].Value(), means[1].Value(),
+                    4.5 * std::hypot(means[0].Error(), means[1].Error()))
             << lobes.size() << " lobes";
-        EXPECT_LT(variance[1], 1.1 * variance[0]) << lobes.size() << " lobes";
+        EXPECT_LT(means[1].Variance(), 1.1 * means[0].Variance()) << lobes.size() << " lobes";
 
         const Bsdf again = byShare.WithoutShares();
         const Vec3f wi = FromAngles(20, 10);

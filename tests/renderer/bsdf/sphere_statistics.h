@@ -192,6 +192,21 @@ double PValueOf(const SphereGrid& grid, const SphereFunction& density, int count
     return ChiSquarePValue(expected, observed, count);
 }
 
+// Takes the mean of numbers, with its standard error.
+struct SampleMean {
+    double sum = 0, squares = 0;
+    int count = 0;
+
+    void Add(double v) {
+        sum += v;
+        squares += v * v;
+        ++count;
+    }
+    double Value() const { return sum / count; }
+    double Variance() const { return std::max(0.0, squares / count - Sqr(Value())); }
+    double Error() const { return std::sqrt(Variance() / count); }
+};
+
 // Returns the significance of each of n tests that gives the whole family 0.001 (Sidak 1967).
 inline double Significance(int n) { return 1 - std::pow(1 - 0.001, 1.0 / n); }
 

@@ -361,10 +361,6 @@ TEST(ImageIo, WebPKeepsItsColours) {
     }
 }
 
-}  // namespace
-
-namespace {
-
 struct HalvingView final : ViewTransform {
     void Apply(float* rgb, size_t pixels) const override {
         for (size_t i = 0; i < 3 * pixels; ++i) rgb[i] /= 2;

@@ -68,8 +68,7 @@ TEST(GltfCompression, DecodesDraco) {
         ASSERT_EQ(d.shapes.size(), 1u);
         std::vector<float> p = FloatsOf(d.shapes[0], ParameterType::Point3, "P");
         ASSERT_EQ(p.size(), 9u);
-        const auto indices = d.shapes[0].parameters.GetInts("indices");
-        ASSERT_EQ(indices.size(), 3u);
+        ASSERT_EQ(d.shapes[0].parameters.GetInts("indices").size(), 3u);
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();
         for (size_t i = 0; i < 9; i += 3) sum += Eigen::Map<Eigen::Vector3f>(&p[i]);
         EXPECT_TRUE(sum.isApprox(Eigen::Vector3f(2, 3, 0), 1e-3f));

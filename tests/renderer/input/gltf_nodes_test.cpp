@@ -123,14 +123,6 @@ TEST(GltfNodes, CountCopiesByAttributesOfAnyName) {
     EXPECT_EQ(kFolder.Parse(file).instances.size(), 2u);
 }
 
-TEST(GltfNodes, LeaveOutWhatIsScaledToNothing) {
-    GltfFile file;
-    file.Node({{"mesh", file.Triangle()}, {"scale", {1, 0, 0}}});
-    Warnings warnings;
-    EXPECT_TRUE(kFolder.Parse(file, {}, &warnings).shapes.empty());
-    EXPECT_EQ(warnings.Total(), 1);
-}
-
 GltfFile WithCameras() {
     GltfFile file;
     file.Node({{"mesh", file.Triangle()}});

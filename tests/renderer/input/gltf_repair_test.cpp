@@ -135,8 +135,7 @@ TEST(GltfRepair, PadsTheChunkOfData) {
 }
 
 TEST(GltfRepair, LeavesOutAChunkOfNoData) {
-    const std::string bytes = GltfFile::Glb(TwoTriangles().Text(), "");
-    EXPECT_EQ(GltfFolder().ErrorOf(bytes, "a.glb"), "");
+    EXPECT_EQ(GltfFolder().ErrorOf(GltfFile::Glb(TwoTriangles().Text(), ""), "a.glb"), "");
 }
 
 TEST(GltfRepair, ReadsDataWithoutATypeOrSemicolon) {

@@ -223,8 +223,7 @@ TEST_F(Pbrt4, SampledSpectra) {
     EXPECT_NEAR(light.x(), 1.201f, 2e-3f);
     EXPECT_NEAR(light.z(), .905f, 2e-3f);
     // A constant reflectance is grey; outside of the samples it is 0.
-    const Rgb grey = RgbOfSurface(samples({300, .5f, 900, .5f}), {});
-    EXPECT_LT((grey - .5f).abs().maxCoeff(), 1e-4f);
+    EXPECT_LT((RgbOfSurface(samples({300, .5f, 900, .5f}), {}) - .5f).abs().maxCoeff(), 1e-4f);
     EXPECT_LT(RgbOfSurface(samples({300, .5f, 400, .5f}), {}).maxCoeff(), .05f);
     EXPECT_NEAR(IndexOf(samples({400, 1.5f, 700, 1.6f}), {}), 1.5f + .1f * 187.6f / 300, 1e-4f);
     EXPECT_THROW(samples({500, 1, 400, 1}), Error);

@@ -19,7 +19,7 @@ TEST(MakeRenderPage, HoldsAllFilesAndNeedsNoOther) {
     for (const char* name :
          {"page.css", "page.js", "viewer.js", "render.js", "uPlot.iife.min.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;
-        EXPECT_HAS(page, EmbeddedFile(name)) << name;
+        EXPECT_HAS(page, std::string(EmbeddedFile(name))) << name;
     }
     for (const char* name : {"comparison.css", "comparison.js", "study.js"}) {
         ASSERT_FALSE(EmbeddedFile(name).empty()) << name;

@@ -99,10 +99,6 @@ TEST(HalfChannels, AreReadAsTheyWere) {
     EXPECT_THROW(ReadPicture(exr, "a.exr"), Error);
 }
 
-}  // namespace
-
-namespace {
-
 // Two blocks of 100 pixels at a cap of 100: one stopped at 20 spp, one went on to the cap.
 RenderResult TwoBlocks() {
     RenderResult result;

@@ -108,17 +108,11 @@ inline json Lamp() {
     return lamp;
 }
 
-inline int AddLight(GltfFile* file, const json& light) {
-    file->root["extensions"]["KHR_lights_punctual"]["lights"].push_back(light);
-    return int(file->root["extensions"]["KHR_lights_punctual"]["lights"].size()) - 1;
-}
-
 // Adds a directional light from direction `d` that gives an irradiance of 1 at right angles.
 inline void Sun(GltfFile* file, const Vec3f& d) {
-    const int light = AddLight(file, {{"type", "directional"}, {"intensity", 683}});
     const auto q = Eigen::Quaternionf::FromTwoVectors(Vec3f::UnitZ(), d);
-    file->Node({{"rotation", {q.x(), q.y(), q.z(), q.w()}},
-                {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+    file->Light({{"type", "directional"}, {"intensity", 683}},
+                {{"rotation", {q.x(), q.y(), q.z(), q.w()}}});
 }
 
 }  // namespace lull::gltf_test

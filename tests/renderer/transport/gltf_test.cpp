@@ -26,31 +26,20 @@ TEST(GltfScenes, AgreeWithPbrt) {
     file.Node({{"mesh", Square(&file, back)},
                {"translation", {0.5, 0.25, 2.0001}},
                {"scale", {0.25, 0.5, 1}}});
-    const int point = AddLight(&file, {{"type", "point"}, {"intensity", 683}});
-    file.Node({{"translation", {0.5, -1, 0.5}},
-               {"extensions", {{"KHR_lights_punctual", {{"light", point}}}}}});
+    file.Light({{"type", "point"}, {"intensity", 683}}, {{"translation", {0.5, -1, 0.5}}});
     file.root["cameras"] = {{{"type", "perspective"},
                              {"perspective", {{"yfov", 1}, {"aspectRatio", 1}, {"znear", 1}}}}};
     file.Node({{"camera", 0}, {"translation", {0.25, 0.5, 4}}});
 
-    const std::string square =
-        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
-        "\"point P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\n";
-    const auto pbrt = Compiled(
-        fmt::format("Scale -1 1 1\nLookAt 0.25 0.5 4  0.25 0.5 0  0 1 0\n"
-                    "Camera \"perspective\" \"float fov\" [{}]\n"
-                    "Integrator \"path\" \"integer maxdepth\" [12]\nWorldBegin\n"
-                    "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0.5 -1 0.5]\n"
-                    "AttributeBegin Material \"matte\" \"rgb Kd\" [.7 .6 .5] Scale 2 2 1\n{}"
-                    "AttributeEnd\n"
-                    "AttributeBegin Material \"matte\" \"rgb Kd\" [.2 .5 .8]\n"
-                    "Translate -1 0 1 Rotate 90 0 1 0\n{}AttributeEnd\n"
-                    "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0]\n"
-                    "AreaLightSource \"diffuse\" \"rgb L\" [5 4 3]\n"
-                    "Translate 0.5 0.25 2 Rotate 180 1 0 0 Scale 0.25 0.5 1\n{}"
-                    "AttributeEnd\nWorldEnd\n",
-                    180 / kPi, square, square, square),
-        8);
+    const auto pbrt = Compiled(fmt::format(R"(Scale -1 1 1 LookAt 0.25 0.5 4  0.25 0.5 0  0 1 0
+Camera "perspective" "float fov" [{0}] Integrator "path" "integer maxdepth" [12]
+WorldBegin LightSource "point" "rgb I" [1 1 1] "point from" [0.5 -1 0.5]
+AttributeBegin Material "matte" "rgb Kd" [.7 .6 .5] Scale 2 2 1 {1} AttributeEnd
+AttributeBegin Material "matte" "rgb Kd" [.2 .5 .8] Translate -1 0 1 Rotate 90 0 1 0 {1} AttributeEnd
+AttributeBegin Material "matte" "rgb Kd" [0 0 0] AreaLightSource "diffuse" "rgb L" [5 4 3]
+Translate 0.5 0.25 2 Rotate 180 1 0 0 Scale 0.25 0.5 1 {1} AttributeEnd WorldEnd)",
+                                           180 / kPi, Quad("-1 -1 0  1 -1 0  1 1 0  -1 1 0")),
+                               8);
     constexpr int kSamples = 1000;
     const auto pixelsOf = [](const Scene& scene, uint64_t seed) {
         return MeasurePixels(scene, Estimator::Combined, SamplerKind::Random, kSamples, seed);
@@ -67,82 +56,48 @@ TEST(GltfScenes, AgreeWithPbrt) {
 // rough surface may lose some light, never more than what is scattered twice on a few facets.
 TEST(GltfMaterial, NeverAddsEnergy) {
     struct Case {
-        const char* parameters;
+        double metallic, roughness;
+        const char* more;
         double least;
     };
     const Case cases[] = {
-        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [1]", 0.98},
-        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [.3]", 0.98},
-        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [0]", 0.98},
-        {"\"float metallicfactor\" [1] \"float roughnessfactor\" [.2]", 0.98},
-        {"\"float metallicfactor\" [1] \"float roughnessfactor\" [1]", 0.3},
-        {"\"float metallicfactor\" [.5] \"float roughnessfactor\" [.5]", 0.85},
-        {"\"float metallicfactor\" [0] \"float specularfactor\" [0]", 0.999},
-        {"\"float metallicfactor\" [0] \"float ior\" [2.5] \"float roughnessfactor\" [.4]", 0.97},
-        {"\"float metallicfactor\" [0] \"float clearcoatfactor\" [1] \"float roughnessfactor\" [1]",
-         0.98},
-        {"\"float metallicfactor\" [0] \"float clearcoatfactor\" [1] \"float roughnessfactor\" "
-         "[.5] "
-         "\"float clearcoatroughnessfactor\" [1]",
-         0.97},
-        {"\"float metallicfactor\" [1] \"float clearcoatfactor\" [1] \"float roughnessfactor\" [0]",
+        {0, 1, "", 0.98},
+        {0, .3, "", 0.98},
+        {0, 0, "", 0.98},
+        {1, .2, "", 0.98},
+        {1, 1, "", 0.3},
+        {.5, .5, "", 0.85},
+        {0, 1, R"("float specularfactor" [0])", 0.999},
+        {0, .4, R"("float ior" [2.5])", 0.97},
+        {0, 1, R"("float clearcoatfactor" [1])", 0.98},
+        {0, .5, R"("float clearcoatfactor" [1] "float clearcoatroughnessfactor" [1])", 0.97},
+        {1, 0, R"("float clearcoatfactor" [1])", 0.998},
+        {0, 0, R"("float clearcoatfactor" [1] "float transmissionfactor" [1])", 0.998},
+        {0, 0, R"("float clearcoatfactor" [1] "float transmissionfactor" [1] "bool solid" "true")",
          0.998},
-        {"\"float metallicfactor\" [0] \"float clearcoatfactor\" [1] \"float roughnessfactor\" [0] "
-         "\"float transmissionfactor\" [1]",
-         0.998},
-        {"\"float metallicfactor\" [0] \"float clearcoatfactor\" [1] \"float roughnessfactor\" [0] "
-         "\"float transmissionfactor\" [1] \"bool solid\" \"true\"",
-         0.998},
-        {"\"float metallicfactor\" [0] \"float clearcoatfactor\" [1] \"float roughnessfactor\" "
-         "[.2] "
-         "\"float transmissionfactor\" [1] \"bool solid\" \"true\" \"float "
-         "clearcoatroughnessfactor\" [.5]",
+        {0, .2, R"("float clearcoatfactor" [1] "float clearcoatroughnessfactor" [.5]
+                   "float transmissionfactor" [1] "bool solid" "true")",
          0.85},
-        {"\"float metallicfactor\" [0] \"float clearcoatfactor\" [1] \"float roughnessfactor\" "
-         "[.5] "
-         "\"float diffusetransmissionfactor\" [1]",
-         0.97},
-        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [1] \"float roughnessfactor\" "
-         "[0]",
-         0.999},
-        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [1] \"float roughnessfactor\" "
-         "[.3]",
-         0.95},
-        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [.5] \"float roughnessfactor\" "
-         "[.3] \"float clearcoatfactor\" [.5]",
-         0.8},
-        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [1] \"float roughnessfactor\" "
-         "[0] \"bool solid\" \"true\"",
-         0.999},
-        {"\"float metallicfactor\" [0] \"float transmissionfactor\" [.5] \"float roughnessfactor\" "
-         "[.2] \"bool solid\" \"true\"",
-         0.85},
-        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [1] \"float "
-         "sheenroughnessfactor\" "
-         "[.5] \"rgb sheencolorfactor\" [1 1 1]",
-         0.97},
-        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [1] \"float "
-         "sheenroughnessfactor\" "
-         "[.1] \"rgb sheencolorfactor\" [1 1 1]",
-         0.97},
-        {"\"float metallicfactor\" [1] \"float roughnessfactor\" [.2] \"float anisotropyfactor\" "
-         "[.8]",
-         0.65},
-        {"\"float metallicfactor\" [0] \"float roughnessfactor\" [.4] \"float anisotropyfactor\" "
-         "[.5] \"float clearcoatfactor\" [1]",
-         0.8},
+        {0, .5, R"("float clearcoatfactor" [1] "float diffusetransmissionfactor" [1])", 0.97},
+        {0, 0, R"("float transmissionfactor" [1])", 0.999},
+        {0, .3, R"("float transmissionfactor" [1])", 0.95},
+        {0, .3, R"("float transmissionfactor" [.5] "float clearcoatfactor" [.5])", 0.8},
+        {0, 0, R"("float transmissionfactor" [1] "bool solid" "true")", 0.999},
+        {0, .2, R"("float transmissionfactor" [.5] "bool solid" "true")", 0.85},
+        {0, 1, R"("float sheenroughnessfactor" [.5] "rgb sheencolorfactor" [1 1 1])", 0.97},
+        {0, 1, R"("float sheenroughnessfactor" [.1] "rgb sheencolorfactor" [1 1 1])", 0.97},
+        {1, .2, R"("float anisotropyfactor" [.8])", 0.65},
+        {0, .4, R"("float anisotropyfactor" [.5] "float clearcoatfactor" [1])", 0.8},
     };
     for (const Case& c : cases) {
-        SCOPED_TRACE(c.parameters);
-        const auto scene =
-            Compiled(fmt::format("LookAt 0 0 -2.5  0 0 0  0 1 0\n"
-                                 "Camera \"perspective\" \"float fov\" [40]\n"
-                                 "Integrator \"path\" \"integer maxdepth\" [200]\n"
-                                 "WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-                                 "Material \"metallicroughness\" {}\n"
-                                 "Shape \"sphere\" \"float radius\" [2]\nWorldEnd\n",
-                                 c.parameters),
-                     6);
+        SCOPED_TRACE(fmt::format("{} {} {}", c.metallic, c.roughness, c.more));
+        const auto scene = Compiled(
+            fmt::format(R"(LookAt 0 0 -2.5  0 0 0  0 1 0 Camera "perspective" "float fov" [40]
+Integrator "path" "integer maxdepth" [200] WorldBegin LightSource "infinite" "rgb L" [1 1 1]
+Material "metallicroughness" "float metallicfactor" {} "float roughnessfactor" {} {}
+Shape "sphere" "float radius" [2] WorldEnd)",
+                        c.metallic, c.roughness, c.more),
+            6);
         Total totals[2];
         for (int i = 0; i < 2; ++i) {
             totals[i] = Measure(*scene, kEstimators[i]);
@@ -310,8 +265,7 @@ TEST(GltfShutter, BlursByTheTimeThatIsCovered) {
     EXPECT_NEAR(t.mean.x() + t.mean.y(), 1 / kPi, 1e-4);
     EXPECT_GT(t.error, 0);
     // At half that time it stands in the middle.
-    const auto sharp = Compiled(folder.Parse(file, {.frame = 0.5}), 4);
-    EXPECT_NEAR(Measure(*sharp).mean.y() * kPi, 1, 1e-4);
+    EXPECT_NEAR(Measure(*Compiled(folder.Parse(file, {.frame = 0.5}), 4)).mean.y() * kPi, 1, 1e-4);
 }
 
 // The normal map turns the square towards or away from the sun: red to the right, green upwards.
@@ -494,12 +448,10 @@ TEST(GltfLights, FallOffInTheirCone) {
         GltfFile file;
         file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}, {"scale", {0.01, 0.01, 1}}});
         const double outer = 0.5, inner = 0.2;
-        const int spot =
-            AddLight(&file, {{"type", "spot"},
-                             {"intensity", 683},
-                             {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}});
-        file.Node({{"translation", {tangent, 0, 1}},
-                   {"extensions", {{"KHR_lights_punctual", {{"light", spot}}}}}});
+        file.Light({{"type", "spot"},
+                    {"intensity", 683},
+                    {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}},
+                   {{"translation", {tangent, 0, 1}}});
         LookDown(&file, 1e-3);
         const double cosine = 1 / std::hypot(1, tangent), distance2 = 1 + tangent * tangent;
         const double x =

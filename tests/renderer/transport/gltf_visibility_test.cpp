@@ -71,13 +71,11 @@ TEST(GltfNode, HidesTheSphereOfItsLight) {
     for (const bool isHidden : {false, true}) {
         GltfFile file;
         file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}, {"scale", {0.05, 0.05, 1}}});
-        const int bulb = AddLight(
-            &file,
-            {{"type", "point"}, {"intensity", 683}, {"extras", {{"lull", {{"radius", 0.5}}}}}});
-        json node = {{"translation", {0, 0, 1}},
-                     {"extensions", {{"KHR_lights_punctual", {{"light", bulb}}}}}};
+        json node = {{"translation", {0, 0, 1}}};
         if (isHidden) node["extras"] = {{"lull", {{"hiddenFromCamera", true}}}};
-        file.Node(node);
+        file.Light(
+            {{"type", "point"}, {"intensity", 683}, {"extras", {{"lull", {{"radius", 0.5}}}}}},
+            node);
         LookDown(&file, 0.04);
         const Total t = Measure(*Compiled(file), Estimator::Combined, 1000);
         // A bulb that is seen adds its own radiance: a watt per steradian from a disk of that

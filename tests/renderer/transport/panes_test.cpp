@@ -16,11 +16,6 @@ constexpr const char* kTint = "\"rgb basecolorfactor\" [.9 .6 .3] ";
 // Reflects nothing, so that it lets the same share through at any angle.
 constexpr const char* kNoInterface = "\"float specularfactor\" [0] ";
 
-std::string Quad(const char* points) {
-    return fmt::format(
-        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [{}]\n", points);
-}
-
 // A roof over the box at this height.
 std::string Roof(const std::string& material, double y = 0.9) {
     return fmt::format("AttributeBegin {}\nTranslate 0 {} 0\n{}AttributeEnd\n", material, y,
@@ -40,36 +35,27 @@ constexpr const char* kCamera =
     "LookAt 0 .2 -1.9  0 -.6 0  0 1 0\n"
     "Camera \"perspective\" \"float fov\" [80]\n";
 
-struct Lit {
-    const char* name;
-    const char* lights;
+const NamedText kLit[] = {
+    {"Sun", R"(LightSource "distant" "point from" [1 3 .5] "rgb L" [2 2 2] )"},
+    {"Disc", R"(LightSource "distant" "point from" [1 3 .5] "rgb L" [2 2 2] "float angle" [20] )"},
+    {"Point", R"(LightSource "point" "point from" [.5 1.5 -.3] "rgb I" [3 3 3] )"},
+    {"Spot", R"(LightSource "spot" "point from" [.5 2 -.3] "point to" [0 0 0] "float coneangle" [50]
+"rgb I" [6 6 6] )"},
+    {"Area",
+     R"(AttributeBegin Material "matte" "rgb Kd" [0 0 0] AreaLightSource "diffuse" "rgb L" [4 4 4] )" +
+         Quad("-1 1.5 -1  0 1.5 -1  0 1.5 0  -1 1.5 0") + "AttributeEnd "},
+    {"Hidden",
+     R"(AttributeBegin Material "matte" "rgb Kd" [0 0 0] AreaLightSource "diffuse" "rgb L" [4 4 4] )" +
+         Quad("-1 1.5 -1  0 1.5 -1  0 1.5 0  -1 1.5 0") + R"("float alpha" [0] AttributeEnd )"},
+    {"Sphere", R"(AttributeBegin Translate -.5 1.5 0 Material "matte" "rgb Kd" [0 0 0]
+AreaLightSource "diffuse" "rgb L" [4 4 4] Shape "sphere" "float radius" [.3] AttributeEnd )"},
+    {"Sky", R"(LightSource "infinite" "rgb L" [1 1 1] )"},
+    {"Studio", R"(LightSource "infinite" "bool studio" "true" )"},
 };
 
-constexpr Lit kLit[] = {
-    {"Sun", "LightSource \"distant\" \"point from\" [1 3 .5] \"rgb L\" [2 2 2]\n"},
-    {"Disc",
-     "LightSource \"distant\" \"point from\" [1 3 .5] \"rgb L\" [2 2 2] \"float angle\" [20]\n"},
-    {"Point", "LightSource \"point\" \"point from\" [.5 1.5 -.3] \"rgb I\" [3 3 3]\n"},
-    {"Spot",
-     "LightSource \"spot\" \"point from\" [.5 2 -.3] \"point to\" [0 0 0] \"float coneangle\" [50] "
-     "\"rgb I\" [6 6 6]\n"},
-    {"Area",
-     "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0] AreaLightSource \"diffuse\" \"rgb L\" "
-     "[4 4 4]\n"
-     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
-     "\"point P\" [-1 1.5 -1  0 1.5 -1  0 1.5 0  -1 1.5 0] AttributeEnd\n"},
-    {"Hidden",
-     "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0] AreaLightSource \"diffuse\" \"rgb L\" "
-     "[4 4 4]\n"
-     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"float alpha\" [0] "
-     "\"point P\" [-1 1.5 -1  0 1.5 -1  0 1.5 0  -1 1.5 0] AttributeEnd\n"},
-    {"Sphere",
-     "AttributeBegin Translate -.5 1.5 0 Material \"matte\" \"rgb Kd\" [0 0 0] AreaLightSource "
-     "\"diffuse\" \"rgb L\" [4 4 4]\n"
-     "Shape \"sphere\" \"float radius\" [.3] AttributeEnd\n"},
-    {"Sky", "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"},
-    {"Studio", "LightSource \"infinite\" \"bool studio\" \"true\"\n"},
-};
+constexpr const char* kHalf =
+    R"(Material "metallicroughness" "float metallicfactor" [.2] "float roughnessfactor" [0]
+"float transmissionfactor" [.5] "rgb basecolorfactor" [.9 .6 .3])";
 
 std::unique_ptr<const Scene> Compiled(const std::string& world, int maxDepth,
                                       const std::string& integrator = "path") {
@@ -97,13 +83,13 @@ void ExpectEqual(const ImageMean& a, const ImageMean& b, const std::string& what
     }
 }
 
-class Panes : public testing::TestWithParam<Lit> {};
+class Panes : public testing::TestWithParam<NamedText> {};
 
 // Two tinted panes let the square of their colour through, of all light that lights bring, directly
 // and by other ways.
 TEST_P(Panes, LetTheirShareThrough) {
     const std::string pane = std::string(kSheet) + kTint + kNoInterface;
-    const std::string lit = GetParam().lights + kBox;
+    const std::string lit = GetParam().text + kBox;
     for (const int depth : {1, 6})
         for (const Estimator estimator : kEstimators) {
             ImageMean open = Measure(*Compiled(lit, depth), estimator, 1);
@@ -122,24 +108,18 @@ TEST_P(Panes, HaveTheMeanOfBidirectionalPaths) {
     const std::string glass = std::string(kSheet) + kTint;
     const std::string coated =
         glass + "\"float clearcoatfactor\" [1] \"float clearcoatroughnessfactor\" [.3]";
-    const std::string half =
-        "Material \"metallicroughness\" \"float metallicfactor\" [.2] \"float roughnessfactor\" "
-        "[0] \"float transmissionfactor\" [.5] \"rgb basecolorfactor\" [.9 .6 .3]";
-    if (std::string(GetParam().name) == "Hidden")
+    if (GetParam().name == "Hidden")
         GTEST_SKIP() << "a light that is not seen has another weight in bdpt";
     for (const int depth : {1, 5})
-        for (const std::string& roof : {Roof(glass) + Roof(coated, 1.1), Roof(half)})
-            Compare(BothOf(GetParam().lights + kBox + roof, 16, depth, kCamera), 8, 16,
+        for (const std::string& roof : {Roof(glass) + Roof(coated, 1.1), Roof(kHalf)})
+            Compare(BothOf(GetParam().text + kBox + roof, 16, depth, kCamera), 8, 16,
                     fmt::format("{}, {} bounces, {}", GetParam().name, depth, roof), kWays);
 }
 
 // With both estimators, and where shadow rays go through interfaces of media as well.
 TEST_P(Panes, HaveOneMean) {
-    const std::string half =
-        "Material \"metallicroughness\" \"float metallicfactor\" [.2] \"float roughnessfactor\" "
-        "[0] \"float transmissionfactor\" [.5] \"rgb basecolorfactor\" [.9 .6 .3]";
     const std::string world =
-        GetParam().lights + kBox + Roof(half) + Roof(std::string(kSheet) + kTint, 0.901);
+        GetParam().text + kBox + Roof(kHalf) + Roof(std::string(kSheet) + kTint, 0.901);
     const std::string mist =
         "AttributeBegin Material \"\" Translate -.6 0 0 Shape \"sphere\" \"float radius\" [.4] "
         "AttributeEnd\n";
@@ -151,8 +131,7 @@ TEST_P(Panes, HaveOneMean) {
     ExpectEqual(Measure(*misty, Estimator::PbrtV3, 4), combined, "in a medium, pbrt-v3's");
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Panes, testing::ValuesIn(kLit),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Kinds, Panes, testing::ValuesIn(kLit), kByName);
 
 // The sun through a pane, at an angle: the light that Schlick's approximation leaves.
 TEST(PaneLight, DependsOnTheAngle) {

@@ -114,10 +114,6 @@ TEST(ComparisonJson, HasThePointsOfCurves) {
     EXPECT_FALSE(ComparisonJson(TwoRows()).contains("errorCurves"));
 }
 
-}  // namespace
-
-namespace {
-
 Study TwoBlocks() {
     Study study{.viewpoint = "<room>", .width = 3, .height = 1, .levels = {20, 40}};
     study.blocks = {{{{0, 0}, {2, 1}}, {DisplayPixels(6, 10), DisplayPixels(6, 200)}},

@@ -120,8 +120,7 @@ TEST(Camera, DoesNotHeedTheCrop) {
     const Camera whole = MakeTestCamera(film, {});
     film.cropMin = {25, 10};
     film.cropMax = {50, 20};
-    const Camera part = MakeTestCamera(film, {});
-    EXPECT_EQ(Direction(whole, 30.5f, 12.25f), Direction(part, 30.5f, 12.25f));
+    EXPECT_EQ(Direction(whole, 30.5f, 12.25f), Direction(MakeTestCamera(film, {}), 30.5f, 12.25f));
 }
 
 Mat4d RigidTransform() {
@@ -235,29 +234,27 @@ TEST(Camera, IsNearlyAsWideAsAsked) {
 }
 
 TEST(Camera, RefusesNonsense) {
+    const auto error = [](const Parameter& parameter) {
+        return ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {parameter}); });
+    };
     for (const float fov : {0.f, -5.f, 181.f, std::nanf("")})
-        EXPECT_HAS(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {Float("fov", fov)}); }),
-                   "scene.pbrt:3: ");
+        EXPECT_HAS(error(Float("fov", fov)), "scene.pbrt:3: ");
     EXPECT_NE(ErrorOf([] { MakeTestCamera(FilmOf(9, 9), {}, Mat4d::Zero()); }), "");
-    EXPECT_NE(ErrorOf([] { MakeTestCamera(FilmOf(9, 9), {Floats("screenwindow", {1, 2})}); }), "");
+    EXPECT_NE(error(Floats("screenwindow", {1, 2})), "");
     for (const float aspect : {0.f, -1.f, kInfinity})
-        EXPECT_HAS(
-            ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {Float("frameaspectratio", aspect)}); }),
-            "has to be above 0");
-    EXPECT_HAS(ErrorOf([] {
-                   MakeTestCamera(FilmOf(9, 9), {Floats("screenwindow", {1, 1, -1, 1})});
-               }),
-               "no extent");
+        EXPECT_HAS(error(Float("frameaspectratio", aspect)), "has to be above 0");
+    EXPECT_HAS(error(Floats("screenwindow", {1, 1, -1, 1})), "no extent");
     // No ray through these is finite.
     for (const Parameter& parameter :
          {Floats("screenwindow", {-3e38f, 3e38f, -1, 1}), Float("frameaspectratio", 1e-38f),
           Floats("screenfit", {1, 1e30f}), Floats("screenshift", {0, 1e20f})})
-        EXPECT_HAS(ErrorOf([&] { MakeTestCamera(FilmOf(9, 9), {parameter}); }), "is the farthest")
+        EXPECT_HAS(error(parameter), "is the farthest") << parameter.name;
+}), "is the farthest")
             << parameter.name;
-    Description description;
-    description.camera.name = "fisheye";
-    Warnings warnings;
-    EXPECT_NE(ErrorOf([&] { MakeCamera(description, FilmOf(9, 9), warnings); }), "");
+Description description;
+description.camera.name = "fisheye";
+Warnings warnings;
+EXPECT_NE(ErrorOf([&] { MakeCamera(description, FilmOf(9, 9), warnings); }), "");
 }
 
 }  // namespace

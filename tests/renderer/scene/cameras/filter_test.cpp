@@ -59,15 +59,11 @@ void ExpectFilters(const Filter& filter, const Function& fx, const Function& fy,
     }
     for (const Function& gx : tests)
         for (const Function& gy : tests) {
-            double sum = 0, sum2 = 0;
-            for (const FilterSample& s : samples) {
-                const double v = s.weight * gx(s.offset.x()) * gy(s.offset.y());
-                sum += v;
-                sum2 += v * v;
-            }
-            const double mean = sum / kSamples, variance = sum2 / kSamples - mean * mean;
+            test::SampleMean mean;
+            for (const FilterSample& s : samples)
+                mean.Add(s.weight * gx(s.offset.x()) * gy(s.offset.y()));
             const double expected = Filtered(fx, gx, rx) * Filtered(fy, gy, ry);
-            EXPECT_NEAR(mean, expected, 4.5 * std::sqrt(variance / kSamples) + 1e-5);
+            EXPECT_NEAR(mean.Value(), expected, 4.5 * mean.Error() + 1e-5);
         }
 }
 

@@ -137,14 +137,12 @@ std::string Numbers(const Mat4d& m) {
 
 TEST(Motion, WarnsOfMirroredPoses) {
     const auto warningsOf = [](const char* end) {
-        Warnings warnings;
-        SceneOf(WorldText(std::string("ActiveTransform EndTime Scale ") + end +
-                              " ActiveTransform All Shape \"disk\" LightSource \"point\"",
-                          "Camera \"perspective\" \"float shutterclose\" 1"),
-                {}, &warnings);
-        return warnings.Counts().count(
-            "motion from a pose to a mirrored one, which no rotation joins: it is turned and "
-            "flattened between them");
+        return WarningsOf(WorldText(std::string("ActiveTransform EndTime Scale ") + end +
+                                        " ActiveTransform All Shape \"disk\" LightSource \"point\"",
+                                    "Camera \"perspective\" \"float shutterclose\" 1"))
+            .count(
+                "motion from a pose to a mirrored one, which no rotation joins: it is turned and "
+                "flattened between them");
     };
     EXPECT_EQ(warningsOf("-1 1 1"), 1u);
     EXPECT_EQ(warningsOf("-2 -1 1"), 0u);

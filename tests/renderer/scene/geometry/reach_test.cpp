@@ -116,12 +116,10 @@ TEST(Reach, SpheresMayBeOfAnySize) {
 
 TEST(Reach, WarnsOfScenesTooSmallForTriangles) {
     const auto warningsOf = [](double scale) {
-        Warnings warnings;
-        SceneOf(WorldText(fmt::format("Scale {0} {0} {0}\nShape \"trianglemesh\" "
-                                      "\"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]",
-                                      scale)),
-                {}, &warnings);
-        return warnings.Counts();
+        return WarningsOf(
+            WorldText(fmt::format("Scale {0} {0} {0}\nShape \"trianglemesh\" "
+                                  "\"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]",
+                                  scale)));
     };
     const std::string kind = "the scene is too small for its light to be right";
     EXPECT_EQ(warningsOf(1e-10).count(kind), 1u);

@@ -157,10 +157,10 @@ template <typename Shape>
 void ExpectSamplesMatchPdf(const Shape& shape, const Vec3f& from, double solidAngle,
                            double tolerance) {
     Random random(4);
-    constexpr int kSamples = 40000;
-    double sum = 0, sum2 = 0;
-    for (int i = 0; i < kSamples; ++i) {
+    test::SampleMean mean;  // of what is seen: nothing where there is no sample
+    for (int i = 0; i < 40000; ++i) {
         const auto s = Sample(shape, from, random.Point());
+        mean.Add(s ? 1 / double(s->pdf) : 0);
         if (!s) continue;
         const float pdf = Pdf(shape, from, s->p, s->n);
         ASSERT_NEAR(s->pdf, pdf, 1e-3 * pdf);
@@ -174,14 +174,9 @@ void ExpectSamplesMatchPdf(const Shape& shape, const Vec3f& from, double solidAn
             ASSERT_TRUE(t);
             ASSERT_LT(*t, 1 + 1e-6 * (1 + from.norm() / ray.d.norm()) / facing);
         }
-        // From inside or in front, what is sampled is all that can be seen.
-        const double v = 1 / double(s->pdf);
-        sum += v;
-        sum2 += v * v;
     }
-    const double mean = sum / kSamples;
-    const double error = std::sqrt(std::max(0.0, sum2 / kSamples - mean * mean) / kSamples);
-    EXPECT_NEAR(mean, solidAngle, 4.5 * error + tolerance * solidAngle);
+    // From inside or in front, what is sampled is all that can be seen.
+    EXPECT_NEAR(mean.Value(), solidAngle, 4.5 * mean.Error() + tolerance * solidAngle);
 }
 
 TEST(Sphere, SamplesTheSolidAngleItSubtends) {

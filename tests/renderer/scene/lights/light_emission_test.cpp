@@ -5,14 +5,14 @@
 
 #include <random>
 
+#include "tests/renderer/bsdf/sphere_statistics.h"
 #include "tests/renderer/scene_of.h"
 
 namespace lull::light_emission_test {
 namespace {
 
 struct Lit {
-    const char* name;
-    const char* light;
+    std::string name, light;
     bool hasKnownPower;  // other kinds know theirs about
     bool hasOneDirection = false;
     bool isDarkInPart = false;  // where directions are sampled that have no light
@@ -21,9 +21,7 @@ struct Lit {
 class LightEmissions : public testing::TestWithParam<Lit> {
   protected:
     std::unique_ptr<const Scene> scene =
-        SceneOf(WorldText(std::string(GetParam().light) +
-                          "\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
-                          "\"point P\" [-2 -2 -2  2 -2 -2  2 2 2  -2 2 2]\n"));
+        SceneOf(WorldText(GetParam().light + "\n" + Quad("-2 -2 -2  2 -2 -2  2 2 2  -2 2 2")));
     LightEmission emission{scene->lights, scene->shapes.bounds};
     std::mt19937 random{5};
 
@@ -36,14 +34,11 @@ class LightEmissions : public testing::TestWithParam<Lit> {
 };
 
 TEST_P(LightEmissions, SendOutTheirPower) {
-    constexpr int kCount = 100000;
-    double sum = 0, squares = 0;
-    for (int i = 0; i < kCount; ++i)
-        if (const auto ray = Sample()) {
-            const double power = double(Luminance(ray->Power()));
-            sum += power;
-            squares += power * power;
-        }
+    test::SampleMean mean;
+    for (int i = 0; i < 100000; ++i) {
+        const auto ray = Sample();
+        mean.Add(ray ? double(Luminance(ray->Power())) : 0);
+    }
     double expected = 0;
     for (int i = 0; i < scene->lights.Count(); ++i) {
         const Light& light = scene->lights[i];
@@ -52,12 +47,10 @@ TEST_P(LightEmissions, SendOutTheirPower) {
         // Of a sky it is that for one steradian.
         expected += TypeOf(light) == LightType::Infinite ? 4 * double(kPi) * power : power;
     }
-    const double mean = sum / kCount;
-    const double error = std::sqrt(std::max(0., squares / kCount - mean * mean) / kCount);
     // Lights at infinity shine through a disk a little larger than the scene; the power of some
     // lights is known about.
     const double tolerance = GetParam().hasKnownPower ? 0.0025 : 0.35;
-    EXPECT_NEAR(mean, expected, 4 * error + tolerance * expected);
+    EXPECT_NEAR(mean.Value(), expected, 4 * mean.Error() + tolerance * expected);
 }
 
 // Counts directions in cells of a sphere, and compares with the integral of the density.
@@ -109,42 +102,33 @@ TEST_P(LightEmissions, HaveTheirDensity) {
     EXPECT_LT(chi2, cells + 5 * std::sqrt(2. * cells) + 10) << cells;
 }
 
+std::string LampDisk(const std::string& parameters) {
+    return "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" " + parameters +
+           " Shape \"disk\" AttributeEnd";
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Kinds, LightEmissions,
     testing::Values(
-        Lit{"Point", "LightSource \"point\" \"rgb I\" [1 2 3]", true},
-        Lit{"Spot",
-            "LightSource \"spot\" \"point to\" [.3 .2 1] \"float coneangle\" [50] "
-            "\"float conedeltaangle\" [20]",
+        Lit{"Point", R"(LightSource "point" "rgb I" [1 2 3])", true},
+        Lit{"Spot", R"(LightSource "spot" "point to" [.3 .2 1] "float coneangle" [50]
+"float conedeltaangle" [20])",
             false},
-        Lit{"Distant", "LightSource \"distant\" \"point from\" [1 2 3]", true, true},
-        Lit{"Infinite", "LightSource \"infinite\" \"rgb L\" [1 2 3]", true},
-        Lit{"Studio", "LightSource \"infinite\" \"bool studio\" \"true\"", false},
-        Lit{"Goniometric", "LightSource \"goniometric\" \"rgb I\" [1 2 3]", true},
-        Lit{"Projection", "Rotate 30 1 1 0 LightSource \"projection\" \"float fov\" [70]", false,
+        Lit{"Distant", R"(LightSource "distant" "point from" [1 2 3])", true, true},
+        Lit{"Infinite", R"(LightSource "infinite" "rgb L" [1 2 3])", true},
+        Lit{"Studio", R"(LightSource "infinite" "bool studio" "true")", false},
+        Lit{"Goniometric", R"(LightSource "goniometric" "rgb I" [1 2 3])", true},
+        Lit{"Projection", R"(Rotate 30 1 1 0 LightSource "projection" "float fov" [70])", false,
             false, true},
-        Lit{"Disk",
-            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" Shape \"disk\" "
-            "AttributeEnd",
-            true},
-        Lit{"SpotWithARadius",
-            "AttributeBegin AreaLightSource \"spot-squared\" \"point to\" [.3 .2 1] "
-            "\"float coneangle\" [50] \"float conedeltaangle\" [20] Shape \"sphere\" "
-            "\"float radius\" [.1] AttributeEnd",
+        Lit{"Disk", LampDisk(""), true},
+        Lit{"SpotWithARadius", R"(AttributeBegin AreaLightSource "spot-squared" "point to" [.3 .2 1]
+"float coneangle" [50] "float conedeltaangle" [20] Shape "sphere" "float radius" [.1] AttributeEnd)",
             false, false, true},
-        Lit{"Spread",
-            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"float spread\" [100] "
-            "Shape \"disk\" AttributeEnd",
+        Lit{"Spread", LampDisk(R"("float spread" [100])"), true, false, true},
+        Lit{"NarrowSpreadOnBothSides", LampDisk(R"("float spread" [5] "bool twosided" "true")"),
             true, false, true},
-        Lit{"NarrowSpreadOnBothSides",
-            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"float spread\" [5] "
-            "\"bool twosided\" \"true\" Shape \"disk\" AttributeEnd",
-            true, false, true},
-        Lit{"TwoSided",
-            "AttributeBegin Rotate 30 1 1 0 AreaLightSource \"diffuse\" \"bool twosided\" \"true\" "
-            "Shape \"disk\" AttributeEnd",
-            true}),
-    [](const auto& info) { return std::string(info.param.name); });
+        Lit{"TwoSided", LampDisk(R"("bool twosided" "true")"), true}),
+    kByName);
 
 // Area lights are sampled evenly by area: the mean of points is the middle, the normals are right.
 TEST(LightEmission, CoversShapes) {

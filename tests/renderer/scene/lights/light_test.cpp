@@ -31,19 +31,6 @@ std::pair<Rgb, float> Arriving(const Scene& scene, const Vec3f& from, const Vec3
     return {light.Le(at.n, -w), light.Pdf(from, at.p, at.n)};
 }
 
-struct Mean {
-    double sum = 0, squares = 0;
-    int n = 0;
-
-    void Add(double v) {
-        sum += v;
-        squares += v * v;
-        ++n;
-    }
-    double Value() const { return sum / n; }
-    double Variance() const { return (squares / n - Value() * Value()) / n; }
-};
-
 constexpr const char* kPlaced =
     "AttributeBegin\nTranslate .3 .2 2\nRotate 50 1 2 3\nScale 1.2 1.2 1.2\n"
     "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] \"bool twosided\" \"{}\"\n{}\nAttributeEnd\n";
@@ -93,7 +80,7 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
         for (const Vec3f& from : {Vec3f(0, 0, 0), Vec3f(0.2f, -0.4f, 0.9f), Vec3f(2, 5, -4)}) {
             // The weight lets no direction be like another.
             const auto weight = [](const Vec3f& w) { return 1 + 0.5 * w.z() + 0.3 * w.x(); };
-            Mean sampled, found;
+            test::SampleMean sampled, found;
             for (int k = 0; k < 40000; ++k) {
                 double sum = 0;
                 for (int i = 0; i < scene.lights.Count(); ++i) {
@@ -109,9 +96,8 @@ TEST(Lights, SamplingFindsWhatRaysFind) {
                 found.Add(4 * std::numbers::pi * Arriving(scene, from, w).first.sum() * weight(w));
             }
             EXPECT_GT(sampled.Value(), 0) << name;
-            EXPECT_NEAR(
-                sampled.Value(), found.Value(),
-                4.5 * std::sqrt(sampled.Variance() + found.Variance()) + 1e-4 * found.Value())
+            EXPECT_NEAR(sampled.Value(), found.Value(),
+                        4.5 * std::hypot(sampled.Error(), found.Error()) + 1e-4 * found.Value())
                 << name << " from " << from.transpose();
         }
     }
@@ -223,15 +209,13 @@ TEST(Lights, CountNegativePartsAsBlack) {
 // They are pbrt-v3's, whose two sides disagree.
 TEST(AreaLights, WarnOfMirroredQuadrics) {
     const auto countOf = [](const std::string& text) {
-        Warnings warnings;
-        SceneOf(WorldText("AreaLightSource \"diffuse\" " + text), {}, &warnings);
-        return warnings.Total();
+        return WarningsOf(WorldText("AreaLightSource \"diffuse\" " + text)).size();
     };
     for (const char* shape : {"sphere", "disk", "cylinder"}) {
         const std::string rest = fmt::format("\nShape \"{}\"", shape);
-        EXPECT_EQ(countOf("Scale -1 1 1" + rest), 1) << shape;
-        EXPECT_EQ(countOf("Scale -1 -1 1" + rest), 0) << shape;
-        EXPECT_EQ(countOf("\"bool twosided\" \"true\" Scale -1 1 1" + rest), 0) << shape;
+        EXPECT_EQ(countOf("Scale -1 1 1" + rest), 1u) << shape;
+        EXPECT_EQ(countOf("Scale -1 -1 1" + rest), 0u) << shape;
+        EXPECT_EQ(countOf("\"bool twosided\" \"true\" Scale -1 1 1" + rest), 0u) << shape;
     }
 }
 
@@ -264,9 +248,7 @@ TEST(Skies, LoseWhatIsNegativeOrNotFiniteAlone) {
 // In pbrt-v3 they are balls of air in glass.
 TEST(Shapes, WarnOfMirroredQuadricsOfGlass) {
     const auto isWarnedOf = [](const std::string& text) {
-        Warnings warnings;
-        SceneOf(WorldText(text + "\nShape \"sphere\""), {}, &warnings);
-        for (const auto& [kind, count] : warnings.Counts())
+        for (const auto& [kind, count] : WarningsOf(WorldText(text + "\nShape \"sphere\"")))
             if (Contains(kind, "inside out")) return true;
         return false;
     };
@@ -276,10 +258,6 @@ TEST(Shapes, WarnOfMirroredQuadricsOfGlass) {
     EXPECT_FALSE(isWarnedOf(mirror + "Material \"mirror\""));
     EXPECT_FALSE(isWarnedOf("Material \"glass\""));
 }
-
-}  // namespace
-
-namespace {
 
 // Returns what Contribution() does, by samples.
 double BySamples(const Scene& scene, int light, const LightProbes& probes,

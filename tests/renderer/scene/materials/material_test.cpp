@@ -210,10 +210,6 @@ TEST(Materials, AnisotropyFollowsTheTangent) {
     EXPECT_NEAR(any.s.dot(any.n), 0, 1e-6f);
 }
 
-}  // namespace
-
-namespace {
-
 TEST(BumpMap, TiltsTheNormalByTheSlope) {
     MaterialScene b;
     b.AddChecks(false, 3, 1e-3f);  // 1e-3 high where the cells' numbers sum to even, else 0

@@ -97,10 +97,6 @@ TEST(Turbulence, FadesToItsMean) {
     EXPECT_NEAR(Turbulence(p, Sqr(0x1p-12f), 0.5f, 8), Turbulence(p, 0, 0.5f, 8), 1e-5f);
 }
 
-}  // namespace
-
-namespace {
-
 // The expected values were computed by pbrt-v3's own functions, compiled on their own.
 struct NoiseCase {
     Vec3f p;

@@ -208,8 +208,7 @@ TEST(Checkerboard, FoldsEqualColors) {
     TextureBuilder builder;
     const int board = builder.Add(kSpectrum, "checkerboard",
                                   {Color("tex1", {1, 2, 3}), Color("tex2", {1, 2, 3})});
-    const TextureTable table = builder.Build();
-    EXPECT_TRUE(builder.Spectrum(table, board).IsConstant());
+    EXPECT_TRUE(builder.Spectrum(builder.Build(), board).IsConstant());
 }
 
 TEST(Texture, SurvivesAnyCoordinates) {
