@@ -249,12 +249,10 @@ TEST(Camera, RefusesNonsense) {
          {Floats("screenwindow", {-3e38f, 3e38f, -1, 1}), Float("frameaspectratio", 1e-38f),
           Floats("screenfit", {1, 1e30f}), Floats("screenshift", {0, 1e20f})})
         EXPECT_HAS(error(parameter), "is the farthest") << parameter.name;
-}), "is the farthest")
-            << parameter.name;
-Description description;
-description.camera.name = "fisheye";
-Warnings warnings;
-EXPECT_NE(ErrorOf([&] { MakeCamera(description, FilmOf(9, 9), warnings); }), "");
+    Description description;
+    description.camera.name = "fisheye";
+    Warnings warnings;
+    EXPECT_NE(ErrorOf([&] { MakeCamera(description, FilmOf(9, 9), warnings); }), "");
 }
 
 }  // namespace
