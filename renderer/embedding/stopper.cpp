@@ -216,8 +216,7 @@ void Stopper::NoteSpacing(BlockState* state) {
         "pictures at " + pictures +
         " spp lie too far apart for this rule, which compares them: the last was not checked, "
         "and none will be while steps are so large; show pictures every 20 or 40 spp, or at most "
-        "1.5 "
-        "times the spp of the one before";
+        "1.5 times the spp of the one before";
 }
 
 // Returns the values of a block's mean; none if no check is due.
