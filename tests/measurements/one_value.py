@@ -60,7 +60,7 @@ QUANTITIES = [
     ('rate of RMSprop', TRAINING, 'RMSprop with a rate of #, ρ', 'viewpoints balanced; batches of 64, RMSprop, rate #'),
     ('published error', PAPER, r'svd-entropy-rnn 40 640 0 0 # ', 'blocks of the published # %'),
     ('threshold of denoised', RULES, r'the true one is below T \(#\)', 'the true image is below #', 'below T, by default #',
-     'without the worst, #, was the best', 'of --denoise, #', 'seed 1, threshold #', r'upper.max\(\) > #'),
+     'without the worst, #, was the best', 'of --denoise, #', 'seed 1, threshold #', r'estimate.max\(\) > #'),
     ('cap, spp', REFERENCE, r'Stop every block at N spp at the latest # \(', r'--max-spp, # spp by default', r'block, # by default \(--max-spp'),
     ('pass, spp', REFERENCE, r'Decide every N spp \(1 to 1048576\) #', 'Each pass adds # spp'),
     ('side of a block, pixels', REFERENCE, r'Set the side of the blocks, in pixels \(1 to 65536\) #', 'each block of #x200 pixels stops',
@@ -78,7 +78,7 @@ QUANTITIES = [
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),
     ('stop of a block of staircase2, spp', RULES, 'denoised, at # and at 2,886', 'trained without this scene, stops at # spp', '>stop: #<', 'below half at # spp'),
     ('human threshold of a block of staircase2, spp', RULES, 'at 2,380 and at # samples', 'observers asked for #.', '>observers: #<'),
-    ('version of Blender', BLENDER, 'Tested with Blender 3.4.# ', 'with Blender 3.4.#, and', 'Blender 3.4.#, two threads'),
+    ('version of Blender', BLENDER, 'Tested with Blender 3.4.# ', r'Debian 12 \(Blender 3.4.#\)', 'Blender 3.4.#, two threads'),
 ]
 
 

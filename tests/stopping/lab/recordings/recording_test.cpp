@@ -161,7 +161,7 @@ TEST(Dataset, KeepsWhatWasRecorded) {
         }
     }
     // A data set that was read is written to the same bytes.
-    EXPECT_EQ(EncodeDataset(read), EncodeDataset(read));
+    EXPECT_EQ(EncodeDataset(read), EncodeDataset(written));
 }
 
 // Files from before there were attributes, to which newer blocks are added.
