@@ -125,7 +125,7 @@ TEST(BdptHardCases, CameraInsideGlass) {
                        "Material \"glass\" TransformBegin Translate 0 0 -3 Shape \"sphere\" "
                        "\"float radius\" [.3] TransformEnd\n",
                    32, 5),
-            4, 32, "camera inside glass", kWays);
+            8, 32, "camera inside glass", kWays);
 }
 
 TEST(BdptHardCases, RoomOfMirrors) {
@@ -136,7 +136,7 @@ TEST(BdptHardCases, RoomOfMirrors) {
                            "2 6 3 6 7 0 1 5 0 5 4 0 3 7 0 7 4 1 2 6 1 6 5] \"point P\" [-2 -1 -4  "
                            "2 -1 -4  2 -1 2  -2 -1 2  -2 2 -4  2 2 -4  2 2 2  -2 2 2]\n",
                    32, 6),
-            4, 32, "room of mirrors", kWays);
+            8, 32, "room of mirrors", kWays);
 }
 
 struct Room {

@@ -261,7 +261,7 @@ TEST(Subsurface, ReturnsItsAlbedoUnderAnEvenSky) {
 TEST(Sobol, ErrsLessThanRandom) {
     const auto scene =
         MakeScene(kRoom, "\"integer maxdepth\" [5]", 12, "0 0 -3.4  0 0 0  0 1 0", 39);
-    const auto reference = MeasurePixels(*scene, Estimator::Combined, SamplerKind::Sobol, 1024, 99);
+    const auto reference = MeasurePixels(*scene, Estimator::Combined, SamplerKind::Sobol, 4096, 99);
     for (const int samples : {16, 64})
         EXPECT_LT(SquaredError(*scene, reference, SamplerKind::Sobol, samples),
                   0.9 * SquaredError(*scene, reference, SamplerKind::Random, samples))

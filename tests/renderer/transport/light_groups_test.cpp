@@ -124,7 +124,7 @@ TEST(GroupRadiance, AddsUpToThatOfTheSample) {
 // Returns the means of a function of samples over all pixels.
 template <typename Take>
 ImageMean MeansOf(const Take& take) {
-    constexpr int kSamples = 64 * 300;
+    constexpr int kSamples = 64 * 600;
     Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = sum;
     Sampler sampler(SamplerKind::Random, 7);
     for (int i = 0; i < kSamples; ++i) {
