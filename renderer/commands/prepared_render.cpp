@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string_view>
 
@@ -58,12 +59,10 @@ float LargestIn(const Image& mask, const PixelRect& pixels, const Vec2i& size) {
     return std::min(largest, 1.f);
 }
 
-// Sets the caution of each block to that of the settings times factorIn(pixels). Blocks that do not
-// vote add theirs to their leader.
-template <typename Factor>
-void SetCautions(const std::string& source, const Factor& factorIn, PreparedRender* p) {
-    for (const Block& block : p->blocks)
-        p->cautions.push_back(p->settings.caution * factorIn(block.pixels));
+// Sets the caution of each block to that of the settings times its factor. Blocks that do not vote
+// add theirs to their leader.
+void SetCautions(const std::string& source, std::span<const double> factors, PreparedRender* p) {
+    for (const double factor : factors) p->cautions.push_back(p->settings.caution * factor);
     for (size_t i = 0; i < p->blocks.size(); ++i)
         if (const int leader = p->blocks[i].leader; leader >= 0)
             p->cautions[size_t(leader)] = std::max(p->cautions[size_t(leader)], p->cautions[i]);
@@ -74,12 +73,14 @@ void SetCautions(const std::string& source, const Factor& factorIn, PreparedRend
 void SetCautionsByMask(PreparedRender* p) {
     const Image mask = ReadImage(p->request.importance);
     const FilmSettings& film = p->filmSettings;
-    const auto factorIn = [&](PixelRect pixels) {
+    std::vector<double> factors;
+    for (const Block& block : p->blocks) {
+        PixelRect pixels = block.pixels;
         if (pixels.min.x() >= film.cropMax.x())  // of the right eye
             for (Vec2i* corner : {&pixels.min, &pixels.max}) corner->x() -= film.Size().x();
-        return 1 + std::round(8 * LargestIn(mask, pixels, film.resolution)) / 8;
-    };
-    SetCautions(FileChecksum(p->request.importance), factorIn, p);
+        factors.push_back(1 + std::round(8 * LargestIn(mask, pixels, film.resolution)) / 8);
+    }
+    SetCautions(FileChecksum(p->request.importance), factors, p);
 }
 
 // An object or a material, and the factor of caution where it is seen.
@@ -88,8 +89,8 @@ struct ImportantObject {
     double factor;
 };
 
-// Returns those of --importance NAME=X; nothing where it is a mask.
-std::optional<ImportantObject> ObjectOf(const std::string& importance) {
+// Parses --importance NAME=X; returns nothing for a mask.
+std::optional<ImportantObject> ParseImportantObject(const std::string& importance) {
     const size_t equals = importance.rfind('=');
     std::array<double, 1> factor;
     if (equals == std::string::npos ||
@@ -119,28 +120,27 @@ void SetCautionsByObject(const ImportantObject& important, PreparedRender* p) {
             "--importance: no object and no material is named '{}'; the EXR of --aov cryptomatte "
             "has their names",
             Printable(important.name));
-    const auto isSeenAt = [&](const Vec2i& pixel) {
+    const auto isSeenIn = [&](const PixelRect& rect) {
         Sampler sampler(SamplerKind::Random, p->settings.seed);
         PathSample sample{.asksForHit = true};
-        RenderSample(scene, p->settings.estimator, sampler, pixel, 0, &sample);
-        return objects[sample.hit.object] || materials[sample.hit.material];
+        for (int y = rect.min.y(); y < rect.max.y(); ++y)
+            for (int x = rect.min.x(); x < rect.max.x(); ++x) {
+                RenderSample(scene, p->settings.estimator, sampler, {x, y}, 0, &sample);
+                if (objects[sample.hit.object] || materials[sample.hit.material]) return true;
+            }
+        return false;
     };
     std::vector<char> isSeen(p->blocks.size());
     RunWithThreads(p->settings.scene.compile.threads, [&] {
-        ForEachIndex(int(isSeen.size()), [&](int i) {
-            const PixelRect& rect = p->blocks[size_t(i)].pixels;
-            for (int y = rect.min.y(); y < rect.max.y() && !isSeen[size_t(i)]; ++y)
-                for (int x = rect.min.x(); x < rect.max.x() && !isSeen[size_t(i)]; ++x)
-                    isSeen[size_t(i)] = isSeenAt({x, y});
-        });
+        ForEachIndex(int(isSeen.size()),
+                     [&](int i) { isSeen[size_t(i)] = isSeenIn(p->blocks[size_t(i)].pixels); });
     });
     if (std::ranges::count(isSeen, 1) == 0)
         p->warnings.Add({}, "--importance: nothing of that name is seen",
                         Printable(important.name));
-    size_t i = 0;
-    SetCautions(
-        p->request.importance, [&](const PixelRect&) { return isSeen[i++] ? important.factor : 1; },
-        p);
+    std::vector<double> factors;
+    for (const char seen : isSeen) factors.push_back(seen ? important.factor : 1);
+    SetCautions(p->request.importance, factors, p);
 }
 
 void PrepareRule(PreparedRender* p) {
@@ -164,7 +164,7 @@ void PrepareRule(PreparedRender* p) {
     schedule.passLength = PassLengthFor(p->rule, int(p->blocks.size()), schedule);
     if (p->request.importance.empty()) return;
     p->ReadRule("--importance", rule, 2 * settings.caution);  // has to be one that takes caution
-    if (!ObjectOf(p->request.importance)) SetCautionsByMask(p);
+    if (!ParseImportantObject(p->request.importance)) SetCautionsByMask(p);
 }
 
 void CheckBlocks(std::span<const Block> blocks, int smallestSide, Warnings& warnings) {
@@ -273,7 +273,7 @@ std::unique_ptr<PreparedRender> Prepare(const RenderRequest& request, MpiJob* ra
     p->display = MakeDisplay(request, std::filesystem::path(p->files.exr).filename(), region,
                              ranks->Count());
     p->Compile();
-    if (const auto important = ObjectOf(request.importance))
+    if (const auto important = ParseImportantObject(request.importance))
         SetCautionsByObject(*important, p.get());
     p->film.layers.groups = ChooseLightGroups(request.lightGroups, p->description, *p->scene);
     CheckFilmFits(region, FilmFor(*p->scene, p->film), BytesBeside(request));
