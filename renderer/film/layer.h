@@ -219,7 +219,7 @@ struct SplatLight {
     double samples = 0;
     double camera = 0;  // the luminance of these samples without it
 
-    // Returns what it adds to the squares of the samples' luminance, as a Poisson process does.
+    // Returns the term for the squares of the samples' luminance, as of a Poisson process.
     double Squares() const { return squares + 2 * each * camera + samples * each * each; }
 };
 

@@ -76,7 +76,7 @@ struct GradedJudge {
 };
 
 // Shows a block to each judge until that has stopped it, and stops it once all have: the picture
-// with the most visible noise counts. The numbers are those of the judge farthest from it.
+// with the most visible noise counts. The numbers are of the judge farthest from it.
 class GradedCriterion final : public Criterion {
   public:
     explicit GradedCriterion(std::vector<GradedJudge> judges);

@@ -41,7 +41,7 @@ struct GroupLight {
     }
 };
 
-// Returns the mean of those of the four neighbours within `rect` that have samples; may be nothing.
+// Returns the mean of the four neighbours within `rect`, without empty ones; nothing if all are.
 template <typename Light>
 std::optional<Rgb> NeighbourMean(const Light& light, const PixelRect& rect, const Vec2i& p) {
     Rgb sum(0, 0, 0);

@@ -104,7 +104,7 @@ namespace {
 
 enum class MediumEvent { Passes, Scatters, Ends };
 
-// Adds what the medium about a path emits; apart, so that a recorder changes no rounding.
+// Adds the emission of the medium about a path; apart, so that a recorder changes no rounding.
 template <typename Recorder>
 [[gnu::noinline]] void AddEmission(int index, const Rgb& emitted, Recorder& recorder, Path* path) {
     path->L += path->beta * emitted;

@@ -28,7 +28,7 @@ GltfTextureUse ReadTextureUse(const tinygltf::NormalTextureInfo&, const std::str
 GltfTextureUse ReadTextureUse(const tinygltf::Value& owner, const std::string& name,
                               const std::string& path);
 
-// What a texture reads of an image: its colours, sRGB-encoded or not, or one channel as it is.
+// The content of a texture: colours of an image, sRGB-encoded or not, or one channel as it is.
 enum class GltfTexels { EncodedColor, LinearColor, Red, Green, Alpha };
 
 // Adds textures and embedded images to a description, each once.

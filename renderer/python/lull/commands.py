@@ -150,7 +150,7 @@ def entropy(*pictures, **options):
 
     Args:
         *pictures: image files, each by itself or all in a list.
-        **options: those of `lull entropy`, with _ for -: images="images/kitchen", block=200,
+        **options: options of `lull entropy`, with _ for -: images="images/kitchen", block=200,
             sub_blocks=100, values=True, attributes=True.
 
     Returns:

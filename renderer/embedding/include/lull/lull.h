@@ -108,7 +108,8 @@ typedef struct lull_picture {
     int width, height;
     int format;       /* a lull_format */
     const void* mean; /* mean of all samples: first channel of the top-left pixel */
-    const void* half; /* half buffer: mean of a fixed half of the samples; NULL: no limit of peak noise */
+    const void* half; /* half buffer: mean of a fixed half of the samples; NULL: the rule
+                         does without a limit of peak noise */
     ptrdiff_t row_stride, pixel_stride, channel_stride;
 } lull_picture;
 
