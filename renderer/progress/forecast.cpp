@@ -181,12 +181,12 @@ std::optional<std::vector<double>> PredictStops(std::span<const StopTrend> trend
     return stops;
 }
 
-std::array<double, 2> RangeOfRest(double taken, double left) {
-    constexpr double kLeastExponent = 0.86, kMostExponent = 1.19;
+std::array<double, 2> RangeOfRest(double taken, double left,
+                                  const std::array<double, 2>& exponents) {
     const auto rest = [=](double exponent) {
         return taken * (std::pow(1 + left / taken, exponent) - 1);
     };
-    return {rest(kLeastExponent), rest(kMostExponent)};
+    return {rest(exponents[0]), rest(exponents[1])};
 }
 
 double ParseDuration(const std::string& text) {

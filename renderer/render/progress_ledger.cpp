@@ -151,7 +151,7 @@ void ProgressLedger::Predict(const Schedule& schedule, RenderProgress* progress)
     const double seconds = secondsLeft / spentHere * SecondsSince(start);
     progress->predictedSeconds = seconds;
     if (isCounted) return;
-    std::array<double, 2> range = RangeOfRest(double(samples), left);
+    std::array<double, 2> range = RangeOfRest(double(samples), left, options.trend->exponents);
     for (double& rest : range)
         rest = left > 0 ? seconds * std::min(rest, double(progress->samplesToCap)) / left : 0;
     progress->secondsRange = range;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -112,6 +113,8 @@ struct RuleTrend {
     double nearness = 0.5;
     // Whether it falls more slowly where there is much noise, as falls of entropies do.
     bool saturates = false;
+    // Quantiles, 9 and 91 %, of the exponents of forecasts (RangeOfRest() of forecast.h).
+    std::array<double, 2> exponents = {0.86, 1.19};
 };
 
 struct NoiseVisibility;

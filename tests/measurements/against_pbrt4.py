@@ -7,7 +7,7 @@
 PBRT is the program of pbrt-v4. Both programs render one copy of each scene, in squares of --side pixels, with one thread, pbrt-v4
 with independent samples: --runs times --spp, and once 1 spp, whose CPU time is taken off. Errors are standard errors of the
 ratio of means, from what runs differ in 8x8 blocks. --blocks N tabulates N x N blocks of pbrt-v4 alone: their means, and the
-variances of these. --grey takes the colours away: of rgb, blackbody and images, not of metals.
+variances of these.
 Images stay in the folder OUT; those that are there are not rendered again.
 """
 import argparse
@@ -21,35 +21,8 @@ import numpy as np
 
 from measure import Renders, read, run
 
-LINEAR = ('.exr', '.pfm', '.hdr')
 COLUMNS = ['scene', 'million samples', 'lull R', 'lull G', 'lull B', 'pbrt-v4 R', 'pbrt-v4 G', 'pbrt-v4 B', 'ratio R', 'ratio G', 'ratio B',
            'standard error', 'lull, samples per CPU s', 'pbrt-v4, samples per CPU s', 'speed, lull / pbrt-v4', 'warnings of lull']
-
-
-def without_colours(text):
-    """Replaces colours by the mean of their components, and blackbodies by white."""
-    text = re.sub(r'"rgb ([\w.]+)"\s*\[\s*([^]\s]+)\s+([^]\s]+)\s+([^]\s]+)\s*\]',
-                  lambda m: f'"rgb {m[1]}" [ {" ".join([str(np.mean([float(m[i]) for i in (2, 3, 4)]))] * 3)} ]', text)
-    return re.sub(r'"blackbody (\w+)"\s*(\[[^]]*\]|\S+)', r'"rgb \1" [ 1 1 1 ]', text)
-
-
-def grey_image(source, target):
-    """Writes an image whose channels are the mean of linear R, G and B."""
-    import OpenImageIO as oiio
-    image = oiio.ImageBuf(str(source))
-    if image.nchannels < 3:
-        return False
-    pixels = image.get_pixels(oiio.FLOAT)
-    rgb = pixels[..., :3]
-    if source.suffix in LINEAR:
-        rgb[:] = rgb.mean(2, keepdims=True)
-    else:
-        rgb[:] = np.where(rgb <= .04045, rgb / 12.92, ((rgb + .055) / 1.055) ** 2.4).mean(2, keepdims=True)
-        rgb[:] = np.where(rgb <= .0031308, rgb * 12.92, 1.055 * rgb ** (1 / 2.4) - .055)
-    spec = oiio.ImageSpec(image.spec().width, image.spec().height, image.nchannels, image.spec().format)
-    written = oiio.ImageBuf(spec)
-    written.set_pixels(oiio.ROI(), np.ascontiguousarray(pixels))
-    return written.write(str(target))
 
 
 class Scene(Renders):
@@ -60,30 +33,27 @@ class Scene(Renders):
         shared = next((p for p in path.parents if p.name == 'pbrt4-scenes'), path.parent)
         inside = path.relative_to(shared if shared.name == 'pbrt4-scenes' else shared.parent)
         self.name = str(inside.with_suffix('')).removesuffix('/scene')
-        root = pathlib.Path(o.out).absolute() / ('grey' if o.grey else 'colour')
+        root = pathlib.Path(o.out).absolute()
         base = root / shared.name / path.parent.relative_to(shared)
-        self.copy(shared.parent / 'pbrt-scenes', root / 'pbrt-scenes', o)
-        self.copy(path.parent, base, o)
+        self.copy(shared.parent / 'pbrt-scenes', root / 'pbrt-scenes')
+        self.copy(path.parent, base)
         text = path.read_text()
         text = re.sub(r'("integer [xy]resolution"\s*)(\[\s*\d+\s*\]|\d+)', rf'\g<1>[ {o.side} ]', text)
         text = re.sub(r'^\s*Sampler\s+"\w+"(\s*"[^"]*"\s*(\[[^]]*\]|[\d.]+))*', '', text, flags=re.MULTILINE)
-        text = 'Sampler "independent"\n' + (without_colours(text) if o.grey else text)
         scene = base / f'{path.stem}.{o.side}.pbrt'
-        scene.write_text(text)
+        scene.write_text('Sampler "independent"\n' + text)
         super().__init__(root / 'images' / self.name, scene)
         self.o = o
 
-    def copy(self, source, target, o):
+    @staticmethod
+    def copy(source, target):
         if target.exists():
             return
         for folder, _, files in os.walk(source):
             to = target / pathlib.Path(folder).relative_to(source)
             to.mkdir(parents=True, exist_ok=True)
             for file in files:
-                path, link = pathlib.Path(folder, file), to / file
-                is_image = path.suffix in ('.png', '.tga', '.jpg', *LINEAR) and 'Render' not in file
-                if not (o.grey and is_image and grey_image(path, link)):
-                    link.symlink_to(path)
+                (to / file).symlink_to(pathlib.Path(folder, file))
 
     def render_all(self, *programs):
         for program in programs:
@@ -129,7 +99,6 @@ def main():
     parser.add_argument('--side', type=int, default=128, help='of the images, in pixels (128)')
     parser.add_argument('--spp', type=int, default=50, help='samples per pixel of a run (50)')
     parser.add_argument('--runs', type=int, default=4, help='of each program, with different seeds (4)')
-    parser.add_argument('--grey', action='store_true', help='take the colours away')
     parser.add_argument('--blocks', type=int, metavar='N', help='tabulate N x N blocks of pbrt-v4 alone')
     o = parser.parse_args()
     table = csv.writer(sys.stdout, lineterminator='\n')
