@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "tests/expect_has.h"

@@ -8,11 +8,6 @@
 namespace lull {
 namespace {
 
-void ExpectError(lull_status expected, lull_status status, const std::string& part) {
-    EXPECT_EQ(status, expected);
-    EXPECT_HAS(lull_error_message(), part) << "no '" << part << "' in: " << lull_error_message();
-}
-
 TEST(StopperErrors, RefusesBadSettings) {
     struct Case {
         lull_settings settings;
@@ -72,24 +67,20 @@ TEST(StopperErrors, RefusesBadPicturesAndChangesNothing) {
                         part);
             EXPECT_EQ(answer.votes, 77);
         };
-        lull_picture bad = good;
-        bad.width = 59;
-        refuse(bad, spp, "59x50");
-        bad = good;
-        bad.format = 7;
-        refuse(bad, spp, "LULL_SRGB8");
-        bad = good;
-        bad.mean = nullptr;
-        refuse(bad, spp, "mean is null");
-        bad = good;
-        bad.half = nullptr;
-        refuse(bad, spp, "half buffer");
-        bad = good;
-        bad.half = bad.mean;
-        refuse(bad, spp, "the half buffer equals the mean");
         const std::vector<float> copy = image.mean;
-        bad.half = copy.data();
-        refuse(bad, spp, "the half buffer equals the mean");
+        std::pair<lull_picture, const char*> bad[] = {{good, "59x50"},
+                                                      {good, "LULL_SRGB8"},
+                                                      {good, "mean is null"},
+                                                      {good, "half buffer"},
+                                                      {good, "the half buffer equals the mean"},
+                                                      {good, "the half buffer equals the mean"}};
+        bad[0].first.width = 59;
+        bad[1].first.format = 7;
+        bad[2].first.mean = nullptr;
+        bad[3].first.half = nullptr;
+        bad[4].first.half = good.mean;
+        bad[5].first.half = copy.data();
+        for (const auto& [picture, part] : bad) refuse(picture, spp, part);
         refuse(good, 0, "above 0");
         refuse(good, spp - 20, spp == 20 ? "above 0" : "spp must increase");
         ExpectError(LULL_BAD_ARGUMENT,
@@ -184,16 +175,6 @@ TEST(StopperErrors, SaysToEachThreadItsOwn) {
     EXPECT_NE(here, "");
     EXPECT_EQ(lull_error_message(), here);
     EXPECT_STREQ(lull_version(), LULL_VERSION);
-}
-
-std::vector<char> SavedState(const StopperHandle& stopper) {
-    size_t size = 0;
-    EXPECT_EQ(lull_stopper_save(stopper.get(), nullptr, &size), LULL_OK);
-    std::vector<char> bytes(size--);
-    ExpectError(LULL_BAD_ARGUMENT, lull_stopper_save(stopper.get(), bytes.data(), &size), "room");
-    EXPECT_EQ(size, bytes.size());
-    EXPECT_EQ(lull_stopper_save(stopper.get(), bytes.data(), &size), LULL_OK);
-    return bytes;
 }
 
 TEST(StopperState, GoesOnAsIfNeverInterrupted) {

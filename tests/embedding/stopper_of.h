@@ -53,6 +53,21 @@ inline BlockImage ImageAt(int spp, int width = 60, int height = 50, double noise
     return NoisyBlock(width, height, noise, spp, unsigned(spp));
 }
 
+inline void ExpectError(lull_status expected, lull_status status, const std::string& part) {
+    EXPECT_EQ(status, expected);
+    EXPECT_HAS(lull_error_message(), part) << "no '" << part << "' in: " << lull_error_message();
+}
+
+inline std::vector<char> SavedState(const StopperHandle& stopper) {
+    size_t size = 0;
+    EXPECT_EQ(lull_stopper_save(stopper.get(), nullptr, &size), LULL_OK);
+    std::vector<char> bytes(size--);
+    ExpectError(LULL_BAD_ARGUMENT, lull_stopper_save(stopper.get(), bytes.data(), &size), "room");
+    EXPECT_EQ(size, bytes.size());
+    EXPECT_EQ(lull_stopper_save(stopper.get(), bytes.data(), &size), LULL_OK);
+    return bytes;
+}
+
 inline bool SameAnswer(const lull_answer& a, const lull_answer& b) {
     return a.stop == b.stop && a.checked == b.checked && a.spp == b.spp &&
            a.next_spp == b.next_spp && a.votes == b.votes && a.votes_needed == b.votes_needed &&

@@ -245,12 +245,9 @@ TEST(Stopper, LetsSmallBlocksFollowTheirNeighbour) {
     }
     EXPECT_TRUE(hasStopped);
     // It is saved and restored as the other is.
-    size_t size = 0;
-    ASSERT_EQ(lull_stopper_save(whole.get(), nullptr, &size), LULL_OK);
-    std::vector<char> state(size);
-    ASSERT_EQ(lull_stopper_save(whole.get(), state.data(), &size), LULL_OK);
+    const std::vector<char> state = SavedState(whole);
     const StopperHandle restored = MakeStopper(settings);
-    ASSERT_EQ(lull_stopper_restore(restored.get(), state.data(), size), LULL_OK);
+    ASSERT_EQ(lull_stopper_restore(restored.get(), state.data(), state.size()), LULL_OK);
     EXPECT_EQ(lull_stopper_done(restored.get()), 1);
 }
 

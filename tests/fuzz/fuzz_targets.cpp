@@ -37,26 +37,33 @@ std::string WriteInput(std::span<const char> bytes) {
     return directory.Write("input", {bytes.data(), bytes.size()});
 }
 
+// Returns whether `read` takes its input; it may refuse that by this exception alone.
+template <typename Refusal, typename Read>
+bool Takes(const Read& read) {
+    try {
+        read();
+        return true;
+    } catch (const Refusal&) {
+        return false;
+    }
+}
+
 void FuzzPbrt(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    try {
-        Warnings warnings;
-        ParsePbrt(path, warnings);
-    } catch (const Error&) {
-    }
+    Warnings warnings;
+    Takes<Error>([&] { ParsePbrt(path, warnings); });
 }
 
 // Reads bytes as a scene for pbrt-v4, whatever they are, and compiles its materials.
 void FuzzPbrt4(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     Warnings warnings({}, true);
-    try {
+    Takes<Error>([&] {
         const Description d = ParsePbrt(path, warnings, PbrtVersion::V4);
         const TextureTable textures(d, warnings);
         const MaterialTable materials(d, textures, warnings);
         const ShapeTable shapes(d, textures, warnings);
-    } catch (const Error&) {
-    }
+    });
 }
 
 void FuzzGltf(std::span<const char> bytes) {
@@ -64,50 +71,32 @@ void FuzzGltf(std::span<const char> bytes) {
     Warnings warnings;
     for (const GltfOptions& options :
          {GltfOptions{}, GltfOptions{.frame = 0.5, .shutter = 0.5, .variant = "0"}})
-        try {
-            ParseGltf(path, options, warnings);
-        } catch (const Error&) {
-        }
+        Takes<Error>([&] { ParseGltf(path, options, warnings); });
 }
 
 void FuzzPly(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     Warnings warnings;
-    try {
-        LoadPly(path, warnings);
-    } catch (const Error&) {
-    }
+    Takes<Error>([&] { LoadPly(path, warnings); });
 }
 
 void FuzzBsdf(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    try {
-        LoadFourierTable(path);
-    } catch (const Error&) {
-    }
+    Takes<Error>([&] { LoadFourierTable(path); });
 }
 
 void FuzzLens(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    try {
-        LoadLens(path, {});
-    } catch (const Error&) {
-    }
+    Takes<Error>([&] { LoadLens(path, {}); });
 }
 
 // Reads bytes as an image of the format that has this signature.
 void FuzzImage(std::span<const char> bytes, std::string_view signature) {
     std::string image(bytes.begin(), bytes.end());
     image.replace(0, signature.size(), signature);
-    try {
-        ReadImage("input", "", std::as_bytes(std::span(image)));
-    } catch (const Error&) {
-    }
+    Takes<Error>([&] { ReadImage("input", "", std::as_bytes(std::span(image))); });
     const std::string path = WriteInput(image);
-    try {
-        ReadExr(path);
-    } catch (const Error&) {
-    }
+    Takes<Error>([&] { ReadExr(path); });
 }
 
 void FuzzPng(std::span<const char> bytes) { FuzzImage(bytes, "\x89PNG\r\n\x1a\n"); }
@@ -117,42 +106,32 @@ void FuzzExr(std::span<const char> bytes) { FuzzImage(bytes, "\x76\x2f\x31\x01")
 void FuzzScene(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
     Warnings warnings({}, true);
-    try {
+    Takes<Error>([&] {
         const Description d = ParsePbrt(path, warnings);
         const TextureTable textures(d, warnings);
         const MaterialTable materials(d, textures, warnings);
         const ShapeTable shapes(d, textures, warnings);
         const MediumTable media(d, warnings);
-    } catch (const Error&) {
-    }
+    });
 }
 
 void FuzzModel(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    try {
-        ReadModel(path);
-    } catch (const std::runtime_error&) {
-    }
+    Takes<std::runtime_error>([&] { ReadModel(path); });
 }
 
 // The part of a model file that lull itself parses, in a file that the HDF5 library has no trouble
 // with.
 void FuzzKerasConfig(std::span<const char> bytes) {
-    for (const char* version : {"", "2.2.4", "2.11.0"}) try {
-            ParseKerasConfig({bytes.begin(), bytes.end()}, version);
-        } catch (const std::runtime_error&) {
-        }
+    for (const char* version : {"", "2.2.4", "2.11.0"})
+        Takes<std::runtime_error>([&] { ParseKerasConfig({bytes.begin(), bytes.end()}, version); });
 }
 
 // Thresholds are written as they were read, but for the ends of lines.
 void FuzzThresholds(std::span<const char> bytes) {
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
     std::vector<ThresholdsRow> rows;
-    try {
-        rows = ReadThresholds(in, "input");
-    } catch (const std::runtime_error&) {
-        return;
-    }
+    if (!Takes<std::runtime_error>([&] { rows = ReadThresholds(in, "input"); })) return;
     std::stringstream copy;
     WriteThresholds(copy, rows);
     const std::vector<ThresholdsRow> again = ReadThresholds(copy, "copy");
@@ -165,11 +144,8 @@ void FuzzThresholds(std::span<const char> bytes) {
 // Answers that can be read can be collected and written.
 void FuzzAnswers(std::span<const char> bytes) {
     ObserverAnswers answers;
-    try {
-        answers = ParseAnswers({bytes.data(), bytes.size()});
-    } catch (const std::runtime_error&) {
+    if (!Takes<std::runtime_error>([&] { answers = ParseAnswers({bytes.data(), bytes.size()}); }))
         return;
-    }
     answers.file = "input";
     ObserverAnswers other = answers;
     other.observer += " the second";
@@ -183,11 +159,7 @@ void FuzzAnswers(std::span<const char> bytes) {
 void FuzzSingleAnswers(std::span<const char> bytes) {
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
     std::vector<SingleAnswer> answers;
-    try {
-        answers = ReadSingleAnswers(in, "input");
-    } catch (const std::runtime_error&) {
-        return;
-    }
+    if (!Takes<std::runtime_error>([&] { answers = ReadSingleAnswers(in, "input"); })) return;
     if (answers.empty()) throw std::logic_error("a file without answers was taken");
     for (const SingleAnswer& answer : answers)
         if (answer.block < 0 || answer.spp < 1 || answer.line < 2)
@@ -197,11 +169,7 @@ void FuzzSingleAnswers(std::span<const char> bytes) {
 // A display is written so that it is read as the same.
 void FuzzDisplay(std::span<const char> bytes) {
     DisplayModel display;
-    try {
-        display = ParseDisplay({bytes.data(), bytes.size()});
-    } catch (const Error&) {
-        return;
-    }
+    if (!Takes<Error>([&] { display = ParseDisplay({bytes.data(), bytes.size()}); })) return;
     const DisplayModel again = ParseDisplay(NameOf(display));
     if (again.peak != display.peak || again.pixelsPerDegree != display.pixelsPerDegree ||
         again.ambient != display.ambient)
@@ -211,10 +179,7 @@ void FuzzDisplay(std::span<const char> bytes) {
 // Most findings are in the HDF5 library, as with `model`.
 void FuzzDataset(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    try {
-        ReadDataset(path);
-    } catch (const std::runtime_error&) {
-    }
+    Takes<std::runtime_error>([&] { ReadDataset(path); });
 }
 
 // Writes bytes with the checksum that belongs to them, and returns the path.
@@ -229,26 +194,17 @@ std::string WriteSealed(std::span<const char> bytes) {
 void FuzzCheckpoint(std::span<const char> bytes) {
     const std::string path = WriteSealed(bytes);
     Film film({{0, 0}, {4, 4}}, {.grid = {4, 4}});
-    try {
-        ReadCheckpoint(path, {}, &film);
-    } catch (const std::runtime_error&) {
-    }
+    Takes<std::runtime_error>([&] { ReadCheckpoint(path, {}, &film); });
 }
 
 void FuzzStudyPage(std::span<const char> bytes) {
     const std::string path = WriteInput(bytes);
-    try {
-        ReadStudyPage(path);
-    } catch (const Error&) {
-    }
+    Takes<Error>([&] { ReadStudyPage(path); });
 }
 
 void FuzzTrainingCheckpoint(std::span<const char> bytes) {
     const std::string path = WriteSealed(bytes);
-    try {
-        TrainingCheckpoint(path, 1, {}).Read();
-    } catch (const std::runtime_error&) {
-    }
+    Takes<std::runtime_error>([&] { TrainingCheckpoint(path, 1, {}).Read(); });
 }
 
 // The states of rules in a checkpoint; the first byte says of which.
@@ -257,10 +213,7 @@ void FuzzCriterionState(std::span<const char> bytes) {
                                               ParseRule("dammertz:0.02"), ParseRule("fixed:100")};
     if (bytes.empty()) return;
     const auto criterion = MakeCriterion(rules[size_t(bytes[0]) % rules.size()]);
-    try {
-        criterion->Restore(std::as_bytes(bytes.subspan(1)));
-    } catch (const std::runtime_error&) {
-    }
+    Takes<std::runtime_error>([&] { criterion->Restore(std::as_bytes(bytes.subspan(1))); });
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ HardCaseResult NoAcne(const HardCaseOptions& options) {
     return Worst(results);
 }
 
-constexpr const char* kHalf = "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n";
+const std::string kHalf = "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n";
 constexpr const char* kFromAbove = "0 0 -3  0 0 0  0 1 0";
 
 // A floor cut in 2,000 slivers, each of them 1e5 times as long as wide, which fills the image.
@@ -158,16 +158,15 @@ HardCaseResult Slivers(const HardCaseOptions& options) {
             indices +=
                 fmt::format("{0} {1} {3} {0} {3} {2} ", 2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 3);
     }
-    const auto scene = MakeScene({.world = kSky + std::string(kHalf) + MeshText(indices, points),
-                                  .camera = kFromAbove,
-                                  .fov = 2});
+    const auto scene = MakeScene(
+        {.world = kSky + kHalf + MeshText(indices, points), .camera = kFromAbove, .fov = 2});
     return CompareRadiance(*scene, 0.5, 1e-3, options.isLong ? 100'000 : 2000, options);
 }
 
 // The same floor three times, with points and lines for triangles in between.
 HardCaseResult Duplicates(const HardCaseOptions& options) {
     const auto scene =
-        MakeScene({.world = kSky + std::string(kHalf) + FloorText(5) + FloorText(5) + FloorText(5) +
+        MakeScene({.world = kSky + kHalf + FloorText(5) + FloorText(5) + FloorText(5) +
                             MeshText("0 1 1  0 0 0  0 1 2  0 1 3", "-5 0 0  5 0 0  2 0 0  0 5 0"),
                    .camera = kFromAbove,
                    .fov = 20});
@@ -177,7 +176,7 @@ HardCaseResult Duplicates(const HardCaseOptions& options) {
 // A lamp in the very plane of the floor shines on nothing of it: only the sky does.
 HardCaseResult CoplanarLight(const HardCaseOptions& options) {
     const auto scene =
-        MakeScene({.world = kSky + std::string(kHalf) + FloorText(5) +
+        MakeScene({.world = kSky + kHalf + FloorText(5) +
                             "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1e6 1e6 1e6] "
                             "\"bool twosided\" \"true\"\n" +
                             MeshText("0 3 2 0 2 1", "2 2 0  3 2 0  3 3 0  2 3 0") + "AttributeEnd",
@@ -190,8 +189,8 @@ HardCaseResult CoplanarLight(const HardCaseOptions& options) {
 HardCaseResult CameraOnSurface(const HardCaseOptions& options) {
     std::vector<HardCaseResult> results;
     for (const char* camera : {"0 0 0  0 0 -1  0 1 0", "1 1 0  0.5 0 -1  0 1 0"}) {
-        const auto scene = MakeScene(
-            {.world = kSky + std::string(kHalf) + FloorText(5), .camera = camera, .fov = 30});
+        const auto scene =
+            MakeScene({.world = kSky + kHalf + FloorText(5), .camera = camera, .fov = 30});
         results.push_back(CompareRadiance(*scene, 1, 0, options.isLong ? 10'000 : 100, options));
     }
     return Worst(results);
@@ -209,12 +208,11 @@ HardCaseResult CameraInGlass(const HardCaseOptions& options) {
 
 // A mesh of nothing but triangles without area, beside a floor.
 HardCaseResult NothingButDegenerate(const HardCaseOptions& options) {
-    const auto scene =
-        MakeScene({.world = kSky + std::string(kHalf) + FloorText(5) +
-                            "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\n" +
-                            MeshText("0 1 1  0 0 0  0 1 2", "-5 0 -1  5 0 -1  2 0 -1"),
-                   .camera = kFromAbove,
-                   .fov = 20});
+    const auto scene = MakeScene(
+        {.world = kSky + kHalf + FloorText(5) + "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\n" +
+                  MeshText("0 1 1  0 0 0  0 1 2", "-5 0 -1  5 0 -1  2 0 -1"),
+         .camera = kFromAbove,
+         .fov = 20});
     return CompareRadiance(*scene, 0.5, 1e-3, options.isLong ? 100'000 : 2000, options);
 }
 

@@ -15,8 +15,7 @@ std::string Do(const TemporaryDirectory& directory, std::string command) {
     const std::string prefix = directory.File("moved tree");
     for (size_t at = 0; (at = command.find("TREE", at)) != std::string::npos;)
         command.replace(at, 4, "'" + prefix + "'");
-    const Outcome outcome = ExpectSuccess(RunShell(directory, command));
-    return outcome.out;
+    return ExpectSuccess(RunShell(directory, command)).out;
 }
 
 // Installs into a temporary folder and moves that, so that nothing finds its parts by a path that
@@ -27,7 +26,7 @@ struct InstalledTree : TemporaryDirectory {
         Do(*this, "'" LULL_CMAKE "' --install '" LULL_BUILD_DIR "' --prefix '" + File("tree") +
                       "' >/dev/null && mv tree TREE");
     }
-    bool Has(const std::string& name) const {
+    bool HasInstalled(const std::string& name) const {
         return std::filesystem::exists(path / "moved tree" / name);
     }
 };
@@ -62,7 +61,7 @@ TEST(Install, RunsWhereItIsMoved) {
     tree.Write("scene.pbrt", SceneText(kSphere));
     // The rule reads its model before anything is rendered.
     Do(tree, "TREE/bin/lull render scene.pbrt --cap 20 --quiet -o out.exr");
-    EXPECT_TRUE(std::filesystem::exists(tree.File("out.png")));
+    EXPECT_TRUE(tree.Has("out.png"));
     // The module of all formats but PNG and OpenEXR is found, and missed by name.
     tree.Write("a.pfm", "PF\n1 1\n-1.0\n" + std::string(12, '\0'));
     tree.Write("lit.pbrt", SceneText("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
@@ -72,19 +71,19 @@ TEST(Install, RunsWhereItIsMoved) {
     Do(tree, render);
     Do(tree, "rm \"$(find TREE -name formats.so)\"");
     Do(tree, "! " + render + " 2>err");
-    const std::string err = ReadBytes(tree.File("err"));
+    const std::string err = tree.Bytes("err");
     EXPECT_TRUE(Contains(err, "lit.pbrt:") && Contains(err, "a.pfm") && Contains(err, "formats.so"))
         << err;
     Do(tree, "TREE/bin/lull render scene.pbrt --spp 1 --quiet -o out.exr");
     for (const char* file : {"include/lull/lull.h", "share/lull/models/entropy.h5",
                              "share/lull/models/paper.h5", "share/doc/lull/copyright"})
-        EXPECT_TRUE(tree.Has(file)) << file;
+        EXPECT_TRUE(tree.HasInstalled(file)) << file;
 }
 
 TEST(Install, ManualAndCompletionNameEveryOption) {
     const InstalledTree tree;
-    if (!tree.Has("share/man/man1/lull.1")) GTEST_SKIP() << "built without Python";
-    const std::string page = ReadBytes(tree.File("moved tree/share/man/man1/lull.1"));
+    if (!tree.HasInstalled("share/man/man1/lull.1")) GTEST_SKIP() << "built without Python";
+    const std::string page = tree.Bytes("moved tree/share/man/man1/lull.1");
     for (const std::string command : kCommands) {
         const std::string help = RunLull(tree, command + " --help-all").out;
         const std::set<std::string> options = OptionsIn(help);
@@ -104,7 +103,8 @@ TEST(Install, ManualAndCompletionNameEveryOption) {
 
 TEST(Install, CompletionKnowsCommandsAndValues) {
     const InstalledTree tree;
-    if (!tree.Has("share/bash-completion/completions/lull")) GTEST_SKIP() << "built without Python";
+    if (!tree.HasInstalled("share/bash-completion/completions/lull"))
+        GTEST_SKIP() << "built without Python";
     EXPECT_EQ(Complete(tree, "lull ren", 1), "render\n");
     for (const char* command : kCommands)
         EXPECT_HAS(Complete(tree, "lull ''", 1), command) << command;
@@ -167,20 +167,17 @@ TEST(Install, ExampleWatchesPicturesAgainstTheInstalledLibrary) {
     EXPECT_HAS(paper, "\nroom7;");
     EXPECT_TRUE(paper.ends_with(";\n")) << paper;
     std::filesystem::rename(tree.File("room7/p_20.png"), tree.File("room7/p.png"));
-    const Outcome unnamed = RunShell(tree, "build/paper room7");
-    EXPECT_EQ(unnamed.exitCode, 1);
-    EXPECT_HAS(unnamed.err, "p.png: has no number of samples");
-
-    const Outcome doubled = RunShell(tree, "build/watch_pngs tex_60.png tex_120.png tex_240.png");
-    EXPECT_EQ(doubled.exitCode, 0);
-    EXPECT_HAS(doubled.err, "tex_240.png: pictures at 60, 120 and 240 spp lie too far");
-    const Outcome bad = RunShell(tree, "build/watch_pngs tex_60.png nowhere_80.png");
-    EXPECT_EQ(bad.exitCode, 1);
-    EXPECT_HAS(bad.err, "nowhere_80.png");
+    const auto expect = [&](const std::string& command, int exitCode, const std::string& part) {
+        const Outcome outcome = RunShell(tree, "build/" + command);
+        EXPECT_EQ(outcome.exitCode, exitCode) << command;
+        EXPECT_HAS(outcome.err, part);
+    };
+    expect("paper room7", 1, "p.png: has no number of samples");
+    expect("watch_pngs tex_60.png tex_120.png tex_240.png", 0,
+           "tex_240.png: pictures at 60, 120 and 240 spp lie too far");
+    expect("watch_pngs tex_60.png nowhere_80.png", 1, "nowhere_80.png");
     WritePng(tree.File("small_20.png"), std::vector<Rgb>(20 * 20, Rgb(1, 1, 1)), 20, 20);
-    const Outcome small = RunShell(tree, "build/watch_pngs small_20.png");
-    EXPECT_EQ(small.exitCode, 1);
-    EXPECT_HAS(small.err, "20x20");
+    expect("watch_pngs small_20.png", 1, "20x20");
 }
 
 TEST(Install, PkgConfigFindsTheLibrary) {

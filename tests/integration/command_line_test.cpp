@@ -11,79 +11,48 @@ namespace {
 
 TEST(CommandLine, RefusesWrongUsage) {
     const SceneDirectory directory;
-    for (const char* arguments :
-         {"paint",
-          "render",
-          "render scene.pbrt --frobnicate",
-          "render scene.pbrt extra",
-          "render scene.pbrt --resolution -3x4",
-          "render scene.pbrt --resolution 3",
-          "render scene.pbrt --resolution 3x4x5",
-          "render scene.pbrt --crop 0.5,0.2,0,1",
-          "render scene.pbrt --crop 0,1",
-          "render scene.pbrt --crop 0,nan,0,1",
-          "render scene.pbrt --crop 3,2,0,1px",
-          "render scene.pbrt --crop 0,0.5,0,1px",
-          "render scene.pbrt --pixel 24,0",
-          "render scene.pbrt --pixel 1",
-          "render scene.pbrt --sample 1",
-          "render scene.pbrt --threads -1",
-          "render scene.pbrt --threads many",
-          "render scene.pbrt --seed -1",
-          "render scene.pbrt --seed 1.5",
-          "render scene.pbrt --seed 18446744073709551616",
-          "render scene.pbrt --seed 0x10",
-          "render scene.pbrt --spp 0x10",
-          "render scene.pbrt --spp 010",
-          "render scene.pbrt --spp ' 5'",
-          "render scene.pbrt --spp \"1'000\"",
-          "render scene.pbrt --spp 99999999999999999999",
-          "render scene.pbrt --caution 0x1p2",
-          "render scene.pbrt --resolution 0x10x8",
-          "render scene.pbrt --exposure nan",
-          "render scene.pbrt --exposure inf",
-          "render scene.pbrt --environment a.exr --environment-rotation nan",
-          "render scene.pbrt --frame nan",
-          "render scene.pbrt --frame 0 --shutter nan",
-          "render scene.pbrt --caution nan",
-          "render scene.pbrt --spp 4 --graded-by 2",
-          "render scene.pbrt --preview nan",
-          "render scene.pbrt --checkpoint c.h5 --checkpoint-interval nan",
-          "render scene.pbrt --orbit nan,0",
-          "render scene.pbrt --cap nan",
-          "render scene.pbrt --stop fixed:nan",
-          "render scene.pbrt --stop noise:nan",
-          "render scene.pbrt --time nan",
-          "render scene.pbrt --cap 3 --denoise-layers",
-          "render scene.pbrt --cap 0",
-          "render scene.pbrt --max-spp 0",
-          "render scene.pbrt --quality best",
-          "render scene.pbrt --quality final --caution 2",
-          "render scene.pbrt --pass 0",
-          "render scene.pbrt --block 0",
-          "render scene.pbrt --spp 0",
-          "render scene.pbrt --spp 4 --stop fixed:5",
-          "render scene.pbrt --sampler halton",
-          "render scene.pbrt --estimator best",
-          "render scene.pbrt -o image.jpg",
-          "render scene.pbrt -o image",
-          "render scene.pbrt --max-depth -1",
-          "render scene.pbrt --aov albedo,colour",
-          "render scene.pbrt --aov albedo,,noise",
-          "render scene.pbrt --light-groups=each,",
-          "record scene.pbrt --name a -o a.h5 --blocks 0,,5",
-          "render scene.pbrt --aov-through-specular",
-          "render scene.pbrt --display nowhere",
-          "render scene.pbrt --tone-map aces",
-          "render scene.pbrt --ocio a --tone-map filmic",
-          "render scene.pbrt --graded-by nan",
-          "render scene.pbrt --view-exposure 101",
-          "info"}) {
+    const auto refuses = [&](const std::string& arguments) {
         const Outcome outcome = RunLull(directory, arguments);
         EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.err;
         EXPECT_NE(outcome.err, "") << arguments;
         EXPECT_EQ(outcome.out, "") << arguments;
-    }
+    };
+    for (const char* arguments :
+         {"paint", "render", "info", "record scene.pbrt --name a -o a.h5 --blocks 0,,5"})
+        refuses(arguments);
+    struct Option {
+        const char* name;
+        std::vector<const char*> values;
+    };
+    const Option options[] = {
+        {"", {"extra", "--frobnicate", "--light-groups=each,", "--aov-through-specular"}},
+        {"--resolution", {"-3x4", "3", "3x4x5", "0x10x8"}},
+        {"--crop", {"0.5,0.2,0,1", "0,1", "0,nan,0,1", "3,2,0,1px", "0,0.5,0,1px"}},
+        {"--pixel", {"24,0", "1"}},
+        {"--sample", {"1"}},
+        {"--threads", {"-1", "many"}},
+        {"--seed", {"-1", "1.5", "18446744073709551616", "0x10"}},
+        {"--spp", {"0x10", "010", "' 5'", "\"1'000\"", "99999999999999999999", "0"}},
+        {"--spp 4", {"--graded-by 2", "--stop fixed:5"}},
+        {"--caution", {"0x1p2", "nan"}},
+        {"--exposure", {"nan", "inf"}},
+        {"--environment a.exr", {"--environment-rotation nan"}},
+        {"--frame", {"nan", "0 --shutter nan"}},
+        {"--checkpoint c.h5", {"--checkpoint-interval nan"}},
+        {"--cap", {"nan", "0", "3 --denoise-layers"}},
+        {"--max-spp", {"0"}},
+        {"--stop", {"fixed:nan", "noise:nan"}},
+        {"--quality", {"best", "final --caution 2"}},
+        {"-o", {"image.jpg", "image"}},
+        {"--aov", {"albedo,colour", "albedo,,noise"}},
+        {"", {"--preview nan", "--orbit nan,0", "--time nan", "--pass 0", "--block 0"}},
+        {"", {"--sampler halton", "--estimator best", "--max-depth -1", "--display nowhere"}},
+        {"", {"--tone-map aces", "--ocio a --tone-map filmic", "--graded-by nan"}},
+        {"", {"--view-exposure 101"}},
+    };
+    for (const Option& option : options)
+        for (const std::string value : option.values)
+            refuses("render scene.pbrt " + std::string(option.name) + " " + value);
     EXPECT_EQ(directory.CountFiles(), 1);
 }
 
@@ -181,7 +150,7 @@ TEST(CommandLine, WritesAllFilesAndNamesThemOnStdout) {
                   "image.exr\nimage.png\nimage.spp.png\nimage.thresholds.csv\nr.json\n");
     }
     EXPECT_EQ(directory.CountFiles(), 6);
-    EXPECT_TRUE(ReadBytes(directory.File("image.thresholds.csv")).ends_with(";4;\n"));
+    EXPECT_TRUE(directory.Bytes("image.thresholds.csv").ends_with(";4;\n"));
     const Image png = ReadImage(directory.File("image.png"));
     EXPECT_EQ(png.width, 24);
     EXPECT_EQ(png.height, 16);
@@ -191,7 +160,7 @@ TEST(CommandLine, StopsAsPeopleWouldIfNothingElseIsAskedFor) {
     const SceneDirectory directory;
     ExpectSuccess(directory,
                   "render scene.pbrt --resolution 48x48 --cap 100 --report r.json -o image.exr");
-    const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
+    const nlohmann::json report = nlohmann::json::parse(directory.Bytes("r.json"));
     EXPECT_EQ(report["provenance"]["criterion"], "learned");
     EXPECT_NE(report["provenance"]["modelChecksum"], "");
 }
@@ -249,7 +218,7 @@ TEST(CommandLine, StopsBlocksAsARuleSays) {
     ExpectSuccess(directory,
                   "render scene.pbrt --resolution 100x50 --block 50 -o image.exr "
                   "--stop thresholds:rows.csv:scene");
-    EXPECT_TRUE(ReadBytes(directory.File("image.thresholds.csv")).ends_with(";20;60;\n"));
+    EXPECT_TRUE(directory.Bytes("image.thresholds.csv").ends_with(";20;60;\n"));
     const ExrImage exr = ReadExr(directory.File("image.exr"));
     EXPECT_EQ(exr.Find("spp")->values.front(), 20);
     EXPECT_EQ(exr.Find("spp")->values.back(), 60);
@@ -292,7 +261,7 @@ TEST(CommandLine, NamesQualities) {
                       "render scene.pbrt --resolution 100x90 --block 45 --stop lnoise:0.4 "
                       "--max-spp 600 --quiet -o i.exr " +
                           options);
-        return ReadBytes(directory.File("i.thresholds.csv"));
+        return directory.Bytes("i.thresholds.csv");
     };
     const std::string draft = thresholds("--quality draft"), good = thresholds("--quality good");
     const std::string final = thresholds("--quality final");
@@ -363,7 +332,7 @@ TEST(CommandLine, TellsStoppedFromCapped) {
                              "estimated sufficient --max-spp: "})
         EXPECT_HAS(capped.err, part);
     EXPECT_FALSE(Contains(capped.err, "less time")) << capped.err;
-    const nlohmann::json report = nlohmann::json::parse(ReadBytes(directory.File("r.json")));
+    const nlohmann::json report = nlohmann::json::parse(directory.Bytes("r.json"));
     EXPECT_EQ(report["totals"]["blocksAtCap"], 4);
     EXPECT_GT(report["totals"]["neededCap"], 100);
     EXPECT_GT(report["blocks"][0]["neededSpp"], 100);

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kSize = " --resolution 100x90 --block 40 --quiet ";
+const std::string kScene = " scene.pbrt --resolution 100x90 --block 40 --quiet ";
 
 struct HumanDirectory : SceneDirectory {
     HumanDirectory() {
@@ -19,33 +19,33 @@ struct HumanDirectory : SceneDirectory {
     Json Read(const std::string& name) const { return Json::parse(ReadBytes(File(name))); }
 };
 
-std::vector<float> Green(const TemporaryDirectory& directory, const std::string& name) {
-    return ReadExr(directory.File(name)).Find("G")->values;
+std::vector<float> Values(const TemporaryDirectory& directory, const std::string& name,
+                          const std::string& channel = "G") {
+    return ReadExr(directory.File(name)).Find(channel)->values;
 }
 
 TEST(Compare, OneRenderGivesTheImagesOfThree) {
     const HumanDirectory directory;
     const Outcome outcome = ExpectSuccess(
-        directory, std::string("compare scene.pbrt") + kSize +
+        directory, "compare" + kScene +
                        "--snapshots --stop dammertz:0.02 --human human.csv:a --cap 160 -o "
                        "room --report room.html --verify 2");
     EXPECT_HAS(outcome.out, "the same bits");
     for (const char* file : {"room.automatic.exr", "room.human.png", "room.reference.exr",
                              "room.thresholds.csv", "room.compare.json", "room.html"}) {
         EXPECT_HAS(outcome.out, std::string(file) + "\n") << file;
-        EXPECT_TRUE(std::filesystem::exists(directory.File(file))) << file;
+        EXPECT_TRUE(directory.Has(file)) << file;
     }
 
-    const std::string render = std::string("render scene.pbrt") + kSize;
+    const std::string render = "render" + kScene;
     RunLull(directory, render + "--stop dammertz:0.02 --cap 160 -o a.exr");
     RunLull(directory, render + "--stop thresholds:human.csv:a --cap 160 -o h.exr");
     RunLull(directory, render + "--spp 160 -o r.exr");
-    EXPECT_EQ(Green(directory, "room.automatic.exr"), Green(directory, "a.exr"));
-    EXPECT_EQ(Green(directory, "room.human.exr"), Green(directory, "h.exr"));
-    EXPECT_EQ(Green(directory, "room.reference.exr"), Green(directory, "r.exr"));
-    EXPECT_EQ(ReadExr(directory.File("room.human.exr")).Find("spp")->values,
-              ReadExr(directory.File("h.exr")).Find("spp")->values);
-    EXPECT_EQ(ReadBytes(directory.File("room.automatic.png")), ReadBytes(directory.File("a.png")));
+    EXPECT_EQ(Values(directory, "room.automatic.exr"), Values(directory, "a.exr"));
+    EXPECT_EQ(Values(directory, "room.human.exr"), Values(directory, "h.exr"));
+    EXPECT_EQ(Values(directory, "room.reference.exr"), Values(directory, "r.exr"));
+    EXPECT_EQ(Values(directory, "room.human.exr", "spp"), Values(directory, "h.exr", "spp"));
+    EXPECT_EQ(directory.Bytes("room.automatic.png"), directory.Bytes("a.png"));
 
     // The same images, from their files, have the same errors.
     const Outcome files = ExpectSuccess(
@@ -64,8 +64,7 @@ TEST(Compare, OneRenderGivesTheImagesOfThree) {
 TEST(Compare, SaysHowManyBlocksDifferVisibly) {
     const HumanDirectory directory;
     for (const char* spp : {"20", "160"})
-        RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
-                               spp + ".exr");
+        RunLull(directory, "render" + kScene + "--spp " + spp + " -o at" + spp + ".exr");
     const std::string files = "compare --automatic at20.exr --reference at160.exr --block 40 ";
     const Outcome near = ExpectSuccess(directory, files + "--viewing 200cd,20ppd -o near");
     EXPECT_HAS(near.out, " blocks differ visibly at 20 pixels a degree\n");
@@ -87,14 +86,12 @@ TEST(Compare, SaysHowManyBlocksDifferVisibly) {
 
 TEST(Compare, MakesTheDenoisedImageOfARender) {
     const HumanDirectory directory;
-    ExpectSuccess(directory, std::string("compare scene.pbrt") + kSize +
+    ExpectSuccess(directory, "compare" + kScene +
                                  "--snapshots --denoise --stop fixed:20 --cap 300 -o room --report "
                                  "room.html");
-    RunLull(directory,
-            std::string("render scene.pbrt") + kSize + "--denoise --cap 300 -o clean.exr");
-    EXPECT_EQ(Green(directory, "room.denoised.exr"), Green(directory, "clean.exr"));
-    EXPECT_EQ(ReadExr(directory.File("room.denoised.exr")).Find("spp")->values,
-              ReadExr(directory.File("clean.exr")).Find("spp")->values);
+    RunLull(directory, "render" + kScene + "--denoise --cap 300 -o clean.exr");
+    EXPECT_EQ(Values(directory, "room.denoised.exr"), Values(directory, "clean.exr"));
+    EXPECT_EQ(Values(directory, "room.denoised.exr", "spp"), Values(directory, "clean.exr", "spp"));
     const Json denoised = directory.Read("room.compare.json")["images"][1];
     EXPECT_EQ(denoised["name"], "denoised");
     EXPECT_TRUE(denoised["seams"].is_object()) << denoised["seams"];
@@ -109,7 +106,7 @@ TEST(Compare, MakesTheDenoisedImageOfARender) {
 // Both blocks of a place stop with the later, and each eye is denoised and measured by itself.
 TEST(Compare, TakesPairs) {
     const HumanDirectory directory;
-    const std::string pair = std::string(" scene.pbrt --stereo 0.3,4") + kSize;
+    const std::string pair = kScene + "--stereo 0.3,4 ";
     const Outcome outcome =
         ExpectSuccess(directory, "compare" + pair +
                                      "--snapshots --denoise --stop lnoise:1.5 --cap 160 -o room "
@@ -125,8 +122,8 @@ TEST(Compare, TakesPairs) {
                        rendered = ReadExr(directory.File(std::string(same) + ".exr"));
         for (const char* channel : {"G", "right.G", "spp", "right.spp"})
             EXPECT_EQ(made.Find(channel)->values, rendered.Find(channel)->values) << file;
-        EXPECT_EQ(ReadBytes(directory.File(std::string(file) + ".right.png")),
-                  ReadBytes(directory.File(std::string(same) + ".right.png")));
+        EXPECT_EQ(directory.Bytes(std::string(file) + ".right.png"),
+                  directory.Bytes(std::string(same) + ".right.png"));
     }
     ExpectSuccess(directory, "compare --automatic a.exr --reference r.exr --block 40 -o files");
     const Json one = directory.Read("room.compare.json")["images"][0],
@@ -143,8 +140,7 @@ TEST(Compare, TakesPairs) {
 TEST(Compare, TakesPicturesForDisplays) {
     const HumanDirectory directory;
     for (const char* spp : {"20", "160"})
-        RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp " + spp + " -o at" +
-                               spp + ".exr");
+        RunLull(directory, "render" + kScene + "--spp " + spp + " -o at" + spp + ".exr");
     const std::string files = "compare --block 40 --reference at160.exr ";
     ExpectSuccess(directory, files + "--automatic at20.exr -o exr");
     const Outcome outcome = ExpectSuccess(directory, files + "--human at20.png -o png");
@@ -158,20 +154,20 @@ TEST(Compare, TakesPicturesForDisplays) {
 
 TEST(Compare, RendersNoFurtherThanItMustBesideAReference) {
     const HumanDirectory directory;
-    RunLull(directory, std::string("render scene.pbrt") + kSize + "--spp 160 -o r.exr");
+    RunLull(directory, "render" + kScene + "--spp 160 -o r.exr");
     ExpectSuccess(directory,
-                  std::string("compare scene.pbrt") + kSize +
+                  "compare" + kScene +
                       "--stop fixed:60 --human human.csv:b --reference r.exr --cap 160 -o room");
     const Json json = directory.Read("room.compare.json");
     EXPECT_EQ(json["images"][0]["cost"]["samples"], 100 * 90 * 60);
     EXPECT_EQ(json["images"][0]["saved"]["estimated"], true);
     EXPECT_EQ(json["againstHuman"]["later"], 9);
-    EXPECT_FALSE(std::filesystem::exists(directory.File("room.reference.exr")));
+    EXPECT_FALSE(directory.Has("room.reference.exr"));
 }
 
 TEST(Compare, GoesOnAfterAnInterruption) {
     const HumanDirectory directory;
-    const std::string command = std::string("compare scene.pbrt") + kSize +
+    const std::string command = "compare" + kScene +
                                 "--snapshots --curves --stop dammertz:0.01 --human human.csv:a "
                                 "--cap 400 ";
     ExpectSuccess(directory, command + "-o whole");
@@ -186,11 +182,11 @@ TEST(Compare, GoesOnAfterAnInterruption) {
         ASSERT_EQ(outcome.exitCode, 137) << outcome.err;
     }
     for (const char* image : {"automatic", "human", "reference"})
-        EXPECT_EQ(ReadBytes(directory.File(std::string("parts.") + image + ".png")),
-                  ReadBytes(directory.File(std::string("whole.") + image + ".png")));
+        EXPECT_EQ(directory.Bytes(std::string("parts.") + image + ".png"),
+                  directory.Bytes(std::string("whole.") + image + ".png"));
     EXPECT_EQ(directory.Read("parts.compare.json")["images"][1]["figures"],
               directory.Read("whole.compare.json")["images"][1]["figures"]);
-    EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
+    EXPECT_FALSE(directory.Has("c.h5"));
 }
 
 TEST(Compare, SaysWhatIsMissingOrWrong) {
@@ -204,7 +200,7 @@ TEST(Compare, SaysWhatIsMissingOrWrong) {
                             "1601030001000000020000001701040001000000200000000000000"
                             "0") +
                         std::string(32, '\x80'));
-    const std::string scene = std::string("compare scene.pbrt") + kSize;
+    const std::string scene = "compare" + kScene;
     ExpectFailure(directory, "compare", {"a scene is missing"});
     ExpectFailure(directory, scene, {"--snapshots", "--reference"});
     ExpectFailure(directory, scene + "--snapshots --human human.csv:c",
@@ -253,7 +249,7 @@ TEST(Compare, HasCurvesOfErrorAgainstTime) {
     EXPECT_EQ(points["fixed:20"]["spp"], 20);
     EXPECT_GT(points["fixed:20"]["rmseLightness"], points["fixed:60"]["rmseLightness"]);
     EXPECT_GT(points["denoised:3.1"]["ruleSeconds"], 0);
-    EXPECT_HAS(ReadBytes(directory.File("room.html")), "errorCurves");
+    EXPECT_HAS(directory.Bytes("room.html"), "errorCurves");
 
     // Beside a reference from a file, the errors are the same.
     ExpectSuccess(directory, command + "--reference room.reference.exr -o other");
@@ -264,14 +260,12 @@ TEST(Compare, HasCurvesOfErrorAgainstTime) {
 
 TEST(RenderReport, IsAPageWhereItsNameSaysSo) {
     const HumanDirectory directory;
-    ExpectSuccess(directory, std::string("render scene.pbrt") + kSize +
-                                 "--stop lnoise:2 --cap 200 -o i.exr --report r.html");
-    EXPECT_TRUE(ReadBytes(directory.File("r.html")).starts_with("<!DOCTYPE html>"));
-    RunLull(directory, std::string("render scene.pbrt") + kSize +
-                           "--stop lnoise:2 --cap 200 -o j.exr --report r.json");
-    EXPECT_EQ(ReadBytes(directory.File("i.thresholds.csv")),
-              ReadBytes(directory.File("j.thresholds.csv")));
-    EXPECT_EQ(ReadBytes(directory.File("i.png")), ReadBytes(directory.File("j.png")));
+    ExpectSuccess(directory,
+                  "render" + kScene + "--stop lnoise:2 --cap 200 -o i.exr --report r.html");
+    EXPECT_TRUE(directory.Bytes("r.html").starts_with("<!DOCTYPE html>"));
+    RunLull(directory, "render" + kScene + "--stop lnoise:2 --cap 200 -o j.exr --report r.json");
+    EXPECT_EQ(directory.Bytes("i.thresholds.csv"), directory.Bytes("j.thresholds.csv"));
+    EXPECT_EQ(directory.Bytes("i.png"), directory.Bytes("j.png"));
 }
 
 }  // namespace

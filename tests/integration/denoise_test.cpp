@@ -15,10 +15,10 @@ constexpr const char* kBall =
     "Shape \"sphere\" \"float radius\" .1 AttributeEnd\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
     "  \"point P\" [-5 -1 -5  5 -1 -5  5 -1 5  -5 -1 5]";
-constexpr const char* kDenoiseBox =
-    "LULL render scene.pbrt --resolution 96x80 --block 48 --denoise --stop denoised:0.7 --cap 400 ";
+const std::string kDenoiseBox =
+    "render scene.pbrt --resolution 96x80 --block 48 --denoise --stop denoised:0.7 --cap 400 ";
 // Goes on long after its first checkpoint, on any machine.
-constexpr const char* kLongDenoiseBox =
+const std::string kLongDenoiseBox =
     "render scene.pbrt --resolution 96x80 --block 48 --denoise --stop denoised:0.2 --cap 400 "
     "--quiet ";
 
@@ -33,14 +33,9 @@ Channels ChannelsOf(const TemporaryDirectory& directory, const std::string& name
     return channels;
 }
 
-bool Succeeds(const TemporaryDirectory& directory, const std::string& command) {
-    const Outcome outcome = ExpectSuccess(RunShell(directory, command));
-    return outcome.exitCode == 0;
-}
-
 TEST(DenoiseOption, ImagesHaveWhatTheSamplesSayToo) {
     const BoxDirectory directory;
-    ASSERT_TRUE(Succeeds(directory, std::string(kDenoiseBox) + "-o clean.exr --report clean.json"));
+    ExpectSuccess(directory, kDenoiseBox + "-o clean.exr --report clean.json");
     const Channels clean = ChannelsOf(directory, "clean.exr");
     ASSERT_TRUE(clean.contains("noisy.R") && clean.contains("error"));
     for (const std::string name : {"R", "G", "B"}) {
@@ -50,10 +45,10 @@ TEST(DenoiseOption, ImagesHaveWhatTheSamplesSayToo) {
     for (const float e : clean.at("error")) EXPECT_TRUE(e >= 0 && std::isfinite(e));
 
     // The mean of the samples is that of a render that knows nothing of all this.
-    ASSERT_TRUE(Succeeds(directory,
-                         "LULL render scene.pbrt --resolution 96x80 --block 48 "
-                         "--sampler sobol-halves "
-                         "--stop thresholds:clean.thresholds.csv -o plain.exr"));
+    ExpectSuccess(directory,
+                  "render scene.pbrt --resolution 96x80 --block 48 "
+                  "--sampler sobol-halves "
+                  "--stop thresholds:clean.thresholds.csv -o plain.exr");
     const Channels plain = ChannelsOf(directory, "plain.exr");
     for (const std::string name : {"R", "G", "B"})
         EXPECT_EQ(clean.at("noisy." + name), plain.at(name));
@@ -79,7 +74,7 @@ TEST(DenoiseOption, StoppedBlocksHaveTheErrorThatStoppedThem) {
     ExpectSuccess(directory,
                   "render scene.pbrt --resolution 60x60 --block 60 --denoise --seed 6 -o a.exr "
                   "--report a.json");
-    const auto report = nlohmann::json::parse(ReadBytes(directory.File("a.json")));
+    const auto report = nlohmann::json::parse(directory.Bytes("a.json"));
     const auto& block = report["blocks"][0];
     ASSERT_EQ(block["end"], "clean");
     EXPECT_EQ(block["visibleDifference"]["estimate"], block["decisions"]["value"].back());
@@ -135,8 +130,8 @@ WorldEnd
                   "render scene.pbrt --max-depth 8 --spp 400 --seed 1 --denoise --quiet -o a.exr "
                   "--report a.json");
     ExpectSuccess(directory, "compare --automatic a.exr --reference truth.exr --quiet -o compared");
-    const auto report = nlohmann::json::parse(ReadBytes(directory.File("a.json")));
-    const auto found = nlohmann::json::parse(ReadBytes(directory.File("compared.compare.json")));
+    const auto report = nlohmann::json::parse(directory.Bytes("a.json"));
+    const auto found = nlohmann::json::parse(directory.Bytes("compared.compare.json"));
     const double error = found["images"][0]["figures"]["visibleDifference"];
     EXPECT_GT(error, 3);
     EXPECT_GE(report["blocks"][0]["visibleDifference"]["upper"], error);
@@ -146,7 +141,7 @@ TEST(DenoiseOption, BitsAreThoseOfAnyThreadsAndInterruptions) {
     const BoxDirectory directory;
     const std::string layers =
         kLongDenoiseBox +
-        std::string("--aov albedo,normal,depth,position,object,material,noise,alpha,cryptomatte ");
+        "--aov albedo,normal,depth,position,object,material,noise,alpha,cryptomatte ";
     const std::string render = layers + "--light-groups area ";
     ExpectSuccess(directory, render + "-o whole.exr --threads 1");
     const Channels whole = ChannelsOf(directory, "whole.exr");
@@ -172,8 +167,8 @@ TEST(DenoiseOption, BitsAreThoseOfAnyThreadsAndInterruptions) {
 
 TEST(DenoiseCommand, GivesWhatTheRenderGives) {
     const BoxDirectory directory;
-    ASSERT_TRUE(Succeeds(directory, std::string(kDenoiseBox) + "-o image.exr --denoise-layers"));
-    ASSERT_TRUE(Succeeds(directory, "LULL denoise image.exr -o again.exr"));
+    ExpectSuccess(directory, kDenoiseBox + "-o image.exr --denoise-layers");
+    ExpectSuccess(directory, "denoise image.exr -o again.exr");
     const Channels image = ChannelsOf(directory, "image.exr"),
                    again = ChannelsOf(directory, "again.exr");
     for (const std::string name : {"R", "G", "B"}) {
@@ -200,15 +195,15 @@ TEST(DenoiseOption, ClaimsNothingThatItCannotKnow) {
 
 TEST(DenoiseCommand, SaysWhatIsMissing) {
     const BoxDirectory directory;
-    ASSERT_TRUE(Succeeds(directory, "LULL render scene.pbrt --spp 20 -o a.exr"));
-    ASSERT_TRUE(Succeeds(directory, "LULL render scene.pbrt --spp 20 --resolution 30x30 -o b.exr"));
+    ExpectSuccess(directory, "render scene.pbrt --spp 20 -o a.exr");
+    ExpectSuccess(directory, "render scene.pbrt --spp 20 --resolution 30x30 -o b.exr");
     ExpectFailure(directory, "denoise a.exr -o out.exr", {"a.exr", "--denoise-layers"});
     ExpectFailure(directory, "denoise a.exr --half b.exr -o out.exr", {"b.exr", "30x30"});
     ExpectFailure(directory, "denoise scene.pbrt -o out.exr", {"scene.pbrt"});
     ExpectFailure(directory, "denoise missing.exr -o out.exr", {"missing.exr"});
     ExpectFailure(directory, "denoise a.exr --half a.exr -o out.exr", {"a.exr", "same"});
     ExpectFailure(directory, "render scene.pbrt -o out.exr --stop denoised", {"--denoise"}, 2);
-    ASSERT_TRUE(Succeeds(directory, "cp a.exr again.exr"));
+    ExpectSuccess(RunShell(directory, "cp a.exr again.exr"));
     ExpectFailure(directory, "denoise a.exr --half again.exr -o out.exr",
                   {"again.exr", "the same colours", "--seed"});
 }
@@ -244,7 +239,7 @@ TEST(DenoiseCommand, KnowsTheChannelsOfOthers) {
           {"Y"}}) {
         SCOPED_TRACE(names.back());
         WriteHalves(directory, names);
-        ASSERT_TRUE(Succeeds(directory, "LULL denoise a.exr --half b.exr -o out.exr"));
+        ExpectSuccess(directory, "denoise a.exr --half b.exr -o out.exr");
         const Channels out = ChannelsOf(directory, "out.exr");
         for (const std::string channel : {"R", "G", "B"}) {
             double error = 0, before = 0;
@@ -281,7 +276,7 @@ TEST(DenoiseCommand, RefusesOtherColours) {
     WriteHalves(directory, {"L", "a", "b"});
     ExpectFailure(directory, command, {"a.exr", "no channels R, G and B", "L"});
     WriteHalves(directory, {"Y", "Z"});  // grey, and depth
-    ASSERT_TRUE(Succeeds(directory, "LULL " + command));
+    ExpectSuccess(directory, command);
     EXPECT_EQ(RunLull(directory, "entropy a.exr --block 20").exitCode, 0);
     WriteHalves(directory, {"X", "Y", "Z"});
     ExpectFailure(directory, "entropy a.exr", {"a.exr", "X, Y, Z"});
@@ -296,7 +291,7 @@ TEST(DenoiseCommand, WritesNoColoursThatAreNotFinite) {
         if (channel.name.size() == 1) channel.values[1000] = INFINITY;
     }
     WriteExr(directory.File("a.exr"), exr);
-    ASSERT_TRUE(Succeeds(directory, "LULL denoise a.exr --half b.exr -o out.exr"));
+    ExpectSuccess(directory, "denoise a.exr --half b.exr -o out.exr");
     for (const auto& [name, values] : ChannelsOf(directory, "out.exr"))
         for (const float v : values) ASSERT_TRUE(std::isfinite(v)) << name;
 }

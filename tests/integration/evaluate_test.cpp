@@ -70,7 +70,7 @@ TEST(Evaluate, ComparesTwoFiles) {
     EXPECT_HAS(outcome.err, "1 of 2 viewpoints");
     // 100 early and 800 late of 4 blocks; the first is early, the third late.
     EXPECT_HAS(Line(outcome.out, "attic"), "  225    2.2   25.0   25.0") << outcome.out;
-    const std::string csv = ReadBytes(directory.File("out.csv"));
+    const std::string csv = directory.Bytes("out.csv");
     EXPECT_HAS(csv, "\npredicted,attic,,1,4,0,");
     EXPECT_HAS(csv, "\npredicted,all,,1,4,0,");
 
@@ -139,7 +139,7 @@ TEST(Evaluate, EvaluatesRulesBySingleAnswers) {
     EXPECT_HAS(outcome.out, "left out: 43 answers at spp where not every rule has");
     EXPECT_HAS(Line(outcome.out, "lnoise:0.5 "), "   100.0  ") << outcome.out;
     EXPECT_HAS(Line(outcome.out, "fixed:1600 "), "     0.0  ") << outcome.out;
-    EXPECT_HAS(ReadBytes(directory.File("out.csv")), "\nlnoise:0.5,attic,45,4,");
+    EXPECT_HAS(directory.Bytes("out.csv"), "\nlnoise:0.5,attic,45,4,");
     const Outcome brief = RunLull(directory, command + "--brief");
     EXPECT_FALSE(Contains(brief.out, "threshold  stops")) << brief.out;
 }

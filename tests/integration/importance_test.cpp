@@ -86,12 +86,12 @@ TEST(Importance, IsPartOfTheRuleWhereARenderResumes) {
     const MaskDirectory directory;
     const std::string rule = "--stop lnoise:0.4 ";
     directory.Stops(rule + "--importance mask.png");
-    const std::string whole = ReadBytes(directory.File("i.thresholds.csv"));
+    const std::string whole = directory.Bytes("i.thresholds.csv");
     const std::string keep = rule + "--checkpoint c.h5 --resume --keep-checkpoint ";
     directory.Stops(keep + "--max-spp 20");  // before the first block stops
     EXPECT_HAS(RunLull(directory, kRender + keep + "--importance mask.png").err,
                "with another rule");
-    EXPECT_EQ(ReadBytes(directory.File("i.thresholds.csv")), whole);
+    EXPECT_EQ(directory.Bytes("i.thresholds.csv"), whole);
 }
 
 TEST(Importance, IsRefusedWhereItHasNoEffect) {

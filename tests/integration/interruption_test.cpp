@@ -20,9 +20,8 @@ std::string RenderCommand(const std::string& more) {
 
 // Returns the image, the thresholds and the map as one text.
 std::string Results(const TemporaryDirectory& directory, const std::string& name) {
-    return ReadBytes(directory.File(name + ".png")) +
-           ReadBytes(directory.File(name + ".thresholds.csv")) +
-           ReadBytes(directory.File(name + ".spp.png"));
+    return directory.Bytes(name + ".png") + directory.Bytes(name + ".thresholds.csv") +
+           directory.Bytes(name + ".spp.png");
 }
 
 // Returns whether both linear images have the same bits.
@@ -58,7 +57,7 @@ TEST(Interruption, KilledRendersComeToTheSameBits) {
     EXPECT_GE(kills, 5);
     EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole"));
     EXPECT_TRUE(SameImages(directory, "parts", "whole"));
-    EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
+    EXPECT_FALSE(directory.Has("c.h5"));
 }
 
 TEST(Interruption, SignalsLeaveImageAndCheckpoint) {
@@ -67,8 +66,8 @@ TEST(Interruption, SignalsLeaveImageAndCheckpoint) {
         directory, RenderCommand("-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1"),
         SIGTERM, "c.h5");
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
-    EXPECT_TRUE(std::filesystem::exists(directory.File("parts.png")));
-    const std::string good = ReadBytes(directory.File("c.h5"));
+    EXPECT_TRUE(directory.Has("parts.png"));
+    const std::string good = directory.Bytes("c.h5");
     ASSERT_GT(good.size(), 1u << 16);
 
     // Without --resume the file is in the way.
@@ -84,7 +83,7 @@ TEST(Interruption, SignalsLeaveImageAndCheckpoint) {
     EXPECT_EQ(full.exitCode, 1) << full.err;
     EXPECT_EQ(CountErrorLines(full.err), 1) << full.err;
     EXPECT_HAS(full.err, "no checkpoint: cannot write \"c.h5\"");
-    EXPECT_EQ(ReadBytes(directory.File("c.h5")), good);
+    EXPECT_EQ(directory.Bytes("c.h5"), good);
 
     // Nor does another render go on from there.
     const auto errorOf = [&](const std::string& more) {
@@ -116,7 +115,7 @@ TEST(Interruption, GoesOnToMore) {
     const auto expectSame = [&](const std::string& before, const std::string& after) {
         std::filesystem::remove(directory.File("c.h5"));
         ExpectSuccess(render(keep + before));
-        ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
+        ASSERT_TRUE(directory.Has("c.h5"));
         const Outcome more = ExpectSuccess(render(keep + after));
         ExpectSuccess(render("-o whole.exr " + after));
         EXPECT_EQ(Results(directory, "parts"), Results(directory, "whole")) << after;
@@ -129,7 +128,7 @@ TEST(Interruption, GoesOnToMore) {
     // The rule that looks at passes in a row begins anew, with what there is.
     EXPECT_HAS(ExpectSuccess(render("--checkpoint c.h5 --resume -o parts.exr --cap 200")).err,
                "going on from c.h5, with another rule");
-    EXPECT_FALSE(std::filesystem::exists(directory.File("c.h5")));
+    EXPECT_FALSE(directory.Has("c.h5"));
 
     ExpectSuccess(render(keep + "--spp 30"));
     const Outcome fewer = render(keep + "--spp 20");
@@ -138,7 +137,7 @@ TEST(Interruption, GoesOnToMore) {
     // With nothing left to do the files are written again.
     std::filesystem::remove(directory.File("parts.exr"));
     ExpectSuccess(render(keep + "--spp 30"));
-    EXPECT_TRUE(std::filesystem::exists(directory.File("parts.exr")));
+    EXPECT_TRUE(directory.Has("parts.exr"));
 }
 
 TEST(Interruption, SaysHowToGoOn) {
@@ -172,8 +171,7 @@ TEST(Interruption, RecordingsComeToTheSameBits) {
     }
     ExpectSuccess(RunShell(directory, record + " -o parts.h5"));
     // The same but for the notes of what it cost, which are attributes of a few characters.
-    const std::string whole = ReadBytes(directory.File("whole.h5")),
-                      parts = ReadBytes(directory.File("parts.h5"));
+    const std::string whole = directory.Bytes("whole.h5"), parts = directory.Bytes("parts.h5");
     ASSERT_EQ(whole.size(), parts.size());
     size_t different = 0;
     for (size_t i = 0; i < whole.size(); ++i) different += whole[i] != parts[i];
@@ -181,7 +179,7 @@ TEST(Interruption, RecordingsComeToTheSameBits) {
 
     // What is there already is not recorded again.
     EXPECT_HAS(ExpectSuccess(RunShell(directory, record + " -o whole.h5")).err, "already");
-    EXPECT_EQ(ReadBytes(directory.File("whole.h5")), whole);
+    EXPECT_EQ(directory.Bytes("whole.h5"), whole);
 }
 
 }  // namespace

@@ -78,12 +78,15 @@ struct LayersTest : testing::Test {
     void Render(const std::string& options) {
         ExpectSuccess(directory, "render scene.pbrt --quiet " + options);
     }
-    // Expects that the light of groups adds up to R, G, B, within rounding and `tolerance` times
-    // the brightest value.
-    double MeanOf(const std::string& name, const char* channel) {
-        const std::vector<float> values = ReadExr(directory.File(name)).Find(channel)->values;
+    std::vector<float> Values(const std::string& file, const std::string& channel) {
+        return ReadExr(directory.File(file)).Find(channel)->values;
+    }
+    double MeanOf(const std::string& file, const std::string& channel) {
+        const std::vector<float> values = Values(file, channel);
         return std::accumulate(values.begin(), values.end(), 0.) / double(values.size());
     }
+    // Expects that the light of groups adds up to R, G, B, within rounding and `tolerance` times
+    // the brightest value.
     void ExpectSum(const std::string& file, const std::vector<std::string>& groups,
                    float tolerance = 1e-6f) {
         const ExrImage image = ReadExr(directory.File(file));
@@ -146,21 +149,18 @@ TEST_F(LayersTest, OfLightGroupsAddUpToTheImage) {
     Render("--spp 40 -o a.exr " + groups);
     EXPECT_EQ(OpenExr(directory.File("a.exr")).Text("lightGroups"), "bulb,key,rest");
     ExpectSum("a.exr", {"bulb", "key", "rest"});
-    EXPECT_EQ(ReadExr(directory.File("a.exr")).Find("G")->values,
-              ReadExr(directory.File("plain.exr")).Find("G")->values);
-    EXPECT_EQ(ReadBytes(directory.File("a.png")), ReadBytes(directory.File("plain.png")));
+    EXPECT_EQ(Values("a.exr", "G"), Values("plain.exr", "G"));
+    EXPECT_EQ(directory.Bytes("a.png"), directory.Bytes("plain.png"));
     Render("--spp 40 --denoise --aov albedo -o denoised.exr " + groups);
     ExpectSum("denoised.exr", {"bulb", "key", "rest"});
-    EXPECT_EQ(ReadExr(directory.File("denoised.exr")).Find("noisy.G")->values,
-              ReadExr(directory.File("plain.exr")).Find("G")->values);
+    EXPECT_EQ(Values("denoised.exr", "noisy.G"), Values("plain.exr", "G"));
     Render("--spp 40 --estimator pbrt-v3 -o b.exr --light-groups each");
     ExpectSum("b.exr", {"environment", "key", "bulb"});
     // Light paths belong to the group of the light that they start from.
     Render("--spp 40 --integrator bdpt -o e.exr");
     Render("--spp 40 --integrator bdpt --aov noise -o f.exr " + groups);
     ExpectSum("f.exr", {"bulb", "key", "rest"});
-    EXPECT_EQ(ReadExr(directory.File("f.exr")).Find("G")->values,
-              ReadExr(directory.File("e.exr")).Find("G")->values);
+    EXPECT_EQ(Values("f.exr", "G"), Values("e.exr", "G"));
     for (const char* group : {"light.bulb.G", "light.key.G", "light.rest.G"})
         EXPECT_NEAR(MeanOf("f.exr", group) / MeanOf("a.exr", group), 1, 0.05) << group;
     Render("--spp 40 --integrator bdpt --denoise -o g.exr " + groups);
@@ -221,7 +221,7 @@ TEST_F(LayersTest, LetTheBackgroundOut) {
     Render("--spp 16 --transparent --aov cryptomatte -o mattes.exr");
     const std::vector<float> share =  // of the only object
         OpenExr(directory.File("mattes.exr")).Channel("CryptoObject00.G");
-    EXPECT_HAS(ReadBytes(directory.File("mattes.exr")), std::string("/manifest\0string\0", 17));
+    EXPECT_HAS(directory.Bytes("mattes.exr"), std::string("/manifest\0string\0", 17));
     bool isPartial = false;
     for (size_t i = 0; i < alpha.size(); ++i) {
         // The sky is white.
@@ -237,9 +237,8 @@ TEST_F(LayersTest, LetTheBackgroundOut) {
 TEST_F(LayersTest, LetTheBackgroundOutOfTheSamplesToo) {
     Render("--spp 16 --sampler sobol --denoise --transparent -o denoised.exr");
     Render("--spp 16 --sampler sobol --transparent -o noisy.exr");
-    OpenExr denoised(directory.File("denoised.exr")), noisy(directory.File("noisy.exr"));
     for (const std::string c : {"R", "G", "B"})
-        EXPECT_EQ(denoised.Channel("noisy." + c), noisy.Channel(c));
+        EXPECT_EQ(Values("denoised.exr", "noisy." + c), Values("noisy.exr", c));
 }
 
 TEST_F(LayersTest, HalfIsForColours) {
@@ -276,8 +275,7 @@ TEST_F(LayersTest, PicturesAreBrightenedForTheView) {
     EXPECT_TRUE(SameChannels("a.exr", "b.exr"));
     const Image png = ReadImage(directory.File("b.png"));
     const auto& shown = std::get<std::vector<uint8_t>>(png.texels);
-    const ExrImage exr = ReadExr(directory.File("a.exr"));
-    const std::vector<float>& green = exr.Find("G")->values;
+    const std::vector<float> green = Values("a.exr", "G");
     for (size_t i = 0; i < green.size(); ++i)
         ASSERT_NEAR(shown[3 * i + 1], 255 * SrgbFromLinear(std::min(1.f, green[i] / 2)), 0.51f);
 }
@@ -297,10 +295,9 @@ colorspaces:
     const std::string ocio = "--spp 4 --ocio " + directory.File("half.ocio");
     Render(ocio + " --view half -o a.exr");
     EXPECT_EQ(OpenExr(directory.File("a.exr")).Text("pngToneMap"), "OpenColorIO screen/half");
-    const ExrImage exr = ReadExr(directory.File("a.exr"));
     const Image png = ReadImage(directory.File("a.png"));
     const auto& shown = std::get<std::vector<uint8_t>>(png.texels);
-    const std::vector<float>& green = exr.Find("G")->values;
+    const std::vector<float> green = Values("a.exr", "G");
     for (size_t i = 0; i < green.size(); ++i)
         ASSERT_NEAR(shown[3 * i + 1], 255 * std::clamp(green[i] / 2, 0.f, 1.f), 0.51f);
     Render(ocio + " --view half --transparent --png-bits 16 -o b.exr");

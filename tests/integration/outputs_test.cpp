@@ -174,7 +174,7 @@ TEST(Outputs, FilesThatCannotBeWrittenGoElsewhere) {
     EXPECT_EQ(ReadImage(directory.File(place)).texels,
               ReadImage(directory.File("whole.exr")).texels);
     for (const char* extension : {".png", ".spp.png", ".thresholds.csv"})
-        EXPECT_TRUE(fs::exists(directory.File(std::string("out") + extension))) << extension;
+        EXPECT_TRUE(directory.Has(std::string("out") + extension)) << extension;
 }
 
 // Neither the results of long renders of the laboratory nor former files are lost.
@@ -207,7 +207,7 @@ TEST(Outputs, FilesOfAllCommandsGoElsewhere) {
     EXPECT_EQ(CountErrorLines(small.err), 1) << small.err;
     EXPECT_HAS(small.err, "; lost: ");
     EXPECT_TRUE(small.err.ends_with("\"page.html\"\n")) << small.err;
-    EXPECT_EQ(ReadBytes(directory.File("page.html")), "former");
+    EXPECT_EQ(directory.Bytes("page.html"), "former");
 }
 
 }  // namespace

@@ -67,10 +67,10 @@ TEST(Pictures, AreRecordedAndJudgedAsScenesAre) {
                       "--split paper:split.csv" +
                           rules);
     EXPECT_HAS(test.err, "2 blocks that split.csv does not list");
-    EXPECT_TRUE(ReadBytes(directory.File("c.csv"))
-                    .starts_with("rule,viewpoint,block,human,stop,spp,value,threshold,noisy\n"
-                                 "entropy:1,room,2,200,"));
-    EXPECT_FALSE(Contains(ReadBytes(directory.File("c.csv")), "entropy:1,room,1,"));
+    EXPECT_TRUE(directory.Bytes("c.csv").starts_with(
+        "rule,viewpoint,block,human,stop,spp,value,threshold,noisy\n"
+        "entropy:1,room,2,200,"));
+    EXPECT_FALSE(Contains(directory.Bytes("c.csv"), "entropy:1,room,1,"));
     EXPECT_EQ(ExpectSuccess(directory, "evaluate --images room --block 50" + rules).out,
               fromData.out);
     EXPECT_HAS(
@@ -85,8 +85,8 @@ TEST(Pictures, MakeTheImageOfPeople) {
     for (const char* file : {"out.automatic.png", "out.human.png", "out.reference.png",
                              "out.thresholds.csv", "out.compare.json"})
         EXPECT_HAS(outcome.out, std::string(file) + "\n");
-    EXPECT_EQ(ReadBytes(directory.File("out.thresholds.csv")), "room;80;80;80;80;\n");
-    const auto json = nlohmann::json::parse(ReadBytes(directory.File("out.compare.json")));
+    EXPECT_EQ(directory.Bytes("out.thresholds.csv"), "room;80;80;80;80;\n");
+    const auto json = nlohmann::json::parse(directory.Bytes("out.compare.json"));
     ASSERT_EQ(json["images"].size(), 3u);
     // 60, 100 (the first of at least 90), 200 and 120 spp.
     EXPECT_EQ(json["images"][1]["name"], "human");
@@ -111,7 +111,7 @@ TEST(Pictures, HaveEntropies) {
                                       "entropy room/tex_100.png --block 50 --csv e.csv --values "
                                       "--attributes --sub-blocks 25");
     EXPECT_EQ(std::ranges::count(one.out, '\n'), 1 + 4 + 2) << one.out;
-    const std::string csv = ReadBytes(directory.File("e.csv"));
+    const std::string csv = directory.Bytes("e.csv");
     EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 1 + 4 * 26);
     EXPECT_HAS(csv, "\n,room/tex_100.png,100,,,0,0,100,100,") << csv.substr(0, 400);
     EXPECT_HAS(csv, "\n,room/tex_100.png,100,3,24,90,90,10,10,");
@@ -124,7 +124,7 @@ TEST(Pictures, HaveEntropies) {
     const Outcome folder = ExpectSuccess(directory, "entropy --images room --block 50 --csv f.csv");
     EXPECT_EQ(ExpectSuccess(directory, "entropy room/tex_*.png --block 50").out, folder.out);
     EXPECT_LT(folder.out.find("tex_40.png"), folder.out.find("tex_100.png"));
-    EXPECT_HAS(ReadBytes(directory.File("f.csv")), "\nroom,room/tex_200.png,200,3,,50,50,");
+    EXPECT_HAS(directory.Bytes("f.csv"), "\nroom,room/tex_200.png,200,3,,50,50,");
     ExpectFailure(directory, "entropy room/tex_20.png --block 7", {"tex_20.png", "too small"});
     ExpectFailure(directory, "entropy nowhere.png", {"nowhere.png"});
     for (const char* usage :
@@ -162,7 +162,7 @@ TEST(Laboratory, GoesFromPicturesToATableAndAFigure) {
     const Outcome study = ExpectSuccess(run("answers out 50"));
     EXPECT_HAS(study.out, "Give out/study.html to observers");
     // Observers answer, as the page saves it.
-    const std::string page = ReadBytes(directory.File("out/study.html"));
+    const std::string page = directory.Bytes("out/study.html");
     const size_t at = page.find("\"id\":\"") + 6;
     for (const char* observer : {"ada", "bo"})
         directory.Write(std::string("answers/") + observer + ".json",
@@ -172,14 +172,14 @@ TEST(Laboratory, GoesFromPicturesToATableAndAFigure) {
                                        .viewpoint = "kitchen"}
                             .Text());
     const Outcome whole = ExpectSuccess(run("answers out 50"));
-    EXPECT_HAS(ReadBytes(directory.File("out/human.csv")), "kitchen;40;80;160;320;");
+    EXPECT_HAS(directory.Bytes("out/human.csv"), "kitchen;40;80;160;320;");
     for (const char* file : {"entropies.csv", "collected.html", "data.h5", "own.h5", "blocks.csv",
                              "curves.csv", "kitchen.human.png", "compare.html"})
-        EXPECT_FALSE(ReadBytes(directory.File(std::string("out/") + file)).empty()) << file;
-    EXPECT_HAS(ReadBytes(directory.File("out/table.csv")), "learned:out/own.h5,");
+        EXPECT_FALSE(directory.Bytes(std::string("out/") + file).empty()) << file;
+    EXPECT_HAS(directory.Bytes("out/table.csv"), "learned:out/own.h5,");
     // With thresholds that are there already, there is nobody to ask.
     ExpectSuccess(run("out/human.csv again 50"));
-    EXPECT_FALSE(std::filesystem::exists(directory.File("again/study.html")));
+    EXPECT_FALSE(directory.Has("again/study.html"));
 }
 
 TEST(Preset, ListsItsValues) {

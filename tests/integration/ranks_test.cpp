@@ -41,8 +41,7 @@ struct RanksTest : testing::Test {
     void ExpectSame(const std::string& a, const std::string& b) {
         EXPECT_EQ(Texels(a), Texels(b)) << a << " " << b;
         for (const char* file : {".thresholds.csv", ".png", ".spp.png"})
-            EXPECT_EQ(ReadBytes(directory.File(a + file)), ReadBytes(directory.File(b + file)))
-                << a << " " << b;
+            EXPECT_EQ(directory.Bytes(a + file), directory.Bytes(b + file)) << a << " " << b;
     }
 
     // Expects the same files, with light groups and all other channels, of one process and of three
@@ -63,7 +62,7 @@ struct RanksTest : testing::Test {
         const Outcome some = ExpectSuccess(Run(Ranks(3) + render + "-o some.exr --preview 0.3"));
         EXPECT_EQ(some.out, "some.exr\nsome.png\nsome.spp.png\nsome.thresholds.csv\nr.html\n");
         EXPECT_FALSE(Contains(some.err, "workers")) << some.err;
-        EXPECT_FALSE(Contains(ReadBytes(directory.File("some.exr")), "interrupted"));
+        EXPECT_FALSE(Contains(directory.Bytes("some.exr"), "interrupted"));
         expectSameChannels("some");
 
         const std::string parts = render + "-o parts.exr --checkpoint c.h5 --resume ";
@@ -116,7 +115,7 @@ TEST_F(RanksTest, GoOnWithOthersAfterSignalsAndDeaths) {
     };
     EXPECT_TRUE(names(2) || names(0) || Contains(killed.err, "prterun noticed that process rank 2"))
         << killed.err;
-    ASSERT_TRUE(std::filesystem::exists(directory.File("c.h5")));
+    ASSERT_TRUE(directory.Has("c.h5"));
     std::filesystem::copy(directory.File("c.h5"), directory.File("before.h5"));
 
     ExpectSuccess(Run(Ranks(2) + parts));
@@ -135,8 +134,7 @@ TEST_F(RanksTest, GoOnWithoutOneThatIsStopped) {
             " & p=$!; while [ ! -e c.h5 ] && kill -0 $p; do sleep 0.02; done; "
             "mpi=$(echo $(cat /proc/$p/task/$p/children)); " +
             RankTwo("$mpi") + "kill -STOP $last; wait $p"));
-    const std::string line = "lull: warning: rank 2 has not responded for 5.0s";
-    EXPECT_HAS(stopped.err, line);
+    EXPECT_HAS(stopped.err, "lull: warning: rank 2 has not responded for 5.0s");
     EXPECT_EQ(stopped.out, "parts.exr\nparts.png\nparts.spp.png\nparts.thresholds.csv\n");
     ExpectSuccess(
         Run("LULL render scene.pbrt --resolution 100x90 --block 40 --quiet "
@@ -154,8 +152,7 @@ TEST_F(RanksTest, CompareAndRecord) {
     runBoth("compare" + size + "--block 25 --stop lnoise:0.5 --snapshots --denoise");
     for (const char* image : {".automatic", ".denoised", ".reference"})
         EXPECT_EQ(Texels(std::string("one") + image), Texels(std::string("some") + image));
-    EXPECT_EQ(ReadBytes(directory.File("one.thresholds.csv")),
-              ReadBytes(directory.File("some.thresholds.csv")));
+    EXPECT_EQ(directory.Bytes("one.thresholds.csv"), directory.Bytes("some.thresholds.csv"));
 
     runBoth("record --name a" + size + "--blocks 0");
     const std::vector<ViewpointRecording> one = ReadDataset(directory.File("one")),
@@ -167,16 +164,14 @@ TEST_F(RanksTest, CompareAndRecord) {
 }
 
 TEST_F(RanksTest, SaySharedErrorsOnce) {
-    const Outcome missing = Run(Ranks(3) + "LULL render nothing.pbrt");
-    EXPECT_EQ(missing.exitCode, 1);
-    EXPECT_EQ(CountErrorLines(missing.err), 1) << missing.err;
-    EXPECT_HAS(missing.err, "nothing.pbrt");
-
-    const Outcome info = Run(Ranks(2) + "LULL info scene.pbrt");
-    EXPECT_EQ(info.exitCode, 1);
-    EXPECT_EQ(CountErrorLines(info.err), 1) << info.err;
-    EXPECT_HAS(info.err, "several ranks");
-
+    for (const auto& [command, part] :
+         {std::pair(Ranks(3) + "LULL render nothing.pbrt", "nothing.pbrt"),
+          {Ranks(2) + "LULL info scene.pbrt", "several ranks"}}) {
+        const Outcome outcome = Run(command);
+        EXPECT_EQ(outcome.exitCode, 1);
+        EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
+        EXPECT_HAS(outcome.err, part);
+    }
     EXPECT_EQ(Run(Ranks(2) + "LULL render scene.pbrt --stop").exitCode, 2);
 
     const Outcome viewed = Run(Ranks(2) + kRender + "--display 127.0.0.1:9");

@@ -22,8 +22,8 @@ inline Outcome RunShell(const TemporaryDirectory& directory, std::string command
     const std::string line = "cd '" + directory.path.string() + "' && (" + command + ") >'" +
                              logs.File("out") + "' 2>'" + logs.File("err") + "' </dev/null";
     const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            ReadBytes(logs.File("out")), ReadBytes(logs.File("err"))};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), logs.Bytes("out"),
+            logs.Bytes("err")};
 }
 
 inline Outcome RunLull(const TemporaryDirectory& directory, const std::string& arguments) {
@@ -79,7 +79,7 @@ inline Outcome ExpectFailure(const TemporaryDirectory& directory, const std::str
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
     EXPECT_EQ(outcome.err.back(), '\n');
     for (const std::string& part : parts) EXPECT_HAS(outcome.err, part);
-    EXPECT_EQ(ReadBytes(directory.File("out.exr")), "precious");
+    EXPECT_EQ(directory.Bytes("out.exr"), "precious");
     EXPECT_EQ(directory.CountFiles(), filesBefore);
     return outcome;
 }

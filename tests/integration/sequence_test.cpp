@@ -38,41 +38,39 @@ struct SequenceDirectory : TemporaryDirectory {
     }
 };
 
-constexpr const char* kRender = "render moving.gltf --resolution 40x30 --spp 4 --quiet ";
+const std::string kRender = "render moving.gltf --resolution 40x30 --spp 4 --quiet ";
 
 TEST(Sequence, IsItsFrames) {
     const SequenceDirectory directory;
-    ExpectSuccess(directory, std::string(kRender) +
-                                 "--frames 0:0.75:4fps --shutter 0.1 -o a.exr --report a.json");
+    ExpectSuccess(directory,
+                  kRender + "--frames 0:0.75:4fps --shutter 0.1 -o a.exr --report a.json");
     for (int frame = 0; frame < 3; ++frame) {
         ExpectSuccess(directory, fmt::format("{}--frame {} --shutter 0.1 --seed {} -o one.exr",
                                              kRender, 0.25 * frame, frame + 1));
         EXPECT_TRUE(directory.Same(fmt::format("a.{:04}.exr", frame + 1), "one.exr")) << frame;
-        EXPECT_TRUE(
-            std::filesystem::exists(directory.File(fmt::format("a.{:04}.json", frame + 1))));
+        EXPECT_TRUE(directory.Has(fmt::format("a.{:04}.json", frame + 1)));
     }
     EXPECT_FALSE(directory.Same("a.0001.exr", "a.0003.exr"));
-    EXPECT_FALSE(std::filesystem::exists(directory.File("a.0004.exr")));
+    EXPECT_FALSE(directory.Has("a.0004.exr"));
 }
 
 TEST(Sequence, HasASeedForEachFrame) {
     const SequenceDirectory directory;
-    const std::string command = std::string(kRender) + "--shutter 0 --frames ";
+    const std::string command = kRender + "--shutter 0 --frames ";
     // All three show the end of the animation, and differ by their grain alone.
     ExpectSuccess(directory, command + "2:5:1 -o own.exr --seed 5");
     ExpectSuccess(directory, command + "2:5:1 -o same.exr --seed 7 --same-seed");
     EXPECT_FALSE(directory.Same("own.0001.exr", "own.0002.exr"));
     EXPECT_TRUE(directory.Same("own.0002.exr", "same.0001.exr"));
     EXPECT_TRUE(directory.Same("same.0001.exr", "same.0003.exr"));
-    EXPECT_EQ(RunLull(directory, std::string(kRender) + "--frame 0 --same-seed").exitCode, 2);
+    EXPECT_EQ(RunLull(directory, kRender + "--frame 0 --same-seed").exitCode, 2);
 }
 
 TEST(Sequence, GoesOnWithTheFramesThatAreLeft) {
     const SequenceDirectory directory;
-    const std::string command =
-        std::string(kRender) + "--frames 0:0.5:4 --checkpoint c.h5 --resume";
+    const std::string command = kRender + "--frames 0:0.5:4 --checkpoint c.h5 --resume";
     ExpectSuccess(directory, command);
-    EXPECT_FALSE(std::filesystem::exists(directory.File("c.0001.h5")));
+    EXPECT_FALSE(directory.Has("c.0001.h5"));
     const auto first = std::filesystem::last_write_time(directory.File("moving.0001.exr"));
     std::filesystem::remove(directory.File("moving.0002.exr"));
     const Outcome again = ExpectSuccess(directory, command);
@@ -84,12 +82,12 @@ TEST(Sequence, GoesOnWithTheFramesThatAreLeft) {
 TEST(Sequence, KnowsFramesThatAreNotDone) {
     const SequenceDirectory directory;
     const std::string command =
-        std::string(kRender) + "--frames 0:0.5:4 --checkpoint c.h5 --resume --report r.json ";
+        kRender + "--frames 0:0.5:4 --checkpoint c.h5 --resume --report r.json ";
     ExpectSuccess(directory, command + "-o a.exr");
     EXPECT_EQ(ExpectSuccess(directory, command + "-o a.exr").out, "");
     for (const char* file :
          {"a.0001.png", "a.0001.spp.png", "a.0001.thresholds.csv", "r.0001.json", "a.0001.exr"}) {
-        const std::string whole = ReadBytes(directory.File(file));
+        const std::string whole = directory.Bytes(file);
         for (const size_t left : {whole.size(), whole.size() * 9 / 10}) {
             if (left == whole.size())
                 std::filesystem::remove(directory.File(file));
@@ -109,13 +107,10 @@ TEST(Sequence, KnowsFramesThatAreNotDone) {
 
 TEST(Sequence, IsRefusedWhereItCannotBe) {
     const SequenceDirectory directory;
-    for (const char* frames : {"0:1", "1:0:24", "0:1:0", "0:1:24mm", "0:1e9:24", "nan:1:1"})
-        EXPECT_EQ(RunLull(directory, kRender + std::string("--frames ") + frames).exitCode, 2)
-            << frames;
-    EXPECT_EQ(RunLull(directory, kRender + std::string("--frames 0:1:2 --frame 0")).exitCode, 2);
-    EXPECT_EQ(RunLull(directory, kRender + std::string("--frames 0:1:2 --until 09:00")).exitCode,
-              2);
-    EXPECT_EQ(RunLull(directory, kRender + std::string("--shutter 0.1")).exitCode, 2);
+    for (const char* frames : {"0:1", "1:0:24", "0:1:0", "0:1:24mm", "0:1e9:24", "nan:1:1",
+                               "0:1:2 --frame 0", "0:1:2 --until 09:00"})
+        EXPECT_EQ(RunLull(directory, kRender + "--frames " + frames).exitCode, 2) << frames;
+    EXPECT_EQ(RunLull(directory, kRender + "--shutter 0.1").exitCode, 2);
     directory.Write("scene.pbrt", SceneText(kSphere));
     EXPECT_EQ(RunLull(directory, "render scene.pbrt --frames 0:1:2").exitCode, 1);
 }

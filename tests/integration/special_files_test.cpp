@@ -34,7 +34,7 @@ void ExpectOneWriter(const TemporaryDirectory& directory, const std::string& com
     EXPECT_HAS(outcome.out, "then 0\n") << outcome.out << outcome.err;
     EXPECT_EQ(CountErrorLines(outcome.err), 1) << outcome.err;
     EXPECT_HAS(outcome.err, "another process is writing " + file);
-    EXPECT_FALSE(std::filesystem::exists(directory.File(lock)));
+    EXPECT_FALSE(directory.Has(lock));
 }
 
 TEST(Writers, OfOneCheckpointAreOne) {

@@ -13,7 +13,7 @@ void ExpectImage(const SceneDirectory& directory, const std::string& command, in
     ExpectSuccess(RunShell(directory, kRender + std::string(" -o whole.exr --quiet")));
     const Outcome outcome = RunShell(directory, command);
     EXPECT_EQ(outcome.exitCode, exitCode) << command << outcome.err;
-    ASSERT_TRUE(std::filesystem::exists(directory.File("out.exr"))) << command;
+    ASSERT_TRUE(directory.Has("out.exr")) << command;
     EXPECT_EQ(ReadImage(directory.File("out.exr")).texels,
               ReadImage(directory.File("whole.exr")).texels);
 }
@@ -49,8 +49,8 @@ TEST(Streams, ClosedTerminalsLeaveImageAndCheckpoint) {
         "-o parts.exr --checkpoint c.h5 --checkpoint-interval 0.1",
         SIGHUP, "c.h5");
     EXPECT_EQ(interrupted.exitCode, 130) << interrupted.err;
-    EXPECT_TRUE(std::filesystem::exists(directory.File("c.h5")));
-    EXPECT_TRUE(std::filesystem::exists(directory.File("parts.exr")));
+    EXPECT_TRUE(directory.Has("c.h5"));
+    EXPECT_TRUE(directory.Has("parts.exr"));
 }
 
 TEST(Streams, LostResultsAreAnError) {

@@ -16,13 +16,8 @@ std::string StudyIn(const std::string& page) {
     return page.substr(std::min(begin, page.size()));
 }
 
-void WriteScene(const TemporaryDirectory& directory) {
-    directory.Write("scene.pbrt", SceneText(kSphere));
-}
-
 TEST(Study, RecordsWhatRecordDoes) {
-    const TemporaryDirectory directory;
-    WriteScene(directory);
+    const SceneDirectory directory;
     const std::string same = " scene.pbrt --resolution 60x40 --cap 60 --name room --quiet ";
     const Outcome judge = ExpectSuccess(directory, "study -o s.html --record a.h5" + same);
     EXPECT_HAS(judge.out, "s.html\na.h5\n");
@@ -38,8 +33,7 @@ TEST(Study, RecordsWhatRecordDoes) {
 }
 
 TEST(Study, GoesOnWhereItWasInterrupted) {
-    const TemporaryDirectory directory;
-    WriteScene(directory);
+    const SceneDirectory directory;
     const std::string command =
         "LULL study scene.pbrt --resolution 80x80 --block 40 --cap 400 --threads 1 --quiet "
         "--checkpoint-interval 0.1 -o ";
@@ -48,17 +42,15 @@ TEST(Study, GoesOnWhereItWasInterrupted) {
     ASSERT_EQ(interrupted.exitCode, 130) << interrupted.err;
     EXPECT_HAS(interrupted.err, "interrupted; to resume: ");
     EXPECT_FALSE(Contains(interrupted.err, "--resume")) << interrupted.err;
-    EXPECT_EQ(ReadBytes(directory.File("a.html")), "");
+    EXPECT_EQ(directory.Bytes("a.html"), "");
     ExpectSuccess(RunShell(directory, command + "a.html"));
     ExpectSuccess(RunShell(directory, command + "b.html"));
-    EXPECT_EQ(StudyIn(ReadBytes(directory.File("a.html"))),
-              StudyIn(ReadBytes(directory.File("b.html"))));
+    EXPECT_EQ(StudyIn(directory.Bytes("a.html")), StudyIn(directory.Bytes("b.html")));
     EXPECT_EQ(directory.CountFiles(), 3);  // the scene and two studies
 }
 
 TEST(Study, TakesPicturesOfOtherRenderers) {
-    const TemporaryDirectory directory;
-    WriteScene(directory);
+    const SceneDirectory directory;
     std::filesystem::create_directory(directory.path / "pictures");
     for (const char* spp : {"20", "40", "80"}) {
         ExpectSuccess(
@@ -78,7 +70,7 @@ TEST(Study, TakesPicturesOfOtherRenderers) {
     EXPECT_HAS(other.err, "6 blocks at 3 levels: 20, 40, 80 spp");
     // The same pictures, bit for bit: the images that lull itself would have rendered.
     const auto pictures = [&](const char* file) {
-        const std::string page = StudyIn(ReadBytes(directory.File(file)));
+        const std::string page = StudyIn(directory.Bytes(file));
         return page.substr(page.find("id=\"pictures-0\""));
     };
     EXPECT_EQ(pictures("own.html"), pictures("other.html"));
@@ -97,22 +89,20 @@ TEST(Study, CollectsThresholdsAndSaysWhoWasLeftOut) {
               "human.csv\nhuman.details.csv\nhuman.observers.csv\nhuman.answers.csv\nr.html\n");
     EXPECT_HAS(outcome.err, "c.json: c failed 3 of 4 checks; left out");
     EXPECT_HAS(outcome.err, "d.json: is not JSON, or cut short; left out");
-    EXPECT_EQ(ReadBytes(directory.File("human.csv")), "room;100;80;160;320;\n");
-    const std::string observers = ReadBytes(directory.File("human.observers.csv"));
+    EXPECT_EQ(directory.Bytes("human.csv"), "room;100;80;160;320;\n");
+    const std::string observers = directory.Bytes("human.observers.csv");
     EXPECT_HAS(observers, "a.json,room,\"a, \"\"b\"\"\",yes,");
     EXPECT_HAS(observers, "c.json,room,c,no,failed 3 of 4 checks,");
     EXPECT_HAS(observers, "d.json,,,no,\"is not JSON, or cut short\",");
-    EXPECT_HAS(ReadBytes(directory.File("human.details.csv")),
-               "room,0,2,100,40,160,84.85,1.414,2\n");
+    EXPECT_HAS(directory.Bytes("human.details.csv"), "room,0,2,100,40,160,84.85,1.414,2\n");
     EXPECT_HAS(outcome.err, "rest on as few as 2 answers; they are rough");
-    EXPECT_TRUE(ReadBytes(directory.File("human.answers.csv"))
+    EXPECT_TRUE(directory.Bytes("human.answers.csv")
                     .starts_with("block,spp,noise_seen,observer,track\n0,40,0,"));
     EXPECT_EQ(ReadThresholds(directory.File("human.csv")).at(0).spp.size(), 4u);
 }
 
 TEST(Study, RefusesWhatDoesNotFit) {
-    const TemporaryDirectory directory;
-    WriteScene(directory);
+    const SceneDirectory directory;
     directory.Write("bad.json", "{}");
     ExpectFailure(directory, "study --collect bad.json -o human.csv", {"none of 1 files"});
     ExpectFailure(directory, "study --collect bad.json -o human.csv --study bad.json",

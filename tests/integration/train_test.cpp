@@ -39,7 +39,7 @@ TEST(Train, WritesTheSameModelOnAnyNumberOfThreads) {
     EXPECT_TRUE(SameWeights(one.network, two.network));
     EXPECT_EQ(one.settings.k, 4);
     EXPECT_EQ(one.settings.voteSpacing, 40);
-    EXPECT_FALSE(std::filesystem::exists(directory.File("one.h5.checkpoint")));
+    EXPECT_FALSE(directory.Has("one.h5.checkpoint"));
 }
 
 TEST(Train, GoesOnAfterAnInterruption) {
@@ -69,7 +69,7 @@ TEST(Train, LeavesEachViewpointOutAndWritesAModelOfAll) {
     const Outcome outcome =
         ExpectSuccess(directory, options + "--cross-validate -o model.h5 --csv judged.csv");
     EXPECT_HAS(outcome.out, "each viewpoint left out");
-    EXPECT_HAS(ReadBytes(directory.File("judged.csv")), "barn-b");
+    EXPECT_HAS(directory.Bytes("judged.csv"), "barn-b");
     const Model model = ReadModel(directory.File("model.h5"));
     EXPECT_EQ(FeatureNames(model.settings.features), "H,visible_drop");
     ExpectSuccess(directory, "evaluate data.h5 --human human.csv --stop learned:model.h5");

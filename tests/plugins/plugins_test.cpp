@@ -54,14 +54,10 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     return result;
 }
 
-std::unique_ptr<const Scene> Load(const std::string& name) {
-    return SceneIn(fmt::format("{}/scenes/{}.pbrt", LULL_PLUGINS_DIR, name), CompileOptions());
-}
-
 class Plugins : public testing::TestWithParam<std::string> {};
 
 TEST_P(Plugins, LookAsInPbrt) {
-    const auto scene = Load(GetParam());
+    const auto scene = SceneIn(fmt::format("{}/scenes/{}.pbrt", LULL_PLUGINS_DIR, GetParam()));
     const PixelStatistics theirs =
         ReadStatistics(fmt::format("{}/references/{}.exr", LULL_PLUGINS_DIR, GetParam()));
     const int samples = FromEnvironment("LULL_PLUGIN_SAMPLES", 256);

@@ -42,12 +42,12 @@ inline void WriteBytes(const std::string& path, std::span<const std::byte> bytes
         .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
 }
 
-// Returns the message of a std::runtime_error thrown by `call`; empty where none was thrown.
-template <typename Call>
+// Returns the message of an exception of this type thrown by `call`; empty where none was thrown.
+template <typename Exception = std::runtime_error, typename Call>
 std::string WhatOf(const Call& call) {
     try {
         call();
-    } catch (const std::runtime_error& error) {
+    } catch (const Exception& error) {
         return error.what();
     }
     return "";

@@ -32,18 +32,9 @@ TEST(OffsetRayOrigin, LeavesTheErrorBoxOnTheRightSide) {
 
 TEST(NextFloatTowards, IsTheNextFloat) {
     test::Random random(9);
-    std::vector<float> values = {0,
-                                 -0.f,
-                                 1,
-                                 -1,
-                                 0x1p-149f,
-                                 -0x1p-149f,
-                                 0x1p-126f,
-                                 -0x1p-126f,
-                                 0x1.fffffep127f,
-                                 -0x1.fffffep127f,
-                                 2,
-                                 -2};
+    constexpr float kMost = 0x1.fffffep127f, kLeast = 0x1p-149f, kNormal = 0x1p-126f;
+    std::vector<float> values = {0,       -0.f,     1,     -1,     kLeast, -kLeast,
+                                 kNormal, -kNormal, kMost, -kMost, 2,      -2};
     for (int k = 0; k < 10000; ++k)
         values.push_back(std::ldexp(random.Float() - 0.5f, int(random.Float() * 250) - 125));
     for (const float v : values) {

@@ -72,8 +72,7 @@ TEST(Regression, KeepsEdgesThatTheGuideSees) {
     const Planes features = FlatFeatures(100, 60);
     const NoisyPicture noisy = AddNoise(truth, features, 0.02, 5);
     const Planes variance(100, 60, 3, 0.0004f);
-    const Planes result = Regress(noisy.colour.a, features, {noisy.colour.b, variance})[0];
-    EXPECT_LT(Rms(result, truth), 0.01);
+    EXPECT_LT(Rms(Regress(noisy.colour.a, features, {noisy.colour.b, variance})[0], truth), 0.01);
 }
 
 TEST(Planes, AreFilteredByBoxes) {

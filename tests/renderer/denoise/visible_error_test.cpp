@@ -156,8 +156,7 @@ TEST(MissingDetail, IsNoneWhereTheHalvesTellAsMuch) {
 }
 
 TEST(MissingDetail, IsNoneInBlocksThatAreTooSmallToTell) {
-    const Planes missing = MissingDetail(Lacking(0.1, Waves, 1, 7), 1);
-    EXPECT_EQ(missing.values, Planes(7, 7, 1).values);
+    EXPECT_EQ(MissingDetail(Lacking(0.1, Waves, 1, 7), 1).values, Planes(7, 7, 1).values);
 }
 
 // Returns the worst pixels of a grey picture whose pixels of these indices are lighter or darker.

@@ -49,7 +49,7 @@ TEST(WriteFileAtomically, WritesNamesAtTheLimitAndRelativeOnes) {
     EXPECT_NO_THROW(CheckWritable("relative.json"));
     WriteFileAtomically("relative.json", "2");
     fs::current_path(before);
-    EXPECT_EQ(ReadBytes(directory.File("relative.json")), "2");
+    EXPECT_EQ(directory.Bytes("relative.json"), "2");
 }
 
 TEST(WriteFileAtomically, RefusesWithReason) {

@@ -94,7 +94,7 @@ TEST(ResultFiles, AreWhereTheyShouldBe) {
     EXPECT_NO_THROW(results.Check());
     EXPECT_EQ(results.Names(),
               (std::vector<std::string>{directory.File("a.csv"), directory.File("b.csv")}));
-    EXPECT_EQ(ReadBytes(directory.File("b.csv")), "b");
+    EXPECT_EQ(directory.Bytes("b.csv"), "b");
 }
 
 TEST(ResultFiles, GoElsewhereOneByOne) {

@@ -15,6 +15,11 @@
 
 namespace lull {
 
+inline std::string ReadBytes(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
 // Gives a test a directory of its own, gone with everything in it when the test ends.
 struct TemporaryDirectory {
     std::filesystem::path path;
@@ -32,6 +37,8 @@ struct TemporaryDirectory {
     }
 
     std::string File(const std::string& name) const { return (path / name).string(); }
+    std::string Bytes(const std::string& name) const { return ReadBytes(File(name)); }
+    bool Has(const std::string& name) const { return std::filesystem::exists(path / name); }
 
     // Writes a file, with the directories that its name has, and returns its path.
     std::string Write(const std::string& name, std::string_view bytes) const {
@@ -58,16 +65,12 @@ struct TemporaryDirectory {
     }
 };
 
-inline std::string ReadBytes(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// Decodes pairs of hexadecimal digits.
+// Decodes pairs of hexadecimal digits, with or without blanks between them.
 inline std::string FromHex(std::string_view hex) {
     std::string bytes;
-    for (size_t i = 0; i + 1 < hex.size(); i += 2)
-        bytes += char(std::strtol(std::string(hex.substr(i, 2)).c_str(), nullptr, 16));
+    for (size_t i = 0; i + 1 < hex.size(); i += hex[i] == ' ' ? 1 : 2)
+        if (hex[i] != ' ')
+            bytes += char(std::strtol(std::string(hex.substr(i, 2)).c_str(), nullptr, 16));
     return bytes;
 }
 

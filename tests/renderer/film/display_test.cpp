@@ -74,26 +74,9 @@ TEST(Display, SendsTevsMessages) {
         display.Finish(60);
     }
     ASSERT_EQ(server.Finish().size(), 1u);
-    std::string create =
-        "27000000"
-        "04"
-        "01"
-        "612e65787200"
-        "02000000"
-        "01000000"
-        "05000000";
-    std::string update =
-        "a7000000"
-        "06"
-        "00"
-        "612e65787200"
-        "05000000";
-    const std::string names =
-        "5200"
-        "4700"
-        "4200"
-        "73707000"
-        "73746f7000";
+    const std::string names = "5200 4700 4200 73707000 73746f7000 ";
+    const std::string create =
+        FromHex("27000000 04 01 612e65787200 02000000 01000000 05000000 " + names);
     const auto numbers = [](std::initializer_list<int> values, int digits) {
         std::string hex;
         for (const int v : values) {
@@ -103,28 +86,17 @@ TEST(Display, SendsTevsMessages) {
         }
         return hex;
     };
-    create += names;
-    update += names + numbers({0, 0, 2, 1}, 8) + numbers({0, 1, 2, 3, 4}, 16) +
-              numbers({5, 5, 5, 5, 5}, 16);
+    std::string update = "a7000000 06 00 612e65787200 05000000 " + names;
     update +=
-        "0000803f"
-        "00000040"
-        "0000003f"
-        "0000803f"
-        "00000000";  // 1, 2, .5, 1 spp, goes on
-    update +=
-        "00000000"
-        "00000000"
-        "0000803f"
-        "0000803f"
-        "0000803f";
-    const std::string expected = FromHex(create) + FromHex(update);
+        numbers({0, 0, 2, 1}, 8) + numbers({0, 1, 2, 3, 4}, 16) + numbers({5, 5, 5, 5, 5}, 16);
+    update += "0000803f 00000040 0000003f 0000803f 00000000";  // 1, 2, .5, 1 spp, goes on
+    update += "00000000 00000000 0000803f 0000803f 0000803f";
     // What is shown between two looks goes as one message, or as two.
     const std::string& got = server.Finish()[0];
-    EXPECT_EQ(got.substr(0, create.size() / 2), FromHex(create));
+    EXPECT_EQ(got.substr(0, create.size()), create);
     const ViewedImage image = Reassemble(got);
     if (image.updates == 1) {
-        EXPECT_EQ(got, expected);
+        EXPECT_EQ(got, create + FromHex(update));
     }
     EXPECT_EQ(image.channels.at("R"), (std::vector<float>{1, 0}));
     EXPECT_EQ(image.channels.at("stop"), (std::vector<float>{0, 1}));

@@ -94,7 +94,10 @@ struct OneChannel {
     Imf::Header header{7, 5};
     std::vector<float> values = std::vector<float>(35);
 
-    OneChannel() { std::iota(values.begin(), values.end(), 1.f); }
+    explicit OneChannel(Imf::PixelType type = Imf::FLOAT) {
+        header.channels().insert("Y", Imf::Channel(type));
+        std::iota(values.begin(), values.end(), 1.f);
+    }
     Imf::FrameBuffer Frame(Imf::PixelType type, const void* texels) const {
         Imf::FrameBuffer frame;
         frame.insert("Y", Imf::Slice::Make(type, texels, header.dataWindow()));
@@ -113,7 +116,6 @@ struct OneChannel {
 
 TEST(ExrFile, ReadsTiles) {
     OneChannel file;
-    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     file.header.setTileDescription(Imf::TileDescription(4, 2, Imf::MIPMAP_LEVELS));
     {
         Imf::TiledOutputFile out(file.path.c_str(), file.header);
@@ -131,7 +133,6 @@ TEST(ExrFile, ReadsTiles) {
 // As other programs store a pair in one part: those of the first view have no name before theirs.
 TEST(ExrFile, TellsItsViews) {
     OneChannel file;
-    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     file.Write(Imf::FLOAT, file.values.data());
     EXPECT_EQ(ReadExr(file.path).views, Names());
     Imf::addMultiView(file.header, {"left", "right"});
@@ -143,8 +144,7 @@ TEST(ExrFile, TellsItsViews) {
 }
 
 TEST(ExrFile, TurnsIntegersIntoZeroToOne) {
-    OneChannel file;
-    file.header.channels().insert("Y", Imf::Channel(Imf::UINT));
+    const OneChannel file(Imf::UINT);
     std::vector<uint32_t> integers(35, 1u << 30);
     integers[34] = 0xffffffff;
     file.Write(Imf::UINT, integers.data());
@@ -156,7 +156,6 @@ TEST(ExrFile, TurnsIntegersIntoZeroToOne) {
 
 TEST(ExrFile, RefusesDeepAndSubsampledData) {
     OneChannel file;
-    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     file.header.channels().insert("RY", Imf::Channel(Imf::HALF, 7, 5));
     { Imf::OutputFile(file.path.c_str(), file.header); }
     file.ExpectError("a.exr\": subsampled channels are not supported (RY)");
@@ -172,7 +171,6 @@ TEST(ExrFile, RefusesDeepAndSubsampledData) {
 // The library would allocate them first.
 TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
     OneChannel file;
-    file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     file.header.insert("note", Imf::StringAttribute("hello"));
     file.Write(Imf::FLOAT, file.values.data());
     std::string bytes = ReadBytes(file.path);
@@ -197,7 +195,6 @@ TEST(ExrFile, RefusesAttributesThatAreLongerThanTheFile) {
 TEST(ExrFile, KnowsOtherPrimaries) {
     for (const bool isOther : {false, true}) {
         OneChannel file;
-        file.header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
         Imf::Chromaticities primaries;
         if (isOther) primaries.red = {0.7347f, 0.2653f};  // ACES
         Imf::addChromaticities(file.header, primaries);

@@ -66,34 +66,30 @@ Image ReadFromBytes(const std::string& name, std::string_view bytes) {
     return ReadImage(directory.Write(name, bytes));
 }
 
+// Palettes are undone, and alpha is left unassociated.
 TEST(ReadImage, ReadsEightBitPng) {
-    const Image grey = ReadFromBytes("grey.png", FromHex(kGreyPng));
-    EXPECT_EQ(grey.width, 2);
-    EXPECT_EQ(grey.height, 2);
-    EXPECT_EQ(grey.channels, 1);
-    EXPECT_EQ(Texels<uint8_t>(grey), (std::vector<uint8_t>{0, 64, 128, 255}));
-    EXPECT_EQ(grey.Bytes(), 4u);
-
-    EXPECT_EQ(Texels<uint8_t>(ReadFromBytes("bits.png", FromHex(kBilevelPng))),
-              (std::vector<uint8_t>{0, 255}));
-
-    const Image rgb = ReadFromBytes("rgb.png", FromHex(kRgbPng));
-    EXPECT_EQ(rgb.channels, 3);
-    EXPECT_EQ(Texels<uint8_t>(rgb),
-              (std::vector<uint8_t>{10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 255}));
-
-    const Image palette = ReadFromBytes("palette.png", FromHex(kPalettePng));
-    EXPECT_EQ(palette.channels, 3);
-    EXPECT_EQ(Texels<uint8_t>(palette), (std::vector<uint8_t>{40, 50, 60, 10, 20, 30}));
+    struct Case {
+        const char* hex;
+        int width, channels;
+        std::vector<uint8_t> texels;
+    };
+    for (const Case& c :
+         {Case{kGreyPng, 2, 1, {0, 64, 128, 255}}, Case{kBilevelPng, 2, 1, {0, 255}},
+          Case{kRgbPng, 2, 3, {10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 255}},
+          Case{kPalettePng, 2, 3, {40, 50, 60, 10, 20, 30}},
+          Case{kRgbaPng, 2, 4, {200, 100, 50, 0, 10, 20, 30, 128}},
+          Case{kTransparentPng, 5, 4, {10, 20,  30,  255, 40,  50,  60, 0,  70, 80,
+                                       90, 255, 100, 110, 120, 255, 10, 20, 30, 255}}}) {
+        const Image image = ReadFromBytes("a.png", FromHex(c.hex));
+        EXPECT_EQ(image.width, c.width);
+        EXPECT_EQ(image.height, int(c.texels.size()) / (c.width * c.channels));
+        EXPECT_EQ(image.channels, c.channels);
+        EXPECT_EQ(Texels<uint8_t>(image), c.texels);
+        EXPECT_EQ(image.Bytes(), c.texels.size());
+    }
 }
 
-TEST(ReadImage, LeavesAlphaUnassociated) {
-    const Image rgba = ReadFromBytes("rgba.png", FromHex(kRgbaPng));
-    EXPECT_EQ(rgba.channels, 4);
-    EXPECT_EQ(Texels<uint8_t>(rgba), (std::vector<uint8_t>{200, 100, 50, 0, 10, 20, 30, 128}));
-}
-
-TEST(ReadImage, UndoesInterlacingAndPalettes) {
+TEST(ReadImage, UndoesInterlacing) {
     // The gamma that the file names changes nothing.
     const Image interlaced = ReadFromBytes("a.png", FromHex(kInterlacedPng));
     EXPECT_EQ(interlaced.width, 3);
@@ -104,12 +100,6 @@ TEST(ReadImage, UndoesInterlacingAndPalettes) {
             for (const int v : {1000 * x + 7 * y, 65535 - x - y})
                 expected.push_back(float(v) / 65535);
     ExpectNear(Texels<float>(interlaced), expected, 1e-7f);
-
-    const Image transparent = ReadFromBytes("a.png", FromHex(kTransparentPng));
-    EXPECT_EQ(transparent.channels, 4);
-    EXPECT_EQ(Texels<uint8_t>(transparent),
-              (std::vector<uint8_t>{10, 20,  30,  255, 40,  50,  60, 0,  70, 80,
-                                    90, 255, 100, 110, 120, 255, 10, 20, 30, 255}));
 }
 
 // The format is that of the bytes, whatever the name.
@@ -167,9 +157,6 @@ TEST(ReadImage, ReadsRadianceHdr) {
 // 2 columns, 3 rows, stored in all eight orders; each texel is as bright as its place.
 TEST(ReadImage, TurnsRadianceHdrUpright) {
     const std::string texels = FromHex("808080818080808280808083808080848080808580808086");
-    const auto brightness = [](uint8_t exponent) {
-        return std::ldexp(128 / 256.f, exponent - 128);
-    };
     struct Order {
         const char* size;
         std::array<int, 6> at;  // the place among the stored texels of each texel
@@ -185,20 +172,10 @@ TEST(ReadImage, TurnsRadianceHdrUpright) {
         ASSERT_EQ(image.width, 2) << order.size;
         ASSERT_EQ(image.height, 3) << order.size;
         for (size_t i = 0; i < 6; ++i) {
-            const float expected = brightness(uint8_t(0x81 + order.at[i]));
+            const float expected = std::ldexp(128 / 256.f, 1 + order.at[i]);
             EXPECT_NEAR(Texels<float>(image)[3 * i], expected, 0.01f * expected) << order.size << i;
         }
     }
-}
-
-// 8x2 texels of one bit, which a file need not say.
-TEST(ReadImage, RefusesTiffOfOneBit) {
-    const std::string tiff = FromHex(
-        "49492a0008000000060000010300010000000800000001010300010000000200000006010300010000000100"
-        "00001101040001000000560000001601030001000000020000001701040001000000020000000000000055aa");
-    const TemporaryDirectory directory;
-    const std::string path = directory.Write("a.tif", tiff);
-    EXPECT_HAS(ErrorOf([&] { ReadImage(path); }), "one bit a pixel");
 }
 
 // What was multiplied when it was stored is divided.
@@ -214,10 +191,6 @@ TEST(ReadImage, UndoesExposureOfRadianceHdr) {
                                        "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
                                            FromHex("80402082"));
     ExpectNear(Texels<float>(raised), {0.5f, 0.125f, 0.03125f}, 0.01f);
-    const TemporaryDirectory directory;
-    const std::string xyz = directory.Write(
-        "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + FromHex("80808084"));
-    EXPECT_HAS(ErrorOf([&] { ReadImage(xyz); }), "X, Y and Z");
 }
 
 TEST(ReadImage, ConvertsRadianceHdrOfOtherPrimaries) {
@@ -257,6 +230,13 @@ TEST(ReadImage, SaysWhatIsWrong) {
                 Contains(cutPfm, "cut.pfm\": Premature end of file"))
         << cutPfm;
     EXPECT_HAS(read(directory.Write("huge.png", FromHex(kHugePng))), "60000x60000x3");
+    const std::string xyz = "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n";
+    EXPECT_HAS(read(directory.Write("a.hdr", xyz + FromHex("80808084"))), "X, Y and Z");
+    // 8x2 texels of one bit, which a file need not say.
+    const std::string tiff = FromHex(
+        "49492a0008000000060000010300010000000800000001010300010000000200000006010300010000000100"
+        "00001101040001000000560000001601030001000000020000001701040001000000020000000000000055aa");
+    EXPECT_HAS(read(directory.Write("a.tif", tiff)), "one bit a pixel");
 }
 
 TEST(ReadImage, RefusesWhatIsCutShort) {
@@ -269,7 +249,7 @@ TEST(ReadImage, RefusesWhatIsCutShort) {
                 << size << " of " << bytes.size();
         EXPECT_NO_THROW(ReadImage("whole", "", std::as_bytes(std::span(bytes))));
     };
-    const std::string exr = ReadBytes(directory.File("a.exr"));
+    const std::string exr = directory.Bytes("a.exr");
     refuse(exr, exr.size());
     // The last bytes of a PNG are checksums and the end, which nobody waits for.
     for (const char* png : {kRgbPng, kRgb16Png, kInterlacedPng}) {
@@ -345,9 +325,8 @@ TEST(ImageIo, WebPKeepsItsColours) {
     for (const char* hex : {kLosslessWebP, kLossyWebP}) {
         const std::string bytes = FromHex(hex);
         const TemporaryDirectory directory;
-        const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
         for (const Image& image : {ReadImage(directory.Write("a.webp", bytes)),
-                                   ReadImage("a", "webp", {data, bytes.size()})}) {
+                                   ReadImage("a", "webp", std::as_bytes(std::span(bytes)))}) {
             ASSERT_EQ(image.channels, 4);
             const std::vector<uint8_t>& texels = Texels<uint8_t>(image);
             ASSERT_EQ(texels.size(), 24u);

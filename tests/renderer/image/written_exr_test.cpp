@@ -24,7 +24,7 @@ ExrImage MakeExr(int width, int height, const std::vector<std::string>& names, b
 TEST(Exr, RefusesAbsurdSizes) {
     const TemporaryDirectory directory;
     WriteExr(directory.File("a.exr"), MakeExr(3, 40, {"R", "G", "B"}, true));
-    const std::string exr = ReadBytes(directory.File("a.exr"));
+    const std::string exr = directory.Bytes("a.exr");
     const std::string key("dataWindow\0box2i\0\x10\0\0\0", 21);
     const size_t at = exr.find(key) + key.size();
     ASSERT_GT(at, key.size());

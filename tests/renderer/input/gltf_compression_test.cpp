@@ -51,7 +51,7 @@ GltfFile DracoFile(bool hasColors = false) {
 }
 
 TEST(GltfCompression, TakesBytesOfDracoForNormalised) {
-    const Description d = GltfFolder().Parse(DracoFile(true));
+    const Description d = kFolder.Parse(DracoFile(true));
     ASSERT_EQ(d.shapes.size(), 1u);
     const std::vector<float> colors = FloatsOf(d.shapes[0], ParameterType::Float, "color");
     ASSERT_EQ(colors.size(), 12u);
@@ -60,11 +60,10 @@ TEST(GltfCompression, TakesBytesOfDracoForNormalised) {
 }
 
 TEST(GltfCompression, DecodesDraco) {
-    const GltfFolder folder;
     Warnings warnings;
     for (const Description& d :
-         {folder.Parse(DracoFile()),
-          ParseGltf(folder.Write("s.glb", DracoFile().Binary()), {}, warnings)}) {
+         {kFolder.Parse(DracoFile()),
+          ParseGltf(kFolder.Write("s.glb", DracoFile().Binary()), {}, warnings)}) {
         ASSERT_EQ(d.shapes.size(), 1u);
         std::vector<float> p = FloatsOf(d.shapes[0], ParameterType::Point3, "P");
         ASSERT_EQ(p.size(), 9u);
@@ -76,7 +75,7 @@ TEST(GltfCompression, DecodesDraco) {
     GltfFile broken = DracoFile();
     broken.bytes[9] = char(0xff);
     broken.bytes[5] = 7;
-    EXPECT_NE(folder.ErrorOf(broken), "");
+    EXPECT_NE(kFolder.ErrorOf(broken), "");
 }
 
 TEST(GltfCompression, DecodesMeshopt) {
@@ -113,18 +112,17 @@ TEST(GltfCompression, DecodesMeshopt) {
     whole["buffers"].push_back(
         {{"byteLength", 1000},
          {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
-    const GltfFolder folder;
     Warnings warnings;
-    const Description d = ParseGltf(folder.Write("scene.gltf", whole.dump()), {}, warnings);
+    const Description d = ParseGltf(kFolder.Write("scene.gltf", whole.dump()), {}, warnings);
     ASSERT_EQ(d.shapes.size(), 1u);
     EXPECT_EQ(FloatsOf(d.shapes[0], ParameterType::Point3, "P"), positions);
     EXPECT_EQ(d.shapes[0].parameters.GetInts("indices").size(), 6u);
 
     whole["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteLength"] = 3;
-    EXPECT_EQ(folder.ErrorOf(whole.dump()),
+    EXPECT_EQ(kFolder.ErrorOf(whole.dump()),
               "scene.gltf: /bufferViews/0/extensions/EXT_meshopt_compression: its data are broken");
     whole["images"] = {{{"bufferView", 0}, {"mimeType", "image/png"}}};
-    EXPECT_EQ(folder.ErrorOf(whole.dump()),
+    EXPECT_EQ(kFolder.ErrorOf(whole.dump()),
               "scene.gltf: /images/0/bufferView: is compressed, as images cannot be");
 }
 

@@ -30,8 +30,7 @@ struct Case {
 };
 
 TEST(GltfErrors, NameTheirPlace) {
-    const GltfFolder folder;
-    ASSERT_EQ(folder.ErrorOf(GoodFile()), "");
+    ASSERT_EQ(kFolder.ErrorOf(GoodFile()), "");
     const Case cases[] = {
         {"/asset/version", "1.0", "/: is of glTF version 1.0; 2.0 is modelled"},
         {"/asset/version", 2.0, "/asset/version: has to be a string"},
@@ -96,12 +95,11 @@ TEST(GltfErrors, NameTheirPlace) {
         GltfFile file = GoodFile();
         file.root[json::json_pointer(c.pointer)] = c.value;
         if (std::string(c.pointer).starts_with("/bufferViews/0/byteLength")) file.bytes.resize(66);
-        EXPECT_EQ(folder.ErrorOf(file), std::string("scene.gltf: ") + c.message) << c.pointer;
+        EXPECT_EQ(kFolder.ErrorOf(file), std::string("scene.gltf: ") + c.message) << c.pointer;
     }
 }
 
 TEST(GltfErrors, CheckTheRangesOfExtensions) {
-    const GltfFolder folder;
     const std::string material = "/materials/0/extensions/";
     const std::string primitive = "/meshes/0/primitives/0/extensions/KHR_materials_variants";
     struct RangeCase {
@@ -139,25 +137,23 @@ TEST(GltfErrors, CheckTheRangesOfExtensions) {
     for (const RangeCase& c : cases) {
         GltfFile file = GoodFile();
         file.root[json::json_pointer(c.pointer)] = c.value;
-        EXPECT_EQ(folder.ErrorOf(file), "scene.gltf: " + c.pointer + c.message);
+        EXPECT_EQ(kFolder.ErrorOf(file), "scene.gltf: " + c.pointer + c.message);
     }
 }
 
 TEST(GltfErrors, FindWhatIsInTheBuffers) {
-    const GltfFolder folder;
     GltfFile file = GoodFile();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(&file.bytes[12], &nan, 4);
-    EXPECT_EQ(folder.ErrorOf(file), "scene.gltf: /meshes/0/primitives/0: vertex 1 is not finite");
+    EXPECT_EQ(kFolder.ErrorOf(file), "scene.gltf: /meshes/0/primitives/0: vertex 1 is not finite");
     file = GoodFile();
     file.bytes[60] = 9;
-    EXPECT_EQ(folder.ErrorOf(file),
+    EXPECT_EQ(kFolder.ErrorOf(file),
               "scene.gltf: /accessors/2: index 9 is out of range: there are 3 vertices");
 }
 
 // As in PLY files: what no triangle uses may be any number, and only positions have to be finite.
 TEST(GltfErrors, AreOnlyWhatIsNotFiniteAndUsed) {
-    const GltfFolder folder;
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     const auto quad = [&](const std::string& name, const char* type, int at, float weight) {
         GltfFile file;
@@ -187,10 +183,10 @@ TEST(GltfErrors, AreOnlyWhatIsNotFiniteAndUsed) {
         for (const float weight : {0.f, 0.5f}) {
             const std::string kind = name;
             if (weight > 0 && kind != "POSITION" && kind != "NORMAL") continue;
-            EXPECT_EQ(folder.ErrorOf(quad(name, type, 3, weight)), "") << name;
+            EXPECT_EQ(kFolder.ErrorOf(quad(name, type, 3, weight)), "") << name;
             Warnings warnings;
             const GltfFile used = quad(name, type, 1, weight);
-            const std::string error = folder.ErrorOf(used);
+            const std::string error = kFolder.ErrorOf(used);
             if (kind == "POSITION") {
                 EXPECT_EQ(error, "scene.gltf: /meshes/0/primitives/0: vertex 1 is not finite");
             } else if (kind == "WEIGHTS_0") {
@@ -198,7 +194,7 @@ TEST(GltfErrors, AreOnlyWhatIsNotFiniteAndUsed) {
                           "scene.gltf: /meshes/0/primitives/0: vertex 1 has joints or weights that "
                           "are not finite");
             } else {
-                const Description parsed = folder.Parse(used, {}, &warnings);
+                const Description parsed = kFolder.Parse(used, {}, &warnings);
                 for (const Parameter& parameter : parsed.shapes.at(0).parameters.All())
                     if (const auto* values = std::get_if<std::vector<float>>(&parameter.values)) {
                         EXPECT_TRUE(
@@ -213,13 +209,12 @@ TEST(GltfErrors, AreOnlyWhatIsNotFiniteAndUsed) {
 }
 
 TEST(GltfErrors, RefuseBadUris) {
-    const GltfFolder folder;
     const auto errorOf = [&](const char* uri, int length) {
         GltfFile file = GoodFile();
         json whole = json::parse(file.Text());
         whole["buffers"][0]["uri"] = uri;
         whole["buffers"][0]["byteLength"] = length;
-        return folder.ErrorOf(whole.dump());
+        return kFolder.ErrorOf(whole.dump());
     };
     EXPECT_EQ(errorOf("data:application/octet-stream;base64,AA*A", 66),
               "scene.gltf: /buffers/0/uri: is a data URI whose data are not base64 at character 2");
@@ -232,7 +227,6 @@ TEST(GltfErrors, RefuseBadUris) {
 }
 
 TEST(GltfErrors, ReadDataUrisOfAnyType) {
-    const GltfFolder folder;
     json whole = json::parse(GoodFile().Text());
     json& uri = whole["buffers"][0]["uri"];
     const std::string good = uri, data = good.substr(good.find(',') + 1);
@@ -246,39 +240,36 @@ TEST(GltfErrors, ReadDataUrisOfAnyType) {
           "data:application/octet-stream;base64," + encoded,
           "data:application/octet-stream;base64," + lines}) {
         uri = other;
-        EXPECT_EQ(folder.ErrorOf(whole.dump()), "") << other;
+        EXPECT_EQ(kFolder.ErrorOf(whole.dump()), "") << other;
     }
 }
 
 TEST(GltfErrors, RefuseWhatIsNoGltf) {
-    const GltfFolder folder;
-    EXPECT_NE(folder.ErrorOf("{"), "");
-    EXPECT_EQ(folder.ErrorOf("[1]"), "scene.gltf: is not a JSON object");
-    EXPECT_EQ(folder.ErrorOf("{}"),
+    EXPECT_NE(kFolder.ErrorOf("{"), "");
+    EXPECT_EQ(kFolder.ErrorOf("[1]"), "scene.gltf: is not a JSON object");
+    EXPECT_EQ(kFolder.ErrorOf("{}"),
               "scene.gltf: /: lacks \"asset\" with a \"version\": it is not a glTF file");
-    EXPECT_EQ(folder.ErrorOf(std::string(500, '[')),
+    EXPECT_EQ(kFolder.ErrorOf(std::string(500, '[')),
               "scene.gltf: is nested more than 100 levels deep");
-    EXPECT_NE(folder.ErrorOf(""), "");
+    EXPECT_NE(kFolder.ErrorOf(""), "");
 }
 
 TEST(GltfErrors, RefuseBrokenBinaries) {
-    const GltfFolder folder;
     const std::string good = GoodFile().Binary();
-    EXPECT_EQ(folder.ErrorOf(good, "scene.glb"), "");
+    EXPECT_EQ(kFolder.ErrorOf(good, "scene.glb"), "");
     // Cut off anywhere, a file is an error and never a crash.
     for (size_t size = 0; size < good.size(); size += 7)
-        EXPECT_NE(folder.ErrorOf(good.substr(0, size), "scene.glb"), "") << size;
+        EXPECT_NE(kFolder.ErrorOf(good.substr(0, size), "scene.glb"), "") << size;
     std::string bad = good;
     bad[4] = 1;
-    EXPECT_EQ(folder.ErrorOf(bad, "scene.glb"), "scene.glb: is of GLB version 1; 2 is modelled");
+    EXPECT_EQ(kFolder.ErrorOf(bad, "scene.glb"), "scene.glb: is of GLB version 1; 2 is modelled");
     bad = good;
     bad[15] = '\x7f';
-    EXPECT_HAS(folder.ErrorOf(bad, "scene.glb"), "goes beyond its end");
+    EXPECT_HAS(kFolder.ErrorOf(bad, "scene.glb"), "goes beyond its end");
 }
 
 // Whatever bytes change, there is a scene or an Error.
 TEST(GltfErrors, WithstandChangedBytes) {
-    const GltfFolder folder;
     uint32_t state = 1;
     const auto below = [&](size_t n) {
         state = state * 1664525u + 1013904223u;
@@ -294,7 +285,7 @@ TEST(GltfErrors, WithstandChangedBytes) {
                 for (size_t k = 0; k < 3; ++k)
                     if (char& c = bad[below(bad.size())]; c >= '0' && c <= '9')
                         c = char('0' + below(10));
-            errors += !folder.ErrorOf(bad).empty();
+            errors += !kFolder.ErrorOf(bad).empty();
         }
     EXPECT_GT(errors, 1000);
 }

@@ -142,6 +142,14 @@ struct GltfFolder : TemporaryDirectory {
         return ParseGltf(Write("scene.gltf", file.Text()), options, warnings ? *warnings : ignored);
     }
 
+    // Parses a file that nothing is to be warned of.
+    Description ParseSilently(const GltfFile& file, const GltfOptions& options = {}) const {
+        Warnings warnings;
+        Description d = Parse(file, options, &warnings);
+        EXPECT_EQ(warnings.Total(), 0);
+        return d;
+    }
+
     // Returns the message of the Error that a text gives, without the folder's name; "" for none.
     std::string ErrorOf(const std::string& text, const std::string& name = "scene.gltf") const {
         const std::string written = Write(name, text);
@@ -152,6 +160,14 @@ struct GltfFolder : TemporaryDirectory {
     }
     std::string ErrorOf(const GltfFile& file) const { return ErrorOf(file.Text()); }
 };
+inline const GltfFolder kFolder;
+
+// Returns a file of the triangle alone.
+inline GltfFile OneTriangle(const json& more = json::object()) {
+    GltfFile file;
+    file.Node({{"mesh", file.Triangle(more)}});
+    return file;
+}
 
 template <typename T>
 void ExpectNear(const std::vector<T>& values, const std::vector<double>& expected,

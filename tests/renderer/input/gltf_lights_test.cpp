@@ -4,8 +4,6 @@
 namespace lull::gltf_lights_test {
 namespace {
 
-const GltfFolder kFolder;
-
 TEST(GltfLights, AreTakenFromPhotometricUnits) {
     GltfFile file;
     const json scaled = {{"scale", {3, 3, 3}}};

@@ -12,12 +12,10 @@ std::vector<int> Indices(const Description& d) {
 }
 
 TEST(GltfMeshes, ComeFromTextAndBinaryAlike) {
-    GltfFile file;
-    file.Node({{"mesh", file.Triangle()}});
-    const GltfFolder folder;
-    const Description text = folder.Parse(file);
+    const GltfFile file = OneTriangle();
+    const Description text = kFolder.Parse(file);
     Warnings warnings;
-    const Description binary = ParseGltf(folder.Write("scene.glb", file.Binary()), {}, warnings);
+    const Description binary = ParseGltf(kFolder.Write("scene.glb", file.Binary()), {}, warnings);
     ExpectNear(Positions(text), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
     EXPECT_EQ(Positions(text), Positions(binary));
     ExpectNear(Indices(binary), {0, 1, 2}, 0);
@@ -35,7 +33,7 @@ TEST(GltfMeshes, ReadStridesAndOffsets) {
     const int position = file.Accessor(view, 5126, 3, "VEC3", {{"byteOffset", 4}});
     const int normal = file.Accessor(view, 5126, 3, "VEC3", {{"byteOffset", 16}});
     file.Node({{"mesh", file.Mesh({{"POSITION", position}, {"NORMAL", normal}})}});
-    const Description d = GltfFolder().Parse(file);
+    const Description d = kFolder.Parse(file);
     ExpectNear(Positions(d), {0, 0, 2, 1, 1, 2, 2, 4, 2}, 0);
     ExpectNear(FloatsOf(d.shapes[0], ParameterType::Normal, "N"), {0, 0, 1, 0, 0, 1, 0, 0, 1}, 0);
 }
@@ -53,7 +51,7 @@ TEST(GltfMeshes, ReadQuantizedAndNormalizedNumbers) {
         "VEC3", {{"normalized", true}});
     file.Node(
         {{"mesh", file.Mesh({{"POSITION", position}, {"TEXCOORD_0", uv}, {"COLOR_0", color}})}});
-    const Description d = GltfFolder().Parse(file);
+    const Description d = kFolder.Parse(file);
     ExpectNear(Positions(d), {0.f, 0.f, 0.f, 1.f, -1.f, 0.f, 0.f, 16384 / 32767.f, 0.f});
     // v grows upwards once read.
     ExpectNear(FloatsOf(d.shapes[0], ParameterType::Float, "uv"), {0.f, 0.f, 0.2f, 1.f, 1.f, 0.6f});
@@ -75,7 +73,7 @@ TEST(GltfMeshes, NormalizeIntegersThatDoNotSayThatTheyAre) {
                     file.Mesh({{"POSITION", position}, {"TEXCOORD_0", uv}, {"COLOR_0", color}})}});
         if (isQuantized) file.root["extensionsUsed"] = {"KHR_mesh_quantization"};
         Warnings warnings;
-        const Description d = GltfFolder().Parse(file, {}, &warnings);
+        const Description d = kFolder.Parse(file, {}, &warnings);
         const std::vector<float> colors = FloatsOf(d.shapes[0], ParameterType::Float, "color");
         ExpectNear(std::vector<float>(colors.begin(), colors.begin() + 4), {.2, .4, .6, 1});
         const double most = isQuantized ? 65535 : 1;
@@ -97,7 +95,7 @@ TEST(GltfMeshes, ReplaceSparseValues) {
         {{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}, {"sparse", sparse}});
     file.Node({{"mesh", file.Mesh({{"POSITION", full}})}});
     file.Node({{"mesh", file.Mesh({{"POSITION", full + 1}})}});
-    const Description d = GltfFolder().Parse(file);
+    const Description d = kFolder.Parse(file);
     ExpectNear(Positions(d, 0), {3, 3, 3, 5, 6, 7, 8, 9, 10}, 0);
     ExpectNear(Positions(d, 1), {0, 0, 0, 5, 6, 7, 8, 9, 10}, 0);
 }
@@ -111,20 +109,18 @@ TEST(GltfMeshes, ReplaceSparseIndices) {
     const int full = file.Accessor(file.View(std::vector<uint16_t>{2, 0, 0}), 5123, 3, "SCALAR",
                                    {{"sparse", sparse}});
     file.Node({{"mesh", file.Triangle({{"indices", full}})}});
-    const GltfFolder folder;
-    ExpectNear(Indices(folder.Parse(file)), {2, 0, 1}, 0);
+    ExpectNear(Indices(kFolder.Parse(file)), {2, 0, 1}, 0);
     file.root["accessors"][size_t(full)]["sparse"]["values"]["bufferView"] =
         file.View(std::vector<uint16_t>{3});
-    EXPECT_EQ(folder.ErrorOf(file),
+    EXPECT_EQ(kFolder.ErrorOf(file),
               "scene.gltf: /accessors/0: index 3 is out of range: there are 3 vertices");
 }
 
 // Some exporters write a stride of 0 for elements that follow each other.
 TEST(GltfMeshes, FollowEachOtherWithAStrideOfZero) {
-    GltfFile file;
-    file.Node({{"mesh", file.Triangle()}});
+    GltfFile file = OneTriangle();
     file.root["bufferViews"][0]["byteStride"] = 0;
-    ExpectNear(Positions(GltfFolder().Parse(file)), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
+    ExpectNear(Positions(kFolder.Parse(file)), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
 }
 
 // 4.0 and 4e0 are the integer 4, as in other readers of JSON.
@@ -143,9 +139,8 @@ TEST(GltfMeshes, ReadWholeNumbersThatAreWrittenAsFractions) {
     for (size_t at; (at = fractions.find("5126.0")) != std::string::npos;)
         fractions.replace(at, 6, "5.126e3");
     EXPECT_HAS(fractions, "\"mesh\":0.0");
-    const GltfFolder folder;
     Warnings warnings;
-    const Description d = ParseGltf(folder.Write("scene.gltf", fractions), {}, warnings);
+    const Description d = ParseGltf(kFolder.Write("scene.gltf", fractions), {}, warnings);
     ExpectNear(Positions(d), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
     ExpectNear(Indices(d), {0, 2, 1}, 0);
     EXPECT_TRUE(d.shapes.at(0).areaLight);
@@ -154,18 +149,16 @@ TEST(GltfMeshes, ReadWholeNumbersThatAreWrittenAsFractions) {
 
 // The data of a buffer may be longer than it says (3.6.1.1).
 TEST(GltfMeshes, LieInLongerFiles) {
-    GltfFile file;
-    file.Node({{"mesh", file.Triangle()}});
-    const GltfFolder folder;
+    const GltfFile file = OneTriangle();
     json root = json::parse(file.Text());
     root["buffers"][0]["uri"] =
         "data:application/octet-stream;base64," + Base64(file.bytes + "more");
-    EXPECT_EQ(folder.ErrorOf(root.dump()), "");
-    folder.Write("a mesh.bin", file.bytes + "more");
+    EXPECT_EQ(kFolder.ErrorOf(root.dump()), "");
+    kFolder.Write("a mesh.bin", file.bytes + "more");
     root["buffers"][0]["uri"] = "a%20mesh.bin";
-    EXPECT_EQ(folder.ErrorOf(root.dump()), "");
-    folder.Write("a mesh.bin", file.bytes.substr(1));
-    EXPECT_NE(folder.ErrorOf(root.dump()), "");
+    EXPECT_EQ(kFolder.ErrorOf(root.dump()), "");
+    kFolder.Write("a mesh.bin", file.bytes.substr(1));
+    EXPECT_NE(kFolder.ErrorOf(root.dump()), "");
 }
 
 TEST(GltfMeshes, UnrollStripsAndFans) {
@@ -175,7 +168,7 @@ TEST(GltfMeshes, UnrollStripsAndFans) {
         file.Node(
             {{"mesh", file.Mesh({{"POSITION", p}},
                                 {{"mode", mode}, {"indices", file.Indices({0, 1, 2, 3, 4})}})}});
-        return Indices(GltfFolder().Parse(file));
+        return Indices(kFolder.Parse(file));
     };
     ExpectNear(indices(4), {0, 1, 2}, 0);
     ExpectNear(indices(5), {0, 1, 2, 1, 3, 2, 2, 3, 4}, 0);
@@ -186,15 +179,13 @@ TEST(GltfMeshes, LeaveOutCornersOfNoTriangle) {
     GltfFile file;
     file.Node({{"mesh", file.Triangle({{"indices", file.Indices({0, 1, 2, 1, 2})}})}});
     Warnings warnings;
-    ExpectNear(Indices(GltfFolder().Parse(file, {}, &warnings)), {0, 1, 2}, 0);
+    ExpectNear(Indices(kFolder.Parse(file, {}, &warnings)), {0, 1, 2}, 0);
     EXPECT_EQ(warnings.Counts().at("the last corners, which make up no triangle, are left out"), 1);
 }
 
 TEST(GltfMeshes, LeaveOutPointsAndLines) {
-    GltfFile file;
-    file.Node({{"mesh", file.Triangle({{"mode", 1}})}});
     Warnings warnings;
-    EXPECT_TRUE(GltfFolder().Parse(file, {}, &warnings).shapes.empty());
+    EXPECT_TRUE(kFolder.Parse(OneTriangle({{"mode", 1}}), {}, &warnings).shapes.empty());
     EXPECT_EQ(warnings.Counts().count("points and lines are left out"), 1u);
 }
 
@@ -216,7 +207,7 @@ Description MappedQuad(bool isMirrored, const std::vector<float>& tangents = {})
     if (!tangents.empty()) attributes["TANGENT"] = file.Floats(tangents, "VEC4");
     file.Node({{"mesh", file.Mesh(attributes, {{"indices", file.Indices({0, 1, 2, 0, 2, 3})},
                                                {"material", 0}})}});
-    return GltfFolder().Parse(file);
+    return kFolder.Parse(file);
 }
 
 // Also where those of the file are none.
@@ -246,7 +237,7 @@ TEST(GltfMeshes, SplitVerticesWhereTheTextureIsMirrored) {
     file.Node(
         {{"mesh", file.Mesh({{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}},
                             {{"indices", file.Indices({0, 1, 2, 0, 2, 3})}, {"material", 0}})}});
-    const Description d = GltfFolder().Parse(file);
+    const Description d = kFolder.Parse(file);
     EXPECT_EQ(Positions(d).size(), 6u * 3);
     ExpectNear(Indices(d), {0, 1, 2, 4, 5, 3}, 0);
     const std::vector<float> t = FloatsOf(d.shapes[0], ParameterType::Float, "tangent");

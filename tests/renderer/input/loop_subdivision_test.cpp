@@ -105,24 +105,20 @@ TEST(LoopSubdivision, Errors) {
         return folder.MessageOf([&] { LoopSubdivide(p, faces, levels, loc); });
     };
     const Floats p = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
-    EXPECT_EQ(errorOf(p, {}),
-              "a.pbrt:3: loopsubdiv needs vertex positions and indices, both in threes, but has 15 "
-              "and 0 numbers");
+    const auto expect = [&](const Ints& faces, const std::string& message, int levels = 1) {
+        EXPECT_EQ(errorOf(p, faces, levels), "a.pbrt:3: loopsubdiv" + message);
+    };
+    expect({}, " needs vertex positions and indices, both in threes, but has 15 and 0 numbers");
     EXPECT_NE(errorOf(p, {0, 1}), "");
     EXPECT_NE(errorOf({0, 1}, {0, 1, 2}), "");
-    EXPECT_EQ(errorOf(p, {0, 1, 5}),
-              "a.pbrt:3: loopsubdiv: index 5 is out of range, there are 5 vertices");
-    EXPECT_EQ(errorOf(p, {0, 1, -1}),
-              "a.pbrt:3: loopsubdiv: index -1 is out of range, there are 5 vertices");
-    EXPECT_EQ(errorOf(p, {0, 1, 1}), "a.pbrt:3: loopsubdiv: face 0 repeats vertex 1");
-    EXPECT_EQ(errorOf(p, {0, 1, 2, 0, 1, 3}),
-              "a.pbrt:3: loopsubdiv: the edge between vertices 0 and 1 runs the same way in both "
-              "its faces");
-    EXPECT_EQ(errorOf(p, {0, 1, 2, 1, 0, 3, 0, 1, 4}),
-              "a.pbrt:3: loopsubdiv: the edge between vertices 0 and 1 belongs to more than two "
-              "faces");
-    EXPECT_EQ(errorOf(p, {0, 1, 2}, 13),
-              "a.pbrt:3: loopsubdiv: 13 levels make more than 50 million triangles; take fewer");
+    expect({0, 1, 5}, ": index 5 is out of range, there are 5 vertices");
+    expect({0, 1, -1}, ": index -1 is out of range, there are 5 vertices");
+    expect({0, 1, 1}, ": face 0 repeats vertex 1");
+    expect({0, 1, 2, 0, 1, 3},
+           ": the edge between vertices 0 and 1 runs the same way in both its faces");
+    expect({0, 1, 2, 1, 0, 3, 0, 1, 4},
+           ": the edge between vertices 0 and 1 belongs to more than two faces");
+    expect({0, 1, 2}, ": 13 levels make more than 50 million triangles; take fewer", 13);
     EXPECT_NE(errorOf(p, {0, 1, 2}, 2147483647), "");
     EXPECT_NE(errorOf({3e38f, 0, 0, 3e38f, 0, 0, 3e38f, 1, 0}, {0, 1, 2}), "");
 }

@@ -24,7 +24,7 @@ std::string FlipBits(std::string text, Random& random) {
     return text;
 }
 
-std::string Truncate(const std::string& text, Random& random) {
+std::string Truncate(std::string text, Random& random) {
     return text.substr(0, Below(text.size(), random));
 }
 
@@ -37,7 +37,7 @@ std::string DuplicateSpan(std::string text, Random& random) {
     return text.insert(Below(text.size(), random), span);
 }
 
-std::string SwapTokens(const std::string& text, Random& random) {
+std::string SwapTokens(std::string text, Random& random) {
     std::vector<std::string> tokens;
     for (size_t begin = 0; begin < text.size();) {
         const size_t end = std::min(text.find_first_of(" \n", begin), text.size() - 1) + 1;
@@ -68,13 +68,8 @@ std::string ChangeNumber(std::string text, Random& random) {
 void Mutate(const std::string& seed, int count,
             const std::function<void(const std::string&)>& read) {
     using Mutation = std::string (*)(std::string, Random&);
-    const Mutation mutations[] = {
-        FlipBits,
-        DeleteSpan,
-        DuplicateSpan,
-        ChangeNumber,
-        [](std::string text, Random& random) { return Truncate(text, random); },
-        [](std::string text, Random& random) { return SwapTokens(text, random); }};
+    const Mutation mutations[] = {FlipBits,     DeleteSpan, DuplicateSpan,
+                                  ChangeNumber, Truncate,   SwapTokens};
     Random random(20);
     int refused = 0;
     for (int i = 0; i < count; ++i) {

@@ -193,14 +193,11 @@ TEST_F(Directives, TransformScopeRestoresTheTransformOnly) {
     EXPECT_EQ(d.shapes[0].parameters.GetTexture("alpha")->floatIndex, 0);
 }
 
-TEST_F(Directives, ReverseOrientationToggles) {
-    const auto d = folder.ParseWorld("ReverseOrientation ReverseOrientation Shape \"sphere\"");
+TEST_F(Directives, SecondReverseOrientationAndEmptyAreaLightSwitchOff) {
+    const auto d = folder.ParseWorld(
+        "ReverseOrientation ReverseOrientation AreaLightSource \"diffuse\" AreaLightSource \"\" "
+        "Shape \"sphere\"");
     EXPECT_FALSE(d.shapes[0].reverseOrientation);
-}
-
-TEST_F(Directives, EmptyAreaLightSwitchesOff) {
-    const auto d =
-        folder.ParseWorld("AreaLightSource \"diffuse\" AreaLightSource \"\" Shape \"sphere\"");
     EXPECT_FALSE(d.shapes[0].areaLight);
 }
 

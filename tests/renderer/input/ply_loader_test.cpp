@@ -76,9 +76,9 @@ class Ply : public testing::Test {
 
 using Triangle = std::array<uint32_t, 3>;
 
-constexpr char kPositions[] = "property float x\nproperty float y\nproperty float z\n";
+const std::string kPositions = "property float x\nproperty float y\nproperty float z\n";
 const std::string kNormals = "property float nx\nproperty float ny\nproperty float nz\n";
-constexpr char kFaces[] = "property list uchar int vertex_indices\n";
+const std::string kFaces = "property list uchar int vertex_indices\n";
 
 // Returns a triangle and its vertices, which the error tests then damage.
 std::string Header(const std::string& vertices, const std::string& faces,
@@ -159,11 +159,11 @@ TEST_F(Ply, TriangleStrips) {
         for (const bool isFirst : {false, true}) {
             const std::string strips =
                                   "element tristrips 2\nproperty list int int vertex_indices\n",
-                              face = "element face 1\n" + std::string(kFaces) +
+                              face = "element face 1\n" + kFaces +
                                      "property list uchar float texcoord\nproperty int "
                                      "face_indices\n";
             PlyWriter ply(format);
-            ply.Header("element vertex 4\n" + std::string(kPositions) +
+            ply.Header("element vertex 4\n" + kPositions +
                        (isFirst ? strips + face : face + strips));
             for (int i = 0; i < 4; ++i) ply.Put<float>({double(i), 0, 0});
             const auto putFace = [&] {
@@ -178,7 +178,7 @@ TEST_F(Ply, TriangleStrips) {
             EXPECT_EQ(mesh.triangles, expected) << format;
             EXPECT_EQ(mesh.faceIndices.size(), 5u);
         }
-    EXPECT_EQ(ErrorOf("ply\nformat ascii 1.0\nelement vertex 1\n" + std::string(kPositions) +
+    EXPECT_EQ(ErrorOf("ply\nformat ascii 1.0\nelement vertex 1\n" + kPositions +
                       "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
                       "0 0 0\n3 0 0 -2\n"),
               "a.ply:11: a face has the vertex index -2.000000");
@@ -187,7 +187,7 @@ TEST_F(Ply, TriangleStrips) {
 // Unsigned numbers have no -1.
 TEST_F(Ply, TheLargestNumberBeginsAStripInUnsignedLists) {
     PlyWriter ply("binary_little_endian");
-    ply.Header("element vertex 3\n" + std::string(kPositions) +
+    ply.Header("element vertex 3\n" + kPositions +
                "element tristrips 1\nproperty list uchar ushort vertex_indices\n");
     for (int i = 0; i < 3; ++i) ply.Put<float>({double(i), 0, 0});
     ply.Put<uint8_t>({7}).Put<uint16_t>({0, 1, 2, 65535, 2, 1, 0});
@@ -306,7 +306,7 @@ TEST_F(Ply, UnknownElementsAreSkippedAndFacesMayComeFirst) {
         ply.Header(
             "element camera 2\nproperty double fov\nproperty uchar kind\nelement empty 9\n"
             "element strips 2\nproperty list uchar int indices\nelement face 1\n" +
-            std::string(kFaces) + "element vertex 3\n" + kPositions);
+            kFaces + "element vertex 3\n" + kPositions);
         for (int i = 0; i < 2; ++i) ply.Put<double>({.5}).Put<uint8_t>({1});
         ply.Put<uint8_t>({0}).Put<uint8_t>({2}).Put<int>({1, 2});
         ply.Put<uint8_t>({3}).Put<int>({0, 1, 2});
@@ -462,7 +462,7 @@ TEST_F(Ply, VerticesAreSplitByTheUvsOfFaces) {
 
 TEST_F(Ply, QuadsHaveUvsAndFacesWithoutKeepThoseOfVertices) {
     PlyWriter ply("ascii");
-    ply.Header("element vertex 4\n" + std::string(kPositions) +
+    ply.Header("element vertex 4\n" + kPositions +
                "property float s\nproperty float t\nelement face 2\n" +
                "property list uchar float texcoord\n" + kFaces);
     for (int i = 0; i < 4; ++i) ply.Put<float>({double(i), 0, 0, 7, double(i)});

@@ -1,8 +1,6 @@
 // Gives input tests files of their own.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <string>
 #include <string_view>
 

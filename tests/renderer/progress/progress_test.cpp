@@ -20,7 +20,7 @@ RenderProgress Halfway() {
             .seconds = 100};
 }
 
-ProgressState StateOf(const RenderProgress& p, double rate, bool adaptive) {
+ProgressState StateOf(const RenderProgress& p, double rate = 50000, bool adaptive = true) {
     return {p, ShareDone(p), rate, adaptive};
 }
 
@@ -32,7 +32,7 @@ std::string Printed(ProgressStyle style, const Use& use) {
         std::fopen(directory.File("out").c_str(), "w"), std::fclose);
     ProgressPrinter printer(style, false, file.get());
     use(printer);
-    return ReadBytes(directory.File("out"));
+    return directory.Bytes("out");
 }
 
 TEST(FormatDuration, IsShortAtEveryScale) {
@@ -57,7 +57,7 @@ TEST(FormatCount, KeepsThreeDigits) {
 }
 
 TEST(ProgressText, TellsTheTimeToTheCapFromAForecast) {
-    const std::string adaptive = ProgressText(StateOf(Halfway(), 50000, true));
+    const std::string adaptive = ProgressText(StateOf(Halfway()));
     EXPECT_EQ(adaptive,
               " 50%  9/16 blocks done  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
               "1:40 to the cap");
@@ -68,31 +68,30 @@ TEST(ProgressText, PredictsTheEndWhereItCan) {
     RenderProgress progress = Halfway();
     progress.predictedSamples = 1250000;
     progress.predictedSeconds = 30;
-    EXPECT_EQ(ProgressText(StateOf(progress, 50000, true)),
+    EXPECT_EQ(ProgressText(StateOf(progress)),
               " 80%  9/16 blocks done  median 1240 spp  50.0 k samples/s  1:40 elapsed  "
               "about 30.0s left");
-    EXPECT_HAS(ProgressJson(StateOf(progress, 50000, true)),
+    EXPECT_HAS(ProgressJson(StateOf(progress)),
                R"("remainingSeconds":30.000,"remainingRange":null,"remainingIsUpperBound":false)");
     // A clock can end it before.
     progress.secondsLeft = 12;
-    EXPECT_HAS(ProgressText(StateOf(progress, 50000, true)), "at most 12.0s left");
+    EXPECT_HAS(ProgressText(StateOf(progress)), "at most 12.0s left");
     // Nothing is left when all have stopped.
     progress.samplesToCap = 0;
     progress.predictedSamples = 0;
-    EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).starts_with("100%"));
-    EXPECT_FALSE(Contains(ProgressText(StateOf(progress, 50000, true)), "left"));
+    EXPECT_TRUE(ProgressText(StateOf(progress)).starts_with("100%"));
+    EXPECT_FALSE(Contains(ProgressText(StateOf(progress)), "left"));
 }
 
 // What holds for the cap says nothing before a block has stopped.
 TEST(ProgressText, HasNoTimeBeforeThereAreData) {
     RenderProgress progress = Halfway();
     progress.stoppedBlocks = 0;
-    EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).ends_with("1:40 elapsed"));
-    EXPECT_HAS(ProgressJson(StateOf(progress, 50000, true)),
-               R"("remainingSeconds":null,"remainingRange":null)");
+    EXPECT_TRUE(ProgressText(StateOf(progress)).ends_with("1:40 elapsed"));
+    EXPECT_HAS(ProgressJson(StateOf(progress)), R"("remainingSeconds":null,"remainingRange":null)");
     EXPECT_TRUE(ProgressText(StateOf(progress, 50000, false)).ends_with("  1:40 left"));
     progress.secondsLeft = 500;
-    EXPECT_TRUE(ProgressText(StateOf(progress, 50000, true)).ends_with("at most 8:20 left"));
+    EXPECT_TRUE(ProgressText(StateOf(progress)).ends_with("at most 8:20 left"));
 }
 
 TEST(ProgressText, HasARangeOfTimes) {
@@ -100,13 +99,11 @@ TEST(ProgressText, HasARangeOfTimes) {
     progress.predictedSamples = 1250000;
     progress.predictedSeconds = 650;
     progress.secondsRange = {{550, 830}};
-    EXPECT_TRUE(
-        ProgressText(StateOf(progress, 50000, true)).ends_with("  done in 9 to 14 min (80 %)"));
-    EXPECT_HAS(ProgressJson(StateOf(progress, 50000, true)),
+    EXPECT_TRUE(ProgressText(StateOf(progress)).ends_with("  done in 9 to 14 min (80 %)"));
+    EXPECT_HAS(ProgressJson(StateOf(progress)),
                R"("remainingSeconds":650.000,"remainingRange":[550.000,830.000])");
     progress.secondsLeft = 700;  // of a clock that ends it within the range
-    EXPECT_TRUE(
-        ProgressText(StateOf(progress, 50000, true)).ends_with("  done in 9 to 12 min (80 %)"));
+    EXPECT_TRUE(ProgressText(StateOf(progress)).ends_with("  done in 9 to 12 min (80 %)"));
 }
 
 TEST(FormatRange, IsRoundedOutwards) {
@@ -124,7 +121,7 @@ TEST(ProgressText, GuessesNothingWithoutARate) {
 
 TEST(ProgressJson, IsOneLineOfJson) {
     EXPECT_EQ(
-        ProgressJson(StateOf(Halfway(), 50000, true)),
+        ProgressJson(StateOf(Halfway())),
         R"({"event":"progress","percent":50.00,"blocks":16,"cleanBlocks":9,)"
         R"("blocksAtCap":0,"medianSpp":1240,"samples":5000000,"samplesPerSecond":50000.0,"elapsedSeconds":100.000,)"
         R"("remainingSeconds":100.000,"remainingRange":null,"remainingIsUpperBound":true})");

@@ -150,17 +150,19 @@ struct SmallCheckpoint {
     }
 };
 
+// Returns the message of the Error that reading the file gives.
+std::string ReadError(const std::string& path, Film* film,
+                      const RenderIdentity& identity = kIdentity) {
+    return ErrorOf([&] { ReadCheckpoint(path, identity, film); });
+}
+
 TEST(Checkpoint, SaysWhatIsNotTheSame) {
     const SmallCheckpoint begun;
     Film film(kRegion);
-    const std::string error = ErrorOf([&] {
-        ReadCheckpoint(begun.path, {{"scene", "a"}, {"seed", "1"}}, &film);
-    });
+    const std::string error = ReadError(begun.path, &film, {{"scene", "a"}, {"seed", "1"}});
     EXPECT_HAS(error, begun.path);
     EXPECT_HAS(error, "another seed (0 there, 1 here)");
-    EXPECT_HAS(ErrorOf([&] {
-                   ReadCheckpoint(begun.path, {{"scene", "a"}, {"crop", "1"}}, &film);
-               }),
+    EXPECT_HAS(ReadError(begun.path, &film, {{"scene", "a"}, {"crop", "1"}}),
                "another crop (none there, 1 here)");
 }
 
@@ -177,8 +179,7 @@ TEST(Checkpoint, IsReadWithoutTheHalfWhereThatIsNotNeeded) {
     Film again(kRegion, {.withHalf = false});
     EXPECT_NO_THROW(ReadCheckpoint(begun.path, kIdentity, &again));
     EXPECT_EQ(again.MeanImage(), whole.MeanImage());
-    EXPECT_HAS(ErrorOf([&] { ReadCheckpoint(begun.path, kIdentity, &whole); }),
-               "without the sums of the half");
+    EXPECT_HAS(ReadError(begun.path, &whole), "without the sums of the half");
 }
 
 TEST(Checkpoint, KeepsTheSharesOfLightPaths) {
@@ -209,19 +210,16 @@ TEST(Checkpoint, RefusesThoseOfAnOlderFormat) {
         return directory.Write("c.h5", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     };
     Film film(kRegion);
-    const auto errorOf = [&](const std::string& path) {
-        return ErrorOf([&] { ReadCheckpoint(path, kIdentity, &film); });
-    };
-    const std::string path = fileOf("lull checkpoint 5"), error = errorOf(path);
-    EXPECT_HAS(error, path + ": it was written by an older lull; ");
-    EXPECT_HAS(errorOf(fileOf("something else")), "it is not a checkpoint");
+    const std::string path = fileOf("lull checkpoint 5");
+    EXPECT_HAS(ReadError(path, &film), path + ": it was written by an older lull; ");
+    EXPECT_HAS(ReadError(fileOf("something else"), &film), "it is not a checkpoint");
 }
 
 // Sizes are checked before anything is read, whoever has sealed the file.
 TEST(Checkpoint, RefusesPlanesOfAnotherSize) {
     const SmallCheckpoint begun;
     Film film(kRegion, {.grid = {.blockSize = 50, .tileSize = 8}});
-    const std::string error = ErrorOf([&] { ReadCheckpoint(begun.path, kIdentity, &film); });
+    const std::string error = ReadError(begun.path, &film);
     EXPECT_HAS(error, begun.path);
     EXPECT_HAS(error, "'tiles': it does not have the shape 392");
 }
@@ -242,8 +240,7 @@ TEST(Checkpoint, RefusesDamagedFiles) {
         std::string flipped = bytes;
         flipped[random() % bytes.size()] ^= char(1 << random() % 8);
         const std::string damaged = begun.directory.Write("flipped", flipped);
-        EXPECT_HAS(ErrorOf([&] { ReadCheckpoint(damaged, kIdentity, &film); }),
-                   damaged + ": it is ");
+        EXPECT_HAS(ReadError(damaged, &film), damaged + ": it is ");
     }
     // Another image's pixels do not fit.
     Film smaller({{0, 0}, {40, 97}});

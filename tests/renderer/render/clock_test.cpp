@@ -15,13 +15,6 @@ namespace lull {
 namespace {
 
 // Blocks of 20x20 pixels in a row, of which block i has noise of 1, 2, 4, ...
-void UnevenSample(Sampler& sampler, const Vec2i& pixel, uint32_t index, PathSample* sample) {
-    sampler.StartSample(pixel, index);
-    const float u = sampler.Get1D() - 0.5f;
-    const float deviation = 0.02f * float(1 << (pixel.x() / 20));
-    sample->radiance = Rgb(1, 1, 1) * (0.4f + deviation * u);
-}
-
 struct Clocked {
     Film film{{{0, 0}, {80, 20}}};
     std::atomic<int64_t> taken = 0;
@@ -50,7 +43,9 @@ struct Clocked {
         setup.source = [this](Sampler& sampler, const Vec2i& pixel, uint32_t index,
                               PathSample* sample) {
             ++taken;
-            UnevenSample(sampler, pixel, index, sample);
+            sampler.StartSample(pixel, index);
+            const float deviation = 0.02f * float(1 << (pixel.x() / 20));
+            sample->radiance = Rgb(1, 1, 1) * (0.4f + deviation * (sampler.Get1D() - 0.5f));
         };
         result = Render(setup);
     }

@@ -159,14 +159,17 @@ Means MeansOf(const Film& film) {
     return means;
 }
 
-Means Render(const Scene& scene, int spp) {
-    SessionOptions options = OptionsFor("", 2);
+// Renders without a rule.
+std::unique_ptr<Session> RunTo(const Scene& scene, int cap, int threads = 2) {
+    SessionOptions options = OptionsFor("", threads);
     options.render.makeCriterion = {};
-    options.render.schedule.cap = spp;
-    Session session(scene, kRegion, options);
-    session.Run();
-    return MeansOf(session.GetFilm());
+    options.render.schedule.cap = cap;
+    auto session = std::make_unique<Session>(scene, kRegion, options);
+    session->Run();
+    return session;
 }
+
+Means Render(const Scene& scene, int spp) { return MeansOf(RunTo(scene, spp)->GetFilm()); }
 
 TEST(LightRounds, HaveTheMeanOfPaths) {
     for (const char* filter : {"box", "gaussian", "mitchell"}) {
@@ -192,11 +195,7 @@ TEST(LightRounds, FindLightBehindGlass) {
 TEST(LightRounds, TakeMoreLightPathsWhereTheseHaveTheVariance) {
     const auto pathsIn = [](bool inGlass) {
         const auto scene = MakeScene(inGlass, "bdpt");
-        SessionOptions options = OptionsFor("", 2);
-        options.render.makeCriterion = {};
-        Session session(*scene, kRegion, options);
-        session.Run();
-        return session.Options().lightRounds->Shares().lightPaths;
+        return RunTo(*scene, 100)->Options().lightRounds->Shares().lightPaths;
     };
     EXPECT_GT(pathsIn(true), LightRounds::kFirst.lightPaths);
     EXPECT_LT(pathsIn(false), LightRounds::kFirst.lightPaths);
@@ -272,15 +271,11 @@ Material "matte" "rgb Kd" [.7 .5 .3]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1]
 WorldEnd
 )");
-    SessionOptions options = OptionsFor("");
-    options.render.makeCriterion = {};
-    options.render.schedule.cap = 20;
-    Session session(*scene, kRegion, options);
-    session.Run();
+    const auto session = RunTo(*scene, 20, 1);
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 32; ++x)
-            EXPECT_TRUE(std::isfinite(session.GetFilm().At({x, y}).sum[1]));
-    EXPECT_GT(session.GetFilm().RejectedCount(), 50);
+            EXPECT_TRUE(std::isfinite(session->GetFilm().At({x, y}).sum[1]));
+    EXPECT_GT(session->GetFilm().RejectedCount(), 50);
 }
 
 }  // namespace

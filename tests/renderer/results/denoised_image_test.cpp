@@ -107,11 +107,7 @@ RenderResult TwoBlocks() {
         .pixels = {{0, 0}, {10, 10}}, .spp = 20, .stopped = true, .stoppedByVote = true};
     result.blocks[0].seconds = 2;
     result.blocks[0].criterionSeconds = 1;
-    Decision decision;
-    decision.value = 0.25;
-    decision.threshold = 0.5;
-    decision.votes = 1;
-    result.blocks[0].decisions = {{20, decision}};
+    result.blocks[0].decisions = {{20, {.value = 0.25, .threshold = 0.5, .votes = 1}}};
     result.blocks[0].block.noise = 0.5;
     result.blocks[1].block = {
         .pixels = {{10, 0}, {20, 10}}, .spp = 100, .votes = false, .leader = 0, .stopped = true};

@@ -193,12 +193,10 @@ TEST(LightGroupChannels, NamesMeansOfTheSamples) {
     EXPECT_EQ(extra.channels[3].values, (std::vector<float>{2, 3}));  // the first look
     EXPECT_EQ(std::get<std::string>(extra.attributes.at("lightGroups")), "lamp,sky");
     EXPECT_TRUE(extra.colours.empty());
-}
-
-TEST(LightGroupChannels, LeavesOutTheBackground) {
-    const LayerChannels extra = Lights().Make(nullptr, true);
-    EXPECT_EQ(extra.channels[1].values[0], 6);
-    EXPECT_EQ(extra.channels[3].values[0], 1.5f);
+    // Where the background is left out.
+    const LayerChannels alone = Lights().Make(nullptr, true);
+    EXPECT_EQ(alone.channels[1].values[0], 6);
+    EXPECT_EQ(alone.channels[3].values[0], 1.5f);
 }
 
 TEST(LightGroupChannels, SplitsDenoisedLightAsThatOfTheSamples) {

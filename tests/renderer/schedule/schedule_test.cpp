@@ -7,11 +7,14 @@
 namespace lull {
 namespace {
 
-// Carries out everything that is ready now and lists it; `stop` says where blocks stop.
+// Carries out everything that is ready now, but at most so many tiles, and lists it; `stop` says
+// where blocks stop.
 template <typename Stop>
-std::vector<Tile> RunAll(Schedule& schedule, const Stop& stop) {
+std::vector<Tile> RunAll(Schedule& schedule, const Stop& stop, size_t most = 1 << 30) {
     std::vector<Tile> tiles;
-    while (const auto tile = schedule.Next()) {
+    while (tiles.size() < most) {
+        const auto tile = schedule.Next();
+        if (!tile) break;
         tiles.push_back(*tile);
         if (schedule.Finish(*tile))
             schedule.Decide(tile->block, stop(tile->block, schedule.Blocks()[tile->block].spp));
@@ -68,12 +71,7 @@ TEST(Schedule, PairsStopTogether) {
         Schedule schedule({{0, 0}, {64, 16}}, options);
         const auto stop = [&](int block, int spp) { return spp == votesAt[size_t(block)]; };
         if (restarts) {
-            for (int tiles = 0; tiles < 13; ++tiles) {
-                const auto tile = schedule.Next();
-                if (schedule.Finish(*tile))
-                    schedule.Decide(tile->block,
-                                    stop(tile->block, schedule.Blocks()[tile->block].spp));
-            }
+            RunAll(schedule, stop, 13);
             std::vector<BlockStart> starts;
             for (const Block& block : schedule.Blocks())
                 starts.push_back({.spp = block.spp,
@@ -112,22 +110,18 @@ TEST(Schedule, GivesEachPixelOfAPassOnce) {
     for (const auto& [pixel, count] : seen) EXPECT_EQ(count, 1);
 }
 
+// Also where the cap is below one pass.
 TEST(Schedule, ShortensTheLastPassToTheCap) {
-    Schedule schedule({{0, 0}, {8, 8}}, {.passLength = 20, .cap = 50});
-    const std::vector<Tile> tiles = RunAll(schedule, Never);
-    ASSERT_EQ(tiles.size(), 3u);
-    EXPECT_EQ(tiles[2].first, 40);
-    EXPECT_EQ(tiles[2].count, 10);
-    EXPECT_TRUE(schedule.Done());
-    EXPECT_EQ(schedule.Blocks()[0].spp, 50);
-    EXPECT_FALSE(schedule.Blocks()[0].stoppedByVote);
-}
-
-TEST(Schedule, TakesACapBelowOnePass) {
-    Schedule schedule({{0, 0}, {8, 8}}, {.passLength = 20, .cap = 7});
-    const std::vector<Tile> tiles = RunAll(schedule, Never);
-    ASSERT_EQ(tiles.size(), 1u);
-    EXPECT_EQ(tiles[0].count, 7);
+    for (const auto& [cap, passes, count] : {std::tuple(50, 3, 10), {7, 1, 7}}) {
+        Schedule schedule({{0, 0}, {8, 8}}, {.passLength = 20, .cap = cap});
+        const std::vector<Tile> tiles = RunAll(schedule, Never);
+        ASSERT_EQ(tiles.size(), size_t(passes));
+        EXPECT_EQ(tiles.back().first, cap - count);
+        EXPECT_EQ(tiles.back().count, count);
+        EXPECT_TRUE(schedule.Done());
+        EXPECT_EQ(schedule.Blocks()[0].spp, cap);
+        EXPECT_FALSE(schedule.Blocks()[0].stoppedByVote);
+    }
 }
 
 // With a clock there may be no time for all of the first pass.

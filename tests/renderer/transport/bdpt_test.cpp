@@ -234,13 +234,7 @@ TEST(BdptReference, CausticGlass) {
         {0.39788, 0.00191}, {1.11408, 0.00590}, {0.55299, 0.00305}, {0.62758, 0.00172},
         {0.54695, 0.00517}, {0.79440, 0.00363}, {0.33447, 0.00176}, {0.55139, 0.00123}};
     LULL_SHARED_FILE(file, "pbrt-scenes/caustic-glass/scene.pbrt");
-    Warnings warnings;
-    Description description = ParsePbrt(file.string(), warnings);
-    description.integrator.name = "bdpt";
-    CompileOptions options;
-    options.film.resolution = Vec2i(96, 96);
-    options.maxDepth = 20;
-    const auto scene = Compile(description, options, warnings);
+    const auto scene = Both(file.string(), 96, 20).bdpt;
     for (const BdptShares& shares : kWays) Compare(*scene, shares, 4, 16, 24, kPbrt);
 }
 

@@ -27,7 +27,7 @@ ImageMean Measure(const Scene& scene, Estimator estimator, int samples = 256, ui
     return MeanOf(pixels);
 }
 
-constexpr const char* kSky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+const std::string kSky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 // A sphere that fills the image.
 constexpr const char* kBall = "Shape \"sphere\" \"float radius\" [2]\n";
 constexpr const char* kClose = "0 0 -2.5  0 0 0  0 1 0";
@@ -81,7 +81,7 @@ TEST(Furnace, LosslessSpecularBallsAreInvisible) {
             fmt::format("\"glass\" \"float eta\" [{}] \"rgb Kr\" [1 1 1] \"rgb Kt\" [1 1 1]", eta));
     for (const Estimator estimator : kEstimators)
         for (const std::string& material : materials) {
-            const auto scene = MakeScene(std::string(kSky) + "Material " + material + "\n" + kBall,
+            const auto scene = MakeScene(kSky + "Material " + material + "\n" + kBall,
                                          "\"integer maxdepth\" [10000]", 8, kClose);
             const ImageMean t = Measure(*scene, estimator, 256, 2);
             // Roulette is the only thing left that can vary.
@@ -114,7 +114,7 @@ TEST(Furnace, OtherMaterialsNeverAddEnergy) {
         {"\"translucent\"", 0.125},
     };
     for (const Case& c : cases) {
-        const auto scene = MakeScene(std::string(kSky) + "Material " + c.material + "\n" + kBall,
+        const auto scene = MakeScene(kSky + "Material " + c.material + "\n" + kBall,
                                      "\"integer maxdepth\" [200]", 8, kClose);
         ImageMean totals[2];
         for (int i = 0; i < 2; ++i) {
@@ -245,7 +245,7 @@ TEST(Subsurface, ReturnsItsAlbedoUnderAnEvenSky) {
     const double straight = FresnelDielectric(1, kEta);
     const double expected = straight + (1 - straight) * 0.6 * out;
     const auto scene = MakeScene(
-        std::string(kSky) +
+        kSky +
             "Material \"kdsubsurface\" \"rgb Kd\" [.6 .6 .6] \"rgb mfp\" [.3 .1 .2] \"float eta\" "
             "1.4\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" "
             "[-90 -90 0 90 -90 0 90 90 0 -90 90 0]",

@@ -47,9 +47,8 @@ inline void LookDown(GltfFile* file, double half = 1) {
 // `warns`: that it sees single-sided surfaces from behind.
 inline std::unique_ptr<const Scene> Compiled(GltfFile file, int size = 4, bool warns = false) {
     if (!file.root.contains("cameras")) LookDown(&file);
-    const GltfFolder folder;
     Warnings warnings;
-    const Description d = ParseGltf(folder.Write("scene.gltf", file.Text()), {}, warnings);
+    const Description d = ParseGltf(kFolder.Write("scene.gltf", file.Text()), {}, warnings);
     EXPECT_EQ(warnings.Total(), 0);
     return Compiled(d, size, warns);
 }

@@ -143,9 +143,8 @@ TEST(GltfMaterial, IsSingleSided) {
         file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}});
         Sun(&file, Vec3f::UnitZ());
         LookDown(&file);
-        const GltfFolder folder;
         Warnings warnings;
-        const auto scene = Compile(folder.Parse(file, {}), ImageOf(4), warnings);
+        const auto scene = Compile(kFolder.Parse(file, {}), ImageOf(4), warnings);
         const bool isOpen = how == "back" || how == "instanced";
         EXPECT_EQ(warnings.Total(), isOpen) << how;
         const Rgb seen = Measure(*scene, Estimator::Combined, 16).mean * kPi;
@@ -257,15 +256,14 @@ TEST(GltfShutter, BlursByTheTimeThatIsCovered) {
          {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
     Sun(&file, Vec3f::UnitZ());
     LookDown(&file);
-    const GltfFolder folder;
     // It covers each point that is seen for half of the time.
-    const auto blurred = Compiled(folder.Parse(file, {.frame = 0, .shutter = 1}), 4);
+    const auto blurred = Compiled(kFolder.Parse(file, {.frame = 0, .shutter = 1}), 4);
     const Total t = Measure(*blurred, Estimator::Combined, 4000);
     EXPECT_NEAR(t.mean.y() * kPi, 0.5, 4.5 * t.error * kPi);
     EXPECT_NEAR(t.mean.x() + t.mean.y(), 1 / kPi, 1e-4);
     EXPECT_GT(t.error, 0);
     // At half that time it stands in the middle.
-    EXPECT_NEAR(Measure(*Compiled(folder.Parse(file, {.frame = 0.5}), 4)).mean.y() * kPi, 1, 1e-4);
+    EXPECT_NEAR(Measure(*Compiled(kFolder.Parse(file, {.frame = 0.5}), 4)).mean.y() * kPi, 1, 1e-4);
 }
 
 // The normal map turns the square towards or away from the sun: red to the right, green upwards.

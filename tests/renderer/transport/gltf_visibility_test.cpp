@@ -50,9 +50,8 @@ TEST(GltfNode, MayBeHiddenFromTheCameraAndShadowRays) {
                 file.Node({{"mesh", Square(&file, Matte(1, 1, 1))}});
                 Sun(&file, Vec3f::UnitZ());
                 LookDown(&file);
-                const GltfFolder folder;
                 const GltfOptions opened{.frame = 0, .shutter = 1};
-                Description d = folder.Parse(file, how == "moving" ? opened : GltfOptions());
+                Description d = kFolder.Parse(file, how == "moving" ? opened : GltfOptions());
                 for (const bool isBidirectional : {false, true}) {
                     if (isBidirectional && how == "media") continue;  // which bdpt has not
                     if (isBidirectional) d.integrator.name = "bdpt";

@@ -13,12 +13,13 @@ namespace {
 constexpr Estimator kBoth[] = {Estimator::Combined, Estimator::PbrtV3};
 
 // An image of one pixel with a box filter, whose camera at z = -3 looks at the origin.
-std::unique_ptr<const Scene> MakeScene(const std::string& world, const std::string& before = "") {
+std::unique_ptr<const Scene> MakeScene(const std::string& world, const std::string& before = "",
+                                       const std::string& camera = "") {
     return SceneOf(
         WorldText(world,
                   "LookAt 0 0 -3  0 0 0  0 1 0\n"
                   "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" [1]\n" +
-                      before + "\nCamera \"perspective\" \"float fov\" [20]"));
+                      before + "\nCamera \"perspective\" \"float fov\" [20] " + camera));
 }
 
 constexpr const char* kSky = "LightSource \"infinite\" \"rgb L\" [.25 .5 4]\n";
@@ -66,11 +67,7 @@ TEST(FirstHit, IsWhatIsSeen) {
 
 // What is nearer than that is not seen, and the depth is still that from the camera.
 TEST(FirstHit, IsBeyondWhereCamerasBeginToSee) {
-    const auto scene =
-        SceneOf(WorldText(Wall(0) + Wall(2),
-                          "LookAt 0 0 -3  0 0 0  0 1 0\n"
-                          "Film \"image\" \"integer xresolution\" [1] \"integer yresolution\" [1]\n"
-                          "Camera \"perspective\" \"float fov\" [20] \"float clipstart\" [4]\n"));
+    const auto scene = MakeScene(Wall(0) + Wall(2), "", "\"float clipstart\" [4]");
     const FirstHit hit = Find(*scene, Estimator::Combined);
     ASSERT_TRUE(hit.found);
     EXPECT_NEAR(hit.depth, 5, 1e-4f);

@@ -9,7 +9,7 @@
 namespace lull::panes_test {
 namespace {
 
-constexpr const char* kSheet =
+const std::string kSheet =
     "Material \"metallicroughness\" \"float metallicfactor\" [0] \"float roughnessfactor\" [0] "
     "\"float transmissionfactor\" [1] ";
 constexpr const char* kTint = "\"rgb basecolorfactor\" [.9 .6 .3] ";
@@ -31,22 +31,21 @@ const std::string kBox =
     "\"float roughness\" [.1]\n"
     "TransformBegin Translate .3 -.5 .2 Shape \"sphere\" \"float radius\" "
     "[.5] TransformEnd\n";
-constexpr const char* kCamera =
+const std::string kCamera =
     "LookAt 0 .2 -1.9  0 -.6 0  0 1 0\n"
     "Camera \"perspective\" \"float fov\" [80]\n";
 
+const std::string kArea =
+    R"(AttributeBegin Material "matte" "rgb Kd" [0 0 0] AreaLightSource "diffuse" "rgb L" [4 4 4] )" +
+    Quad("-1 1.5 -1  0 1.5 -1  0 1.5 0  -1 1.5 0");
 const NamedText kLit[] = {
     {"Sun", R"(LightSource "distant" "point from" [1 3 .5] "rgb L" [2 2 2] )"},
     {"Disc", R"(LightSource "distant" "point from" [1 3 .5] "rgb L" [2 2 2] "float angle" [20] )"},
     {"Point", R"(LightSource "point" "point from" [.5 1.5 -.3] "rgb I" [3 3 3] )"},
     {"Spot", R"(LightSource "spot" "point from" [.5 2 -.3] "point to" [0 0 0] "float coneangle" [50]
 "rgb I" [6 6 6] )"},
-    {"Area",
-     R"(AttributeBegin Material "matte" "rgb Kd" [0 0 0] AreaLightSource "diffuse" "rgb L" [4 4 4] )" +
-         Quad("-1 1.5 -1  0 1.5 -1  0 1.5 0  -1 1.5 0") + "AttributeEnd "},
-    {"Hidden",
-     R"(AttributeBegin Material "matte" "rgb Kd" [0 0 0] AreaLightSource "diffuse" "rgb L" [4 4 4] )" +
-         Quad("-1 1.5 -1  0 1.5 -1  0 1.5 0  -1 1.5 0") + R"("float alpha" [0] AttributeEnd )"},
+    {"Area", kArea + "AttributeEnd "},
+    {"Hidden", kArea + R"("float alpha" [0] AttributeEnd )"},
     {"Sphere", R"(AttributeBegin Translate -.5 1.5 0 Material "matte" "rgb Kd" [0 0 0]
 AreaLightSource "diffuse" "rgb L" [4 4 4] Shape "sphere" "float radius" [.3] AttributeEnd )"},
     {"Sky", R"(LightSource "infinite" "rgb L" [1 1 1] )"},
@@ -62,9 +61,9 @@ std::unique_ptr<const Scene> Compiled(const std::string& world, int maxDepth,
     CompileOptions options;
     options.film.resolution = Vec2i(16, 16);
     options.maxDepth = maxDepth;
-    return SceneOf(WorldText(world, std::string(kCamera) + "PixelFilter \"box\"\nIntegrator \"" +
-                                        integrator + "\"\n"),
-                   options);
+    return SceneOf(
+        WorldText(world, kCamera + "PixelFilter \"box\"\nIntegrator \"" + integrator + "\"\n"),
+        options);
 }
 
 ImageMean Measure(const Scene& scene, Estimator estimator, uint64_t seed, int samples = 300) {
@@ -88,7 +87,7 @@ class Panes : public testing::TestWithParam<NamedText> {};
 // Two tinted panes let the square of their colour through, of all light that lights bring, directly
 // and by other ways.
 TEST_P(Panes, LetTheirShareThrough) {
-    const std::string pane = std::string(kSheet) + kTint + kNoInterface;
+    const std::string pane = kSheet + kTint + kNoInterface;
     const std::string lit = GetParam().text + kBox;
     for (const int depth : {1, 6})
         for (const Estimator estimator : kEstimators) {
@@ -105,7 +104,7 @@ TEST_P(Panes, LetTheirShareThrough) {
 // Glass is an interface that reflects by the angle, coats and tints of all sorts, and a base: the
 // mean is that of paths from the lights as well.
 TEST_P(Panes, HaveTheMeanOfBidirectionalPaths) {
-    const std::string glass = std::string(kSheet) + kTint;
+    const std::string glass = kSheet + kTint;
     const std::string coated =
         glass + "\"float clearcoatfactor\" [1] \"float clearcoatroughnessfactor\" [.3]";
     if (GetParam().name == "Hidden")
@@ -118,8 +117,7 @@ TEST_P(Panes, HaveTheMeanOfBidirectionalPaths) {
 
 // With both estimators, and where shadow rays go through interfaces of media as well.
 TEST_P(Panes, HaveOneMean) {
-    const std::string world =
-        GetParam().text + kBox + Roof(kHalf) + Roof(std::string(kSheet) + kTint, 0.901);
+    const std::string world = GetParam().text + kBox + Roof(kHalf) + Roof(kSheet + kTint, 0.901);
     const std::string mist =
         "AttributeBegin Material \"\" Translate -.6 0 0 Shape \"sphere\" \"float radius\" [.4] "
         "AttributeEnd\n";
@@ -190,8 +188,7 @@ TEST(PaneLight, EndsWhereTheRayDoes) {
 TEST(PaneLight, CountsNoBounces) {
     const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
     std::string panes;
-    for (int i = 0; i < 8; ++i)
-        panes += Roof(std::string(kSheet) + kTint + kNoInterface, 0.3 + 0.1 * i);
+    for (int i = 0; i < 8; ++i) panes += Roof(kSheet + kTint + kNoInterface, 0.3 + 0.1 * i);
     const double share = std::pow(0.6, 8);
     const auto up = [&](const std::string& world, int depth) {
         CompileOptions options;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
 
 #include "tests/renderer/scene_of.h"
 #include "tests/renderer/transport/pixel_statistics.h"
@@ -103,13 +102,6 @@ Comparison Compare(const PixelStatistics& ours, const PixelStatistics& theirs) {
     return result;
 }
 
-std::unique_ptr<const Scene> LoadScene(const std::filesystem::path& file, Estimator estimator) {
-    CompileOptions options;
-    options.lightsAsPbrtV3 = estimator == Estimator::PbrtV3;
-    options.film.resolution = Vec2i(128, 128);
-    return SceneIn(file.string(), options);
-}
-
 // Returns whether pbrt-v3's texture filtering shows at 128x128: it looks up small images of bump
 // maps and textures from the camera, which smooths them. Bump maps of contemporary-bathroom also
 // send mirrored light below the surface, which pbrt-v3 loses.
@@ -126,7 +118,11 @@ TEST_P(ReferenceTest, MeanAndVarianceArePbrtV3s) {
     const std::string name = std::get<0>(GetParam());
     const Estimator estimator = std::get<1>(GetParam());
     LULL_SHARED_FILE(file, "references/" + name + ".exr");
-    const auto scene = LoadScene(SharedFolder() / "pbrt-scenes" / name / "scene.pbrt", estimator);
+    CompileOptions options;
+    options.lightsAsPbrtV3 = estimator == Estimator::PbrtV3;
+    options.film.resolution = Vec2i(128, 128);
+    const auto scene =
+        SceneIn((SharedFolder() / "pbrt-scenes" / name / "scene.pbrt").string(), options);
     const PixelStatistics reference = ReadStatistics(file.string());
     const int samples = FromEnvironment("LULL_REFERENCE_SPP", 64);
 

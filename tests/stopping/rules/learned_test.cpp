@@ -254,13 +254,11 @@ TEST(Learned, WantsTheSppToIncrease) {
     EXPECT_THROW(criterion->Observe(empty), std::invalid_argument);
 }
 
-BlockImage NoisyAt(int spp) { return NoisyBlock(100, 100, 0.2, spp, unsigned(spp)); }
-
 // Runs a rule over blocks whose noise falls; returns the decisions up to a stop.
 std::vector<Decision> Decide(Criterion* rule, int end) {
     std::vector<Decision> decisions;
     for (int spp = 20; spp <= end; spp += 20) {
-        BlockImage block = NoisyAt(spp);
+        const BlockImage block = NoisyBlock(100, 100, 0.2, spp, unsigned(spp));
         BlockView view = block.At(spp);
         view.halfMean = {};  // it is not needed
         if (rule->Need(spp) == ViewNeed::Nothing) view.mean = {};

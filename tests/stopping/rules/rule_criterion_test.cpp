@@ -63,8 +63,7 @@ TEST(RuleCriterion, StopsBelowTheThresholdSoManyTimesInARow) {
 TEST(RuleCriterion, DoesNotStopAtTheLimitOfPeakNoise) {
     Rule rule = OwnRule({}, 2);
     rule.peak = {.most = 2, .visibility = {.reference = 1000, .nearness = 0.5}};
-    const Rule read = ParseRule("entropy:1");
-    EXPECT_EQ(read.need, ViewNeed::MeanAndHalf);
+    EXPECT_EQ(ParseRule("entropy:1").need, ViewNeed::MeanAndHalf);
     EXPECT_NEAR(PeakOverLimit(rule, 4, 750), 1, 1e-12);
     EXPECT_EQ(PeakOverLimit(rule, 4, 1000), 0);
     EXPECT_EQ(RaisedByPeak(rule, 0.1, 0.999), 0.1);

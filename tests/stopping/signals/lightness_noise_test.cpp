@@ -234,13 +234,13 @@ TEST(LocalPeakNoise, IsThatOfTheLitPixelsAlone) {
         const double whole = peakOf({{0, 0, 200, 200}}, noise, 0);
         for (const double dark : {0., 0.01, 0.18, 0.8}) {
             const auto expect = [&](const std::vector<Window>& windows, double least, double most) {
+                const auto& [x, y, width, height] = windows[0];
+                SCOPED_TRACE(testing::Message()
+                             << noise << " " << dark << " " << x << " " << y << " " << width << "x"
+                             << height << " " << windows.size());
                 const double ratio = peakOf(windows, noise, dark) / whole;
-                EXPECT_GT(ratio, least)
-                    << noise << " " << dark << " " << windows[0].x << " " << windows[0].y << " "
-                    << windows[0].width << "x" << windows[0].height << " " << windows.size();
-                EXPECT_LT(ratio, most)
-                    << noise << " " << dark << " " << windows[0].x << " " << windows[0].y << " "
-                    << windows[0].width << "x" << windows[0].height << " " << windows.size();
+                EXPECT_GT(ratio, least);
+                EXPECT_LT(ratio, most);
             };
             for (const int at : {0, 77, 100}) {
                 for (const int side : {12, 16, 24, 48, 100})

@@ -17,12 +17,7 @@ namespace {
 // The blocks at the right are 20 pixels wide: too small to be judged, they follow a neighbour.
 const PixelRect kRegion{{3, 5}, {123, 105}};
 
-ScheduleOptions Schedule() {
-    ScheduleOptions schedule;
-    schedule.blockSize = 50;
-    schedule.cap = 100;
-    return schedule;
-}
+ScheduleOptions Schedule() { return {.blockSize = 50, .cap = 100}; }
 
 std::vector<MonitoredRule> Rules() {
     const auto dammertz = [](const BlockInfo&) { return MakeCriterion(DammertzRule(0.5)); };
@@ -40,17 +35,18 @@ RenderOptions Options() {
     return options;
 }
 
-// Renders as `lull render` would with that rule alone.
-std::pair<RgbImage, std::vector<int>> RenderAlone(const MonitoredRule& rule) {
-    Film film(kRegion);
-    RenderOptions options = Options();
-    options.schedule.smallestSide = rule.smallestSide;
-    options.makeCriterion = rule.make;
-    const RenderResult result = Render(Onto(&film, options));
-    std::vector<int> spp;
-    for (const BlockResult& block : result.blocks) spp.push_back(block.block.spp);
-    return {{kRegion.Width(), kRegion.Height(), film.MeanImage()}, spp};
-}
+// A render as `lull render` would make it with that rule alone.
+struct RenderAlone {
+    Film film{kRegion};
+    RenderResult result;
+
+    explicit RenderAlone(const MonitoredRule& rule) {
+        RenderOptions options = Options();
+        options.schedule.smallestSide = rule.smallestSide;
+        options.makeCriterion = rule.make;
+        result = Render(Onto(&film, options));
+    }
+};
 
 struct Observed {
     std::vector<MonitoredRule> rules = Rules();
@@ -75,10 +71,11 @@ TEST(TakeImage, GivesTheBitsOfARenderByThatRuleAlone) {
         const Observed observed(goesOn);
         for (size_t i = 0; i < observed.rules.size(); ++i) {
             const ComparedImage image = TakeImage(observed.Get(), observed.rules, i);
-            const auto [alone, spp] = RenderAlone(observed.rules[i]);
-            EXPECT_EQ(image.image.values, alone.values) << goesOn << i;
-            ASSERT_EQ(image.costs.size(), spp.size());
-            for (size_t b = 0; b < spp.size(); ++b) EXPECT_EQ(image.costs[b].spp, spp[b]) << b;
+            const RenderAlone alone(observed.rules[i]);
+            EXPECT_EQ(image.image.values, alone.film.MeanImage()) << goesOn << i;
+            ASSERT_EQ(image.costs.size(), alone.result.blocks.size());
+            for (size_t b = 0; b < image.costs.size(); ++b)
+                EXPECT_EQ(image.costs[b].spp, alone.result.blocks[b].block.spp) << b;
         }
     }
 }
@@ -104,18 +101,14 @@ TEST(VerificationOf, ComparesPixelsAndAddsUpSeconds) {
     const Observed observed(true);
     const ComparedImage taken = TakeImage(observed.Get(), observed.rules, 1);
     for (const size_t rule : {size_t(0), size_t(1)}) {
-        Film film(kRegion);
-        RenderOptions options = Options();
-        options.schedule.smallestSide = observed.rules[rule].smallestSide;
-        options.makeCriterion = observed.rules[rule].make;
-        const RenderResult result = Render(Onto(&film, options));
-        const Verification verification = VerificationOf(result, film, taken);
+        const RenderAlone alone(observed.rules[rule]);
+        const Verification verification = VerificationOf(alone.result, alone.film, taken);
         EXPECT_EQ(verification.samePixels, rule == 1);
         EXPECT_EQ(verification.threads, 2);
         double seconds = 0;
-        for (const BlockResult& block : result.blocks) seconds += block.seconds;
+        for (const BlockResult& block : alone.result.blocks) seconds += block.seconds;
         EXPECT_EQ(verification.seconds, seconds);
-        EXPECT_EQ(verification.wallSeconds, result.progress.seconds);
+        EXPECT_EQ(verification.wallSeconds, alone.result.progress.seconds);
     }
 }
 

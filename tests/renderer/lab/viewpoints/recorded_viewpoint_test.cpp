@@ -26,8 +26,7 @@ ViewpointRecording Frame() {
 ViewpointRecording Record(const std::vector<int>& limits) {
     Film film(kRoom);
     ViewpointRecording viewpoint = Frame();
-    const RenderResult result = RecordBlocks(Onto(&film, RoomOptions()), limits, &viewpoint);
-    EXPECT_FALSE(result.cancelled);
+    EXPECT_FALSE(RecordBlocks(Onto(&film, RoomOptions()), limits, &viewpoint).cancelled);
     return viewpoint;
 }
 

@@ -29,11 +29,8 @@ void WriteGrey(const std::string& path, int width, int height, float linear) {
 }
 
 // Returns what reading a folder throws.
-std::string ProblemOf(const TemporaryDirectory& folder) try {
-    MakeStudy(FindPictures(folder.path.string(), "x"), 200, 0, 1.25);
-    return "";
-} catch (const Error& e) {
-    return e.what();
+std::string ProblemOf(const TemporaryDirectory& folder) {
+    return ErrorOf([&] { MakeStudy(FindPictures(folder.path.string(), "x"), 200, 0, 1.25); });
 }
 
 TEST(SppInName, IsTheNumberThatSaysSo) {

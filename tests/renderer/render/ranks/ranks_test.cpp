@@ -12,15 +12,6 @@
 namespace lull::ranks_test {
 namespace {
 
-// Lets blocks stop at the samples that they have had in a render that was short of time.
-void StopAs(const RenderResult& result, RenderOptions* setup) {
-    setup->schedule.smallestSide = 0;
-    setup->schedule.passLength = 1;  // the time may have ended within the first pass
-    setup->makeCriterion = [&](const BlockInfo& block) {
-        return std::make_unique<ScriptedCriterion>(result.blocks[size_t(block.index)].block.spp);
-    };
-}
-
 std::vector<int> StopsOf(const Shared& shared) {
     std::vector<int> stops;
     for (const BlockResult& b : shared.result.blocks)
@@ -74,21 +65,14 @@ TEST(Ranks, ShowCriteriaTheSame) {
     }
 }
 
-// Returns what cancels the last of the ranks after a while.
-auto SignalToLast(int ranks) {
-    return [ranks](RenderOptions* o, int rank) {
-        if (rank != ranks - 1) return;
-        o->isCancelled = [calls = std::make_shared<std::atomic<int>>(0), ranks] {
-            return ++*calls > 150 / ranks;
-        };
-    };
-}
-
 // Interrupted with some ranks, by a signal to one of them, and taken up by others.
 TEST(Ranks, GoOnFromCheckpointsOfOthers) {
     const Shared reference = RenderShared(0);
     for (const auto& [first, second] : {std::pair(1, 3), {2, 0}, {4, 2}}) {
-        const Shared begun = RenderShared(first, SignalToLast(first));
+        std::atomic<int> calls = 0;
+        const Shared begun = RenderShared(first, [&, ranks = first](RenderOptions* o, int rank) {
+            if (rank == ranks - 1) o->isCancelled = [&, ranks] { return ++calls > 150 / ranks; };
+        });
         ASSERT_TRUE(begun.result.cancelled);
         EXPECT_LT(begun.film->SampleCount(), reference.film->SampleCount());
         ExpectSame(RenderShared(second, {}, &begun), reference, second);
@@ -147,8 +131,15 @@ TEST(Ranks, EndByTheClockWithWholePasses) {
                 nullptr, [&](int) { return source; });
             EXPECT_TRUE(timed.result.timeUp);
             undone |= timed.film->SampleCount() < taken;
-            const Shared again =
-                RenderShared(2, [&](RenderOptions* o, int) { StopAs(timed.result, o); });
+            // Blocks stop at the samples that they have had.
+            const Shared again = RenderShared(2, [&](RenderOptions* o, int) {
+                o->schedule.smallestSide = 0;
+                o->schedule.passLength = 1;  // the time may have ended within the first pass
+                o->makeCriterion = [&](const BlockInfo& block) {
+                    const BlockResult& stopped = timed.result.blocks[size_t(block.index)];
+                    return std::make_unique<ScriptedCriterion>(stopped.block.spp);
+                };
+            });
             EXPECT_TRUE(SameSums(*again.film, *timed.film));
             // How far each has got by then is for the machine to decide.
             for (const BlockResult& b : timed.result.blocks) EXPECT_GE(b.block.spp, 1);
@@ -348,11 +339,7 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
     }
 }
 
-}  // namespace
-
-// Checks that light paths, and what is learned of them, are the same with any number of ranks.
-
-namespace {
+// Light paths, and what is learned of them, are the same with any number of ranks, too.
 
 // A render that is interrupted, goes on, or loses a rank.
 struct Part {

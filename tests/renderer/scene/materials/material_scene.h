@@ -53,8 +53,9 @@ struct MaterialScene {
         warnings.ThrowErrors();
         return table;
     }
-    // Make the Bsdf of a hit, and that of a material at a simple hit.
-    Bsdf MakeBsdf(SurfaceInteraction hit) { return Make().MakeBsdf(textures, &hit); }
+    // Make the Bsdf of a hit, which a bump map changes, and that of a material at a simple hit.
+    Bsdf MakeBsdf(SurfaceInteraction* hit) { return Make().MakeBsdf(textures, hit); }
+    Bsdf MakeBsdf(SurfaceInteraction hit) { return MakeBsdf(&hit); }
     Bsdf MakeBsdf(int material, const Vec3f& p = Vec3f(0.5f, 0.5f, 0.5f)) {
         return MakeBsdf(Hit(material, p));
     }

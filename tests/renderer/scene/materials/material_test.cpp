@@ -30,6 +30,8 @@ TEST(Material, WarnsOfMoreLightThanItReceives) {
     }
 }
 
+const std::string kStandsIn = "; with --substitute a matte material stands in";
+
 TEST(Mix, ScalesTheLobesOfBoth) {
     MaterialScene b;
     b.AddMaterial("glass");
@@ -90,10 +92,8 @@ TEST(Mix, RefusesMoreThanEightLobes) {
     b.AddMaterial("mix").operands = {0, 0};
     EXPECT_EQ(ErrorOf(&b), "");
     b.AddMaterial("mix").operands = {1, 0};
-    EXPECT_EQ(
-        ErrorOf(&b),
-        "scene.pbrt:30: material \"mix\" can have more than 8 lobes; with --substitute a matte "
-        "material stands in");
+    EXPECT_EQ(ErrorOf(&b),
+              "scene.pbrt:30: material \"mix\" can have more than 8 lobes" + kStandsIn);
 }
 
 TEST(Mix, RefusesUnknownOperands) {
@@ -102,10 +102,9 @@ TEST(Mix, RefusesUnknownOperands) {
     MaterialEntity& m = b.AddMaterial("mix");
     m.operands = {0, -1};
     m.parameters.Add(String("namedmaterial2", "gold"));
-    EXPECT_EQ(ErrorOf(&b),
-              "scene.pbrt:20: \"namedmaterial2\" of a mix: there is no material \"gold\"; with "
-              "--substitute a matte "
-              "material stands in");
+    EXPECT_EQ(
+        ErrorOf(&b),
+        "scene.pbrt:20: \"namedmaterial2\" of a mix: there is no material \"gold\"" + kStandsIn);
 }
 
 TEST(Materials, UnknownKindsAreRefused) {
@@ -113,9 +112,8 @@ TEST(Materials, UnknownKindsAreRefused) {
         MaterialScene b;
         b.AddMaterial("matte");
         b.AddMaterial(kind);
-        EXPECT_EQ(ErrorOf(&b),
-                  "scene.pbrt:20: material \"" + std::string(kind) +
-                      "\" is not supported; with --substitute a matte material stands in");
+        EXPECT_EQ(ErrorOf(&b), "scene.pbrt:20: material \"" + std::string(kind) +
+                                   "\" is not supported" + kStandsIn);
     }
 }
 
@@ -142,15 +140,14 @@ TEST(Materials, SubsurfaceIsChecked) {
         b.AddMaterial(kind, {Float(name, value)});
         return ErrorOf(&b);
     };
-    EXPECT_EQ(
-        error("subsurface", "eta", 0.5f),
-        "scene.pbrt:10: \"eta\" of material \"subsurface\" has to lie between 1 and 4, \"g\" "
-        "between -0.99 and 0.99; they are 0.5 and 0; with --substitute a matte material stands in");
+    EXPECT_EQ(error("subsurface", "eta", 0.5f),
+              "scene.pbrt:10: \"eta\" of material \"subsurface\" has to lie between 1 and 4, "
+              "\"g\" between -0.99 and 0.99; they are 0.5 and 0" +
+                  kStandsIn);
     EXPECT_HAS(error("kdsubsurface", "g", 1), "they are 1.33 and 1");
     EXPECT_EQ(error("kdsubsurface", "scale", -1),
-              "scene.pbrt:10: \"scale\" of material \"kdsubsurface\" is -1; it cannot be negative; "
-              "with --substitute a matte "
-              "material stands in");
+              "scene.pbrt:10: \"scale\" of material \"kdsubsurface\" is -1; it cannot be negative" +
+                  kStandsIn);
     MaterialScene b;
     b.AddMaterial("matte");
     b.AddMaterial("subsurface");
@@ -210,14 +207,20 @@ TEST(Materials, AnisotropyFollowsTheTangent) {
     EXPECT_NEAR(any.s.dot(any.n), 0, 1e-6f);
 }
 
-TEST(BumpMap, TiltsTheNormalByTheSlope) {
+// Returns a hit as the material's bump map leaves it: of texture 0, 1e-3 high where the cells'
+// numbers sum to even, else 0, or a constant.
+SurfaceInteraction Bumped(SurfaceInteraction hit,
+                          const Parameter& map = Textured("bumpmap", 0, false)) {
     MaterialScene b;
-    b.AddChecks(false, 3, 1e-3f);  // 1e-3 high where the cells' numbers sum to even, else 0
-    b.AddMaterial("matte", {Textured("bumpmap", 0, false)});
-    const MaterialTable table = b.Make();
+    b.AddChecks(false, 3, 1e-3f);
+    b.AddMaterial("matte", {map});
+    b.MakeBsdf(&hit);
+    return hit;
+}
+
+TEST(BumpMap, TiltsTheNormalByTheSlope) {
     // A step of 0.0005 in u moves p by 0.001 in y: across an edge only close to it.
-    SurfaceInteraction hit = MaterialScene::Hit(0, Vec3f(0.5f, 0.9995f, 0.5f));
-    table.MakeBsdf(b.textures, &hit);
+    SurfaceInteraction hit = Bumped(MaterialScene::Hit(0, Vec3f(0.5f, 0.9995f, 0.5f)));
     // dp/du = (0, 2, 0) + (0 - 1e-3) / 5e-4 (0, 0, 1), dp/dv as it was.
     EXPECT_TRUE(hit.dpdu.isApprox(Vec3f(0, 2, -2), 1e-3f)) << hit.dpdu.transpose();
     EXPECT_TRUE(hit.dpdv.isApprox(Vec3f(-2, 0, 0), 1e-3f));
@@ -227,84 +230,52 @@ TEST(BumpMap, TiltsTheNormalByTheSlope) {
     // On the other side of the surface the normal stays on that side, the slope turns.
     hit = MaterialScene::Hit(0, Vec3f(0.5f, 0.9995f, 0.5f));
     hit.n = hit.ns = -Vec3f::UnitZ();
-    table.MakeBsdf(b.textures, &hit);
+    hit = Bumped(hit);
     EXPECT_TRUE(hit.ns.isApprox(Vec3f(0, 1, -1).normalized(), 1e-3f)) << hit.ns.transpose();
-
-    hit = MaterialScene::Hit(0);
-    table.MakeBsdf(b.textures, &hit);
-    EXPECT_TRUE(hit.ns.isApprox(Vec3f::UnitZ()));
+    EXPECT_TRUE(Bumped(MaterialScene::Hit(0)).ns.isApprox(Vec3f::UnitZ()));
 }
 
 TEST(BumpMap, StepsByTheDistanceOfSamplesWhereItIsKnown) {
-    MaterialScene b;
-    b.AddChecks(false, 3, 1e-3f);
-    b.AddMaterial("matte", {Textured("bumpmap", 0, false)});
-    const MaterialTable table = b.Make();
     SurfaceInteraction hit = MaterialScene::Hit(0, Vec3f(0.5f, 0.985f, 0.5f));
     hit.duvdx = {0.01f, 0};
     hit.duvdy = {0.01f, -0.02f};
-    table.MakeBsdf(b.textures, &hit);
+    hit = Bumped(hit);
     EXPECT_TRUE(hit.dpdu.isApprox(Vec3f(0, 2, -0.1f), 1e-3f)) << hit.dpdu.transpose();
 }
 
-TEST(BumpMap, OfAConstantUsesTheCurvature) {
-    MaterialScene b;
-    b.AddMaterial("matte", {Float("bumpmap", 0.5f)});
-    const MaterialTable table = b.Make();
+TEST(BumpMap, OfAConstantUsesTheCurvatureAndTangents) {
     SurfaceInteraction hit = MaterialScene::Hit(0);
     hit.dndu = Vec3f(0, 0, 2);
-    table.MakeBsdf(b.textures, &hit);
-    EXPECT_TRUE(hit.dpdu.isApprox(Vec3f(0, 2, 1), 1e-3f));
-}
-
-TEST(BumpMap, WithoutTangentsChangesNothing) {
-    MaterialScene b;
-    b.AddMaterial("matte", {Float("bumpmap", 0.5f)});
-    const MaterialTable table = b.Make();
-    SurfaceInteraction hit = MaterialScene::Hit(0);
+    EXPECT_TRUE(Bumped(hit, Float("bumpmap", 0.5f)).dpdu.isApprox(Vec3f(0, 2, 1), 1e-3f));
+    hit = MaterialScene::Hit(0);
     hit.dpdu = hit.dpdv = Vec3f::Zero();
-    table.MakeBsdf(b.textures, &hit);
-    EXPECT_TRUE(hit.ns == Vec3f::UnitZ());
+    EXPECT_TRUE(Bumped(hit, Float("bumpmap", 0.5f)).ns == Vec3f::UnitZ());
 }
 
-// As in pbrt-v4, where the amount is a number, "share".
+// As in pbrt-v4, where the amount is a number, "share". A mix within a mix makes a choice of its
+// own.
 TEST(BumpMap, OfAMixIsThatOfTheMaterialShown) {
     MaterialScene b;
     b.AddMaterial("matte");
     b.AddMaterial("mirror", {Float("bumpmap", 0.5f)});
-    MaterialEntity& mix = b.AddMaterial("mix", {Float("share", 0.75f)});
-    mix.operands = {0, 1};
+    b.AddMaterial("mix", {Float("share", 0.75f)}).operands = {0, 1};
+    b.AddMaterial("mix", {Float("share", 0.5f)}).operands = {0, 1};
+    b.AddMaterial("mix", {Float("share", 0.5f)}).operands = {3, 0};
     const MaterialTable table = b.Make();
     EXPECT_EQ(table.Needs(2), table.Needs(1));
-    int tilted = 0;
-    for (int i = 0; i < 1000; ++i) {
-        SurfaceInteraction hit = MaterialScene::Hit(2, Vec3f(0.5f, 0.001f * float(i), 0.5f));
-        hit.dndu = Vec3f(0, 0, 2);
-        const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
-        ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
-        const bool isMatte = std::holds_alternative<LambertianReflection>(bsdf.At(0));
-        EXPECT_EQ(hit.ns.isApprox(Vec3f::UnitZ()), isMatte);
-        tilted += !isMatte;
+    for (const int mix : {2, 4}) {
+        int tilted = 0;
+        for (int i = 0; i < 1000; ++i) {
+            SurfaceInteraction hit = MaterialScene::Hit(mix, Vec3f(0.5f, 0.001f * float(i), 0.5f));
+            hit.dndu = Vec3f(0, 0, 2);
+            const Bsdf bsdf = table.MakeBsdf(b.textures, &hit);
+            ASSERT_EQ(bsdf.LobeCount(LobeSet::All), 1);
+            const bool isMatte = std::holds_alternative<LambertianReflection>(bsdf.At(0));
+            EXPECT_EQ(hit.ns.isApprox(Vec3f::UnitZ()), isMatte);
+            tilted += !isMatte;
+        }
+        EXPECT_NEAR(tilted, 250, 50) << mix;
     }
-    EXPECT_NEAR(tilted, 250, 50);
-}
-
-// A mix within a mix makes a choice of its own.
-TEST(BumpMap, OfAMixOfMixesIsThatOfTheMaterialShown) {
-    MaterialScene b;
-    b.AddMaterial("matte");
-    b.AddMaterial("mirror", {Float("bumpmap", 0.5f)});
-    b.AddMaterial("mix", {Float("share", 0.5f)}).operands = {0, 1};
-    b.AddMaterial("mix", {Float("share", 0.5f)}).operands = {2, 0};
-    const MaterialTable table = b.Make();
-    int tilted = 0;
-    for (int i = 0; i < 1000; ++i) {
-        SurfaceInteraction hit = MaterialScene::Hit(3, Vec3f(0.5f, 0.001f * float(i), 0.5f));
-        hit.dndu = Vec3f(0, 0, 2);
-        table.MakeBsdf(b.textures, &hit);
-        tilted += !hit.ns.isApprox(Vec3f::UnitZ());
-    }
-    EXPECT_NEAR(tilted, 250, 50);
 }
 
 }  // namespace

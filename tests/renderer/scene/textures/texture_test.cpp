@@ -231,24 +231,10 @@ TEST(Texture, SurvivesAnyCoordinates) {
     const TextureTable table = builder.Build();
 
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float values[] = {0,
-                            -0.f,
-                            1,
-                            -1,
-                            0x1p-149f,
-                            -0x1p-149f,
-                            16777216,
-                            1e9f,
-                            -3e9f,
-                            1e19f,
-                            1e30f,
-                            -1e30f,
-                            nan,
-                            kInfinity,
-                            -kInfinity,
-                            -1e-9f,
-                            kOneMinusEpsilon,
-                            0x1.fffffep127f};
+    constexpr float kMost = 0x1.fffffep127f, kLeast = 0x1p-149f, kBelow1 = kOneMinusEpsilon;
+    const float values[] = {0,        -0.f,      1,          -1,     kLeast,  -kLeast,
+                            16777216, 1e9f,      -3e9f,      1e19f,  1e30f,   -1e30f,
+                            nan,      kInfinity, -kInfinity, -1e-9f, kBelow1, kMost};
     for (const int texture : textures) {
         const SpectrumTexture t = builder.Spectrum(table, texture);
         for (const float a : values)

@@ -38,8 +38,6 @@ TEST(RecordedRules, HaveAnEntryForEachRule) {
     EXPECT_EQ(FindRecordedRule("oracle:1"), nullptr);
 }
 
-void Ignore(const std::string&) {}
-
 TEST(EvaluatedRules, AreThresholdsOfTheViewpointsThatPeopleJudged) {
     const LearningData data;
     ThresholdsRow late = MakeHumanRow("attic");
@@ -60,8 +58,9 @@ TEST(EvaluatedRules, AreThresholdsOfTheViewpointsThatPeopleJudged) {
     EXPECT_THROW(ReadHumanThresholds(data.human.path, {"shed"}), std::runtime_error);
     const ScratchFile other(".csv", Line(MakeHumanRow("shed"))), few(".csv", "attic;40;\n");
     for (const std::string& path : {other.path, few.path})
-        EXPECT_THROW(EvaluateThresholds(path, data.human.path, people, 40, Ignore),
-                     std::runtime_error);
+        EXPECT_THROW(
+            EvaluateThresholds(path, data.human.path, people, 40, [](const std::string&) {}),
+            std::runtime_error);
 }
 
 TEST(EvaluatedRules, RunOnRecordings) {

@@ -20,35 +20,42 @@ LabelledBlock MakeBlock(const BlockRecording& recording, int human = 500) {
         .viewpoint = "kitchen", .block = 1, .human = human, .passSpp = 20, .recording = &recording};
 }
 
-// Returns a model that takes a block for noiseless when the mean of its inputs is low.
-void WriteTestModel(const std::string& path) {
+// A noisy block up to `last` spp, and its recording.
+struct RecordedBlock {
+    BlockRecording recording;
+    std::vector<BlockImage> images;
+
+    explicit RecordedBlock(int last) {
+        BlockRecorder recorder(20, last, last, &recording);
+        for (int spp = 20; spp <= last; spp += 20) {
+            images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));
+            recorder.Observe(images.back().At(spp));
+        }
+    }
+    // Returns where a criterion stops, 0 for nowhere.
+    int StopOf(Criterion& criterion) const {
+        for (size_t i = 0; i < images.size(); ++i)
+            if (criterion.Observe(images[i].At(20 * int(i + 1))).stop) return 20 * int(i + 1);
+        return 0;
+    }
+};
+
+TEST(Simulation, StopsWhereTheCriterionDoes) {
+    // Below 400 spp every pass is recorded, so that nothing can differ. The model takes a block for
+    // noiseless when the mean of its inputs is low.
+    const ScratchFile model(".h5"), thresholds(".csv", "kitchen;100;150;\n");
     Network network = RandomNetwork(25, {4}, 1, 7);
     network.dense[0].kernel.setConstant(3);
     network.dense[0].bias[0] = -6.2f;
-    WriteModel(path, network, {.k = 3, .n = 40, .m = 25, .snorm = false, .votes = 2});
-}
-
-TEST(Simulation, StopsWhereTheCriterionDoes) {
-    // Below 400 spp every pass is recorded, so that nothing can differ.
-    const ScratchFile model(".h5"), thresholds(".csv", "kitchen;100;150;\n");
-    WriteTestModel(model.path);
-    BlockRecording recording;
-    BlockRecorder recorder(20, 400, 400, &recording);
-    std::vector<BlockImage> images;
-    for (int spp = 20; spp <= 400; spp += 20) {
-        images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));
-        recorder.Observe(images.back().At(spp));
-    }
+    WriteModel(model.path, network, {.k = 3, .n = 40, .m = 25, .snorm = false, .votes = 2});
+    const RecordedBlock block(400);
     for (const std::string& rule :
          {std::string("dammertz:0.03"), std::string("dammertz"), std::string("luxtile:0.12"),
           std::string("cycles:0.04"), std::string("lnoise:1"), std::string("lnoise:0.9"),
           std::string("fixed:150"), "thresholds:" + thresholds.path, "learned:" + model.path}) {
-        const auto criterion =
-            MakeCriterion(ParseRule(rule, {.sceneName = "kitchen"}), {.index = 1});
-        int expected = 0;
-        for (int spp = 20; spp <= 400 && expected == 0; spp += 20)
-            if (criterion->Observe(images[size_t(spp / 20 - 1)].At(spp)).stop) expected = spp;
-        const RuleOutcome outcome = MakeSimulator(rule)(MakeBlock(recording));
+        const int expected =
+            block.StopOf(*MakeCriterion(ParseRule(rule, {.sceneName = "kitchen"}), {.index = 1}));
+        const RuleOutcome outcome = MakeSimulator(rule)(MakeBlock(block.recording));
         EXPECT_GT(expected, 20) << rule;
         EXPECT_EQ(outcome.stop, expected) << rule;
         EXPECT_FALSE(outcome.open) << rule;
@@ -71,21 +78,13 @@ TEST(Simulation, StopsWhereLooksAtFallsOfEntropiesDo) {
                 .voteSpacing = 40,
                 .spacing = Spacing::Geometric,
                 .ratio = 1.5});
-    BlockRecording recording;
-    BlockRecorder recorder(20, 2400, 2400, &recording);
-    std::vector<BlockImage> images;
-    for (int spp = 20; spp <= 2400; spp += 20) {
-        images.push_back(NoisyBlock(40, 40, 0.15, spp, unsigned(spp)));
-        recorder.Observe(images.back().At(spp));
-    }
+    const RecordedBlock block(2400);
     for (const std::string& rule : {std::string("entropy:0.9"), "learned:" + model.path})
         for (const double caution : {1.0, 1.1}) {
-            const auto criterion = MakeCriterion(ParseRule(rule, {.caution = caution}));
-            int expected = 0;
-            for (int spp = 20; spp <= 2400 && expected == 0; spp += 20)
-                if (criterion->Observe(images[size_t(spp / 20 - 1)].At(spp)).stop) expected = spp;
+            const int expected =
+                block.StopOf(*MakeCriterion(ParseRule(rule, {.caution = caution})));
             const RuleOutcome outcome =
-                MakeSimulator(rule, {.caution = caution})(MakeBlock(recording));
+                MakeSimulator(rule, {.caution = caution})(MakeBlock(block.recording));
             EXPECT_GT(expected, 400) << rule;
             EXPECT_EQ(outcome.stop, expected) << rule << " " << caution;
         }
@@ -181,12 +180,8 @@ TEST(Simulation, TakesTheRecordedStopsOfCycles) {
         EXPECT_DOUBLE_EQ(v.score, 340.0 / v.spp);
     }
     EXPECT_TRUE(MakeSimulator("cycles:0.04")(block).open);
-    try {
-        SimulateCycles(block, 0.05);
-        FAIL();
-    } catch (const std::invalid_argument& error) {
-        EXPECT_HAS(std::string(error.what()), "0.08 0.06 0.04");
-    }
+    EXPECT_HAS(WhatOf<std::invalid_argument>([&] { SimulateCycles(block, 0.05); }),
+               "0.08 0.06 0.04");
 }
 
 TEST(Simulation, RefusesWhatCannotBeSimulated) {
@@ -196,12 +191,7 @@ TEST(Simulation, RefusesWhatCannotBeSimulated) {
          {"", "oracle:1", "luxtile", "dammertz:0.1:area", "fixed:x", "cycles:-1", "thresholds:"})
         EXPECT_THROW(MakeSimulator(rule), std::invalid_argument) << rule;
     EXPECT_THROW(MakeSimulator("thresholds:/no/such/file.csv"), std::runtime_error);
-    try {
-        MakeSimulator("denoised:0.5");
-        FAIL();
-    } catch (const std::invalid_argument& e) {
-        EXPECT_HAS(std::string(e.what()), "denoised");
-    }
+    EXPECT_HAS(WhatOf<std::invalid_argument>([] { MakeSimulator("denoised:0.5"); }), "denoised");
     EXPECT_THROW(MakeSimulator("learned:/no/such/model.h5"), std::runtime_error);
     EXPECT_THROW(MakeSimulator("learned"), std::runtime_error);
     EXPECT_THROW(MakeSimulator("fixed:20")(MakeBlock(empty)), std::invalid_argument);

@@ -47,17 +47,14 @@ TEST(BlockRecorder, RecordsWhatTheRulesCompute) {
         const BlockView view = image.At(20 * (i + 1));
         EXPECT_EQ(recording.Values(i, "dammertz")[0], float(DammertzError(view)));
         EXPECT_EQ(recording.Values(i, "luxtile")[0], float(LuxTileError(view)));
-        const auto expectFeature = [&](const char* channel, int m, Feature feature) {
+        const auto expectFeature = [&](const std::string& channel, int m, Feature feature) {
             const std::vector<double> values =
                 MeasureBlock(view, {.m = m, .features = {feature}}).Of(feature);
             const std::span<const float> recorded = recording.Values(i, channel);
             ASSERT_EQ(recorded.size(), size_t(m));
             for (int k = 0; k < m; ++k) EXPECT_EQ(recorded[k], float(values[k])) << channel;
         };
-        expectFeature("h4", 4, Feature::H);
-        expectFeature("h25", 25, Feature::H);
-        expectFeature("h100", 100, Feature::H);
-        expectFeature("h400", 400, Feature::H);
+        for (const int m : {4, 25, 100, 400}) expectFeature("h" + std::to_string(m), m, Feature::H);
         expectFeature("h1", 100, Feature::H1);
         expectFeature("h2", 100, Feature::H2);
         const LightnessNoiseStatistics s =

@@ -1,7 +1,6 @@
 // Writes the recordings and thresholds of a small training to files.
 #pragma once
 
-#include <fstream>
 #include <string>
 #include <vector>
 
