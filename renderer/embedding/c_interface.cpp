@@ -95,20 +95,20 @@ int lull_stopper_needs_half(const lull_stopper* stopper) {
     return stopper && stopper->blocks.NeedsHalf() ? 1 : 0;
 }
 
-lull_status lull_stopper_observe(lull_stopper* stopper, const lull_picture* picture, int spp,
+lull_status lull_stopper_observe(lull_stopper* stopper, const lull_image* picture, int spp,
                                  lull_answer* answers) {
     return Guarded([&] {
         lull::Stopper& blocks = NotNull(stopper, "stopper")->blocks;
-        const auto all = blocks.Observe(*NotNull(picture, "picture"), spp);
+        const auto all = blocks.Observe(*NotNull(picture, "image"), spp);
         if (answers) std::ranges::copy(all, answers);
     });
 }
 
-lull_status lull_stopper_observe_block(lull_stopper* stopper, int block,
-                                       const lull_picture* picture, int spp, lull_answer* answer) {
+lull_status lull_stopper_observe_block(lull_stopper* stopper, int block, const lull_image* picture,
+                                       int spp, lull_answer* answer) {
     return Guarded([&] {
         lull::Stopper& blocks = NotNull(stopper, "stopper")->blocks;
-        const lull_answer now = blocks.ObserveBlock(block, *NotNull(picture, "picture"), spp);
+        const lull_answer now = blocks.ObserveBlock(block, *NotNull(picture, "image"), spp);
         if (answer) *answer = now;
     });
 }
@@ -152,10 +152,10 @@ lull_status lull_stopper_restore(lull_stopper* stopper, const void* bytes, size_
     });
 }
 
-lull_status lull_svd_entropy(const lull_picture* picture, int sub_blocks, lull_entropy* entropies) {
+lull_status lull_svd_entropy(const lull_image* picture, int sub_blocks, lull_entropy* entropies) {
     return Guarded([&] {
         NotNull(entropies, "entropies");
-        const std::vector<double> lightness = lull::LightnessOf(*NotNull(picture, "picture"));
+        const std::vector<double> lightness = lull::LightnessOf(*NotNull(picture, "image"));
         const auto all =
             lull::SubBlockEntropies(lightness, picture->width, picture->height, sub_blocks);
         std::ranges::transform(all, entropies, [](const lull::SvdEntropy& e) {
@@ -164,16 +164,16 @@ lull_status lull_svd_entropy(const lull_picture* picture, int sub_blocks, lull_e
     });
 }
 
-lull_status lull_attributes26(const lull_picture* picture, double* attributes) {
+lull_status lull_attributes26(const lull_image* picture, double* attributes) {
     return Guarded([&] {
         NotNull(attributes, "attributes");
-        const std::vector<double> lightness = lull::LightnessOf(*NotNull(picture, "picture"));
+        const std::vector<double> lightness = lull::LightnessOf(*NotNull(picture, "image"));
         std::ranges::copy(lull::ComputeAttributes(lightness, picture->width, picture->height),
                           attributes);
     });
 }
 
-lull_status lull_denoise(const lull_noisy_picture* noisy, lull_denoised_picture* clean) {
+lull_status lull_denoise(const lull_noisy_image* noisy, lull_denoised_image* clean) {
     return Guarded([&] { lull::Denoise(*NotNull(noisy, "noisy"), NotNull(clean, "clean")); });
 }
 
@@ -212,7 +212,7 @@ void CopyFeature(const lull_halves& feature, int y0, int channels, int first, Ha
     Copy(feature.b ? feature.b : feature.a, feature, y0, channels, first, &to->b);
 }
 
-Halves ReadFeatures(const lull_noisy_picture& noisy, int y0, int y1) {
+Halves ReadFeatures(const lull_noisy_image& noisy, int y0, int y1) {
     const Planes none(noisy.width, y1 - y0, kFeatures);
     Halves rows{none, none};
     CopyFeature(noisy.albedo, y0, 3, 0, &rows);
@@ -226,7 +226,7 @@ Halves ReadFeatures(const lull_noisy_picture& noisy, int y0, int y1) {
     return rows;
 }
 
-// Throws where colours cannot be those of a picture, or its halves not judge each other.
+// Throws where colours cannot be those of an image, or its halves not judge each other.
 void CheckColours(const Halves& colour) {
     for (const Planes* half : {&colour.a, &colour.b}) {
         PictureValues values;
@@ -240,10 +240,10 @@ void CheckColours(const Halves& colour) {
     Require(dependence.empty(), dependence);
 }
 
-NoisyPicture Read(const lull_noisy_picture& noisy) {
+NoisyPicture Read(const lull_noisy_image& noisy) {
     Require(std::min(noisy.width, noisy.height) >= 1 &&
                 std::max(noisy.width, noisy.height) <= kLargestSide,
-            "a picture of " + std::to_string(noisy.width) + "x" + std::to_string(noisy.height) +
+            "an image of " + std::to_string(noisy.width) + "x" + std::to_string(noisy.height) +
                 " pixels; 1 to 65,536 are possible");
     Require(noisy.colour.a && noisy.colour.b,
             "the colours of both halves of the samples are needed");
@@ -260,7 +260,7 @@ NoisyPicture Read(const lull_noisy_picture& noisy) {
     return picture;
 }
 
-void CheckOutput(const lull_noisy_picture& noisy, const lull_denoised_picture& clean) {
+void CheckOutput(const lull_noisy_image& noisy, const lull_denoised_image& clean) {
     Require(clean.colour, "there is no room for the colours");
     Require(clean.block_count >= 0 && (clean.blocks || clean.block_count == 0),
             std::to_string(clean.block_count) + " blocks, of which there are none");
@@ -270,11 +270,11 @@ void CheckOutput(const lull_noisy_picture& noisy, const lull_denoised_picture& c
                     block.height >= kSmallestMeasuredSide && block.x <= noisy.width - block.width &&
                     block.y <= noisy.height - block.height,
                 "block " + std::to_string(i) +
-                    " must lie within the picture, and have at least 10 pixels a side");
+                    " must lie within the image, and have at least 10 pixels a side");
     }
 }
 
-void DenoiseInto(NoisyPicture picture, lull_denoised_picture* clean) {
+void DenoiseInto(NoisyPicture picture, lull_denoised_image* clean) {
     const std::span<lull_block_error> blocks(clean->blocks, size_t(clean->block_count));
     std::vector<PixelRect> measured;
     for (const lull_block_error& block : blocks)
@@ -291,7 +291,7 @@ void DenoiseInto(NoisyPicture picture, lull_denoised_picture* clean) {
 
 }  // namespace
 
-void Denoise(const lull_noisy_picture& noisy, lull_denoised_picture* clean) {
+void Denoise(const lull_noisy_image& noisy, lull_denoised_image* clean) {
     NoisyPicture picture = Read(noisy);
     CheckOutput(noisy, *clean);
     DenoiseInto(std::move(picture), clean);

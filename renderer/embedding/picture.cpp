@@ -31,7 +31,7 @@ struct Strides {
     ptrdiff_t row, pixel, channel;
 };
 
-Strides StridesOf(const lull_picture& picture) {
+Strides StridesOf(const lull_image& picture) {
     const ptrdiff_t size = picture.format == LULL_SRGB8 ? 1 : sizeof(float);
     Strides strides{picture.row_stride, picture.pixel_stride, picture.channel_stride};
     if (strides.channel == 0) strides.channel = size;
@@ -41,15 +41,14 @@ Strides StridesOf(const lull_picture& picture) {
 }
 
 // Throws std::invalid_argument where a row begins within another one. Columns may lie within rows.
-void CheckRows(const lull_picture& picture) {
+void CheckRows(const lull_image& picture) {
     const Strides s = StridesOf(picture);
     const auto size = [](ptrdiff_t bytes) { return int64_t(std::abs(bytes)); };
     const int64_t row = size(s.row), pixel = size(s.pixel);
     if (row >= pixel * picture.width || pixel >= row * picture.height) return;
-    throw std::invalid_argument("rows of a picture overlap: row_stride is " +
-                                std::to_string(s.row) + " bytes, and a row of " +
-                                std::to_string(picture.width) + " pixels has " +
-                                std::to_string(pixel * picture.width) +
+    throw std::invalid_argument("rows of an image overlap: row_stride is " + std::to_string(s.row) +
+                                " bytes, and a row of " + std::to_string(picture.width) +
+                                " pixels has " + std::to_string(pixel * picture.width) +
                                 "; strides are in bytes, and 0 means rows without gaps");
 }
 
@@ -68,24 +67,24 @@ std::vector<float> ReadWith(Read read, const Strides& strides, const std::byte* 
 
 }  // namespace
 
-void CheckPicture(const lull_picture& picture, int width, int height, bool needsHalf) {
+void CheckPicture(const lull_image& picture, int width, int height, bool needsHalf) {
     if (picture.width != width || picture.height != height)
-        throw std::invalid_argument("a picture of " + std::to_string(picture.width) + "x" +
+        throw std::invalid_argument("an image of " + std::to_string(picture.width) + "x" +
                                     std::to_string(picture.height) + " pixels was shown where " +
                                     std::to_string(width) + "x" + std::to_string(height) +
                                     " are needed");
     if (picture.format != LULL_LINEAR_FLOAT && picture.format != LULL_SRGB8)
         throw std::invalid_argument(
-            "the format of a picture must be LULL_LINEAR_FLOAT or LULL_SRGB8");
-    if (!picture.mean) throw std::invalid_argument("a picture without pixels: mean is null");
+            "the format of an image must be LULL_LINEAR_FLOAT or LULL_SRGB8");
+    if (!picture.mean) throw std::invalid_argument("an image without pixels: mean is null");
     CheckRows(picture);
     if (needsHalf && !picture.half)
         throw std::invalid_argument(
-            "the stopping rule needs a half buffer, which the picture does not have; pass it, or "
+            "the stopping rule needs a half buffer, which the image does not have; pass it, or "
             "choose a rule that needs none, such as the model 'entropy'");
 }
 
-std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
+std::vector<float> ReadPixels(const lull_image& picture, const void* origin,
                               const lull_rect& part) {
     const auto* bytes = static_cast<const std::byte*>(origin);
     const Strides strides = StridesOf(picture);
@@ -93,10 +92,10 @@ std::vector<float> ReadPixels(const lull_picture& picture, const void* origin,
                                         : ReadWith(FromFloat, strides, bytes, part);
 }
 
-std::vector<double> LightnessOf(const lull_picture& picture) {
+std::vector<double> LightnessOf(const lull_image& picture) {
     const auto isSide = [](int pixels) { return pixels > 0 && pixels <= kLargestSide; };
     if (!isSide(picture.width) || !isSide(picture.height))
-        throw std::invalid_argument("a picture of " + std::to_string(picture.width) + "x" +
+        throw std::invalid_argument("an image of " + std::to_string(picture.width) + "x" +
                                     std::to_string(picture.height) +
                                     " pixels; it must have 1 to 65536 a side");
     CheckPicture(picture, picture.width, picture.height, false);
@@ -104,7 +103,7 @@ std::vector<double> LightnessOf(const lull_picture& picture) {
     return LightnessOf(ReadPixels(picture, picture.mean, whole));
 }
 
-bool HasMeanAsHalf(const lull_picture& picture, const lull_rect& part) {
+bool HasMeanAsHalf(const lull_image& picture, const lull_rect& part) {
     if (!picture.half) return false;
     if (picture.half == picture.mean) return true;
     if (picture.format == LULL_SRGB8) return false;
@@ -114,12 +113,12 @@ bool HasMeanAsHalf(const lull_picture& picture, const lull_rect& part) {
     return !isEven && mean == ReadPixels(picture, picture.half, part);
 }
 
-bool HasFourthChannel(const lull_picture& picture) {
+bool HasFourthChannel(const lull_image& picture) {
     const Strides s = StridesOf(picture);
     return std::abs(s.pixel) == 4 * std::abs(s.channel);
 }
 
-PictureValues ValuesOf(const lull_picture& picture, const void* origin, const lull_rect& part) {
+PictureValues ValuesOf(const lull_image& picture, const void* origin, const lull_rect& part) {
     PictureValues values;
     if (picture.format == LULL_SRGB8) return values;
     const std::vector<float> rgb =

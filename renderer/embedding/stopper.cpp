@@ -34,7 +34,7 @@ void CheckSettings(const lull_settings& s) {
     };
     const std::string range = std::to_string(kSmallestVotingSide) + " to " +
                               std::to_string(kLargestSide) + " pixels a side";
-    Require(isSide(s.width) && isSide(s.height), "a picture of " + std::to_string(s.width) + "x" +
+    Require(isSide(s.width) && isSide(s.height), "an image of " + std::to_string(s.width) + "x" +
                                                      std::to_string(s.height) +
                                                      " pixels; it must have " + range);
     Require(s.block == 0 || isSide(s.block),
@@ -109,7 +109,7 @@ Stopper::Stopper(const lull_settings& settings) {
 
 lull_rect Stopper::RectOf(int block) const {
     Require(block >= 0 && block < int(grid.blocks.size()),
-            "there is no block " + std::to_string(block) + "; the picture has blocks 0 to " +
+            "there is no block " + std::to_string(block) + "; the image has blocks 0 to " +
                 std::to_string(grid.blocks.size() - 1));
     const BlockRect& rect = grid.blocks[size_t(block)];
     return {rect.x, rect.y, rect.width, rect.height};
@@ -146,19 +146,19 @@ lull_answer Stopper::Answer(int block) const {
     return states[leader].answer;
 }
 
-std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) {
+std::vector<lull_answer> Stopper::Observe(const lull_image& picture, int spp) {
     const BlockRect& last = grid.blocks.back();
     CheckPicture(picture, last.x + last.width, last.y + last.height, needsHalf);
     const auto all = LockAll();
-    Require(spp > 0, "a picture needs samples: spp must be above 0");
+    Require(spp > 0, "an image needs samples: spp must be above 0");
     for (const BlockState& state : states)
         Require(!state.criterion || state.answer.stop || spp > state.answer.spp,
-                "spp must increase: a picture at " + std::to_string(spp) + " spp after one at " +
+                "spp must increase: an image at " + std::to_string(spp) + " spp after one at " +
                     std::to_string(state.answer.spp));
     PictureValues values;
     for (int i = 0; i < int(states.size()); ++i)
         if (states[size_t(i)].criterion) values.Add(CheckValues(i, picture, RectOf(i), spp));
-    // The rest of a picture once blocks have stopped may be its brightest part.
+    // The rest of an image once blocks have stopped may be its brightest part.
     if (std::ranges::none_of(states, [](const BlockState& s) { return s.answer.stop == 1; })) {
         const std::string fault = FaultOfExposure(values);
         Require(fault.empty(), fault);
@@ -175,13 +175,13 @@ std::vector<lull_answer> Stopper::Observe(const lull_picture& picture, int spp) 
     return answers;
 }
 
-lull_answer Stopper::ObserveBlock(int block, const lull_picture& picture, int spp) {
+lull_answer Stopper::ObserveBlock(int block, const lull_image& picture, int spp) {
     const lull_rect rect = RectOf(block);
     CheckPicture(picture, rect.width, rect.height, needsHalf);
     if (grid.leaders[size_t(block)] != block) return Answer(block);
     const std::lock_guard lock(locks[size_t(block)]);
     const lull_answer& answer = states[size_t(block)].answer;
-    Require(spp > 0, "a picture needs samples: spp must be above 0");
+    Require(spp > 0, "an image needs samples: spp must be above 0");
     Require(answer.stop || spp > answer.spp, "spp must increase: block " + std::to_string(block) +
                                                  " was shown at " + std::to_string(answer.spp) +
                                                  " spp, and now at " + std::to_string(spp));
@@ -199,7 +199,7 @@ const char* Stopper::Warning() const {
     return warning.c_str();
 }
 
-void Stopper::NoteChannels(const lull_picture& picture) {
+void Stopper::NoteChannels(const lull_image& picture) {
     if (!HasFourthChannel(picture)) return;
     const std::lock_guard lock(warningLock);
     channelWarning =
@@ -213,14 +213,14 @@ void Stopper::NoteSpacing(BlockState* state) {
     const std::lock_guard lock(warningLock);
     if (!spacingWarning.empty()) return;  // the first is enough
     spacingWarning =
-        "pictures at " + pictures +
+        "images at " + pictures +
         " spp lie too far apart for this rule, which compares them: the last was not checked, "
-        "and none will be while steps are so large; show pictures every 20 or 40 spp, or at most "
+        "and none will be while steps are so large; show images every 20 or 40 spp, or at most "
         "1.5 times the spp of the one before";
 }
 
 // Returns the values of a block's mean; none if no check is due.
-PictureValues Stopper::CheckValues(int block, const lull_picture& picture, const lull_rect& part,
+PictureValues Stopper::CheckValues(int block, const lull_image& picture, const lull_rect& part,
                                    int spp) const {
     const BlockState& state = states[size_t(block)];
     if (state.answer.stop || state.criterion->Need(spp) == ViewNeed::Nothing) return {};
@@ -234,7 +234,7 @@ PictureValues Stopper::CheckValues(int block, const lull_picture& picture, const
     return values;
 }
 
-void Stopper::Check(int block, const lull_picture& picture, const lull_rect& part, int spp) {
+void Stopper::Check(int block, const lull_image& picture, const lull_rect& part, int spp) {
     BlockState& state = states[size_t(block)];
     lull_answer& answer = state.answer;
     answer.checked = 0;

@@ -1,4 +1,4 @@
-// Decides on all blocks of a picture, behind the C interface; lull/lull.h describes the
+// Decides on all blocks of an image, behind the C interface; lull/lull.h describes the
 // functions. Can be used by several threads at once.
 #pragma once
 
@@ -28,13 +28,13 @@ class Stopper {
     bool NeedsHalf() const { return needsHalf; }
     bool Done() const;
 
-    // Throw std::invalid_argument, before anything has changed, for a picture that does not fit the
-    // settings or the block, for values that no picture has (PictureValues) where they would be
+    // Throw std::invalid_argument, before anything has changed, for an image that does not fit the
+    // settings or the block, for values that no image has (ImageValues) where they would be
     // looked at, and for an spp that is not above the block's last.
-    std::vector<lull_answer> Observe(const lull_picture& picture, int spp);
-    lull_answer ObserveBlock(int block, const lull_picture& picture, int spp);
+    std::vector<lull_answer> Observe(const lull_image& picture, int spp);
+    lull_answer ObserveBlock(int block, const lull_image& picture, int spp);
     lull_answer Answer(int block) const;
-    // Returns a warning about the pictures shown, valid until the next call; "" if there is none.
+    // Returns a warning about the images shown, valid until the next call; "" if there is none.
     const char* Warning() const;
 
     std::vector<std::byte> Save() const;
@@ -50,10 +50,10 @@ class Stopper {
 
     BlockState MakeState(int block) const;
     std::vector<std::unique_lock<std::mutex>> LockAll() const;
-    PictureValues CheckValues(int block, const lull_picture& picture, const lull_rect& part,
+    PictureValues CheckValues(int block, const lull_image& picture, const lull_rect& part,
                               int spp) const;
-    void Check(int block, const lull_picture& picture, const lull_rect& part, int spp);
-    void NoteChannels(const lull_picture& picture);
+    void Check(int block, const lull_image& picture, const lull_rect& part, int spp);
+    void NoteChannels(const lull_image& picture);
     void NoteSpacing(BlockState* state);
 
     std::shared_ptr<const Rule> rule;

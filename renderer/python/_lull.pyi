@@ -118,11 +118,11 @@ def attributes26(image: np.ndarray) -> np.ndarray:
 class Denoised:
     """A denoised image of height x width pixels, and its estimated error.
 
-    `picture` is height x width x 3, float32, linear. `error` is the standard error of each pixel in L*.
+    `image` is height x width x 3, float32, linear. `error` is the standard error of each pixel in L*.
     `blocks` are (x, y, width, height), row by row. `estimate` and `upper` (exceeded in 10 of 100 blocks)
     are their visible differences from the true image, as arrays of rows x columns.
     """
-    picture: np.ndarray
+    image: np.ndarray
     error: np.ndarray
     blocks: list[tuple[int, int, int, int]]
     estimate: np.ndarray

@@ -52,7 +52,7 @@ void WarnOfColours(const py::array& values, const std::string& name) {
         Warn(name + " has many negative values, which count as 0; linear radiance is needed");
     if (share("greater", 1) > kMost)
         Warn(name +
-             " is mostly above 1, the display's white; divide pictures of 0 to 255 by 255 "
+             " is mostly above 1, the display's white; divide images of 0 to 255 by 255 "
              "and undo their gamma, or scale it to how it is shown");
 }
 

@@ -45,7 +45,7 @@ std::string TypeOf(const pybind11::array& array);
 pybind11::array FirstChannels(const pybind11::array& pixels, int count);
 
 // Warn of values that are not finite, which count as 0; of colours also where many are negative, or
-// most above white, as in pictures of 0 to 255.
+// most above white, as in images of 0 to 255.
 void WarnOfValues(const pybind11::array& values, const std::string& name);
 void WarnOfColours(const pybind11::array& values, const std::string& name);
 
@@ -68,7 +68,7 @@ class Picture {
     Picture(const pybind11::array& image, const std::optional<pybind11::array>& half, int width,
             int height);
 
-    lull_picture view = {};  // as long as this exists
+    lull_image view = {};  // as long as this exists
 
   private:
     pybind11::array mean;

@@ -134,8 +134,8 @@ Denoised Denoise(const py::array& a, const py::array& b, const py::object& albed
     const auto albedos = Halves::Read(albedo, "albedo", 3, height, width),
                normals = Halves::Read(normal, "normal", 3, height, width),
                depths = Halves::Read(depth, "depth", 1, height, width);
-    const lull_noisy_picture noisy = {int(width),      int(height),     colour.View(),
-                                      ViewOf(albedos), ViewOf(normals), ViewOf(depths)};
+    const lull_noisy_image noisy = {int(width),      int(height),     colour.View(),
+                                    ViewOf(albedos), ViewOf(normals), ViewOf(depths)};
     Denoised result{py::array_t<float>({height, width, py::ssize_t(3)}),
                     py::array_t<float>({height, width}),
                     0,
@@ -145,8 +145,8 @@ Denoised Denoise(const py::array& a, const py::array& b, const py::object& albed
     for (size_t v = 0; v + 1 < ys.size(); ++v)
         for (size_t u = 0; u + 1 < xs.size(); ++u)
             result.blocks.push_back({xs[u], ys[v], xs[u + 1] - xs[u], ys[v + 1] - ys[v], 0, 0});
-    lull_denoised_picture clean = {result.picture.mutable_data(), result.error.mutable_data(),
-                                   result.blocks.data(), int(result.blocks.size())};
+    lull_denoised_image clean = {result.picture.mutable_data(), result.error.mutable_data(),
+                                 result.blocks.data(), int(result.blocks.size())};
     lull_status status;
     {
         const py::gil_scoped_release others;
@@ -171,7 +171,7 @@ void BindFunctions(py::module_& module) {
     const py::object type = py::module_::import("collections")
                                 .attr("namedtuple")("SvdEntropy", "h h1 h2", "module"_a = "lull");
     type.attr("__doc__") =
-        "The SVD-entropies of the parts of a picture: arrays of their rows x columns, in [0, 1];\n"
+        "The SVD-entropies of the parts of an image: arrays of their rows x columns, in [0, 1];\n"
         "h = h1 + h2, where h1 has the terms of the first quarter of the singular values.";
     module.attr("SvdEntropy") = type;
     module.def(
@@ -180,16 +180,16 @@ void BindFunctions(py::module_& module) {
             return SvdEntropyOf(image, subBlocks, type);
         },
         "image"_a, "sub_blocks"_a = 100,
-        "Computes the SVD-entropy of the lightness of a picture, or of a block of it.\n\n"
+        "Computes the SVD-entropy of the lightness of an image, or of a block of it.\n\n"
         "Args:\n"
         "    image: an array of height x width x 3, float32 (linear; 1 is white) or uint8 (sRGB).\n"
-        "    sub_blocks: how many equal parts, a square number; 1: the picture as one matrix.\n\n"
+        "    sub_blocks: how many equal parts, a square number; 1: the image as one matrix.\n\n"
         "Returns:\n"
         "    A SvdEntropy (h, h1, h2) of arrays of the rows and columns of parts.\n\n"
         "Raises:\n"
         "    ValueError: for another shape or type, or if sub_blocks is not a square number or "
         "the\n"
-        "        picture has fewer pixels a side than its root.");
+        "        image has fewer pixels a side than its root.");
     module.def("attributes26", Attributes26Of, "image"_a,
                "Computes the 26 attributes that SVD-entropy is compared with.\n\n"
                "Args:\n"
@@ -201,7 +201,7 @@ void BindFunctions(py::module_& module) {
                "    ValueError: for another shape or type.");
 
     py::class_<Denoised>(module, "Denoised", "A denoised image and its estimated error.")
-        .def_readonly("picture", &Denoised::picture, "H x W x 3, float32, linear.")
+        .def_readonly("image", &Denoised::picture, "H x W x 3, float32, linear.")
         .def_readonly("error", &Denoised::error,
                       "H x W: the estimated standard error of each pixel in L*.")
         .def_property_readonly("blocks", &Denoised::Rects,

@@ -254,15 +254,15 @@ void BindStopper(py::module_& module) {
     using namespace py::literals;
     py::class_<Stopper>(
         module, "Stopper",
-        "Decides on the blocks of a picture, from its first samples to its last.\n\n"
+        "Decides on the blocks of an image, from its first samples to its last.\n\n"
         "Args:\n"
-        "    width, height: pixels of the picture, from 40 to 65,536 each.\n"
+        "    width, height: pixels of the image, from 40 to 65,536 each.\n"
         "    model: the name of an installed model ('entropy', the default; 'paper') or a\n"
         "        file.\n"
         "    rule: any other rule of `lull render --stop`, in place of a model.\n"
         "    models: the folder of installed models.\n"
         "    block: pixels a side of the blocks, 40 or more.\n"
-        "    pass_spp: the samples per pixel (spp) between two pictures; 0: they come at any spp.\n"
+        "    pass_spp: the samples per pixel (spp) between two images; 0: they come at any spp.\n"
         "    cap: the most spp, if above 10,000; 0: not known.\n"
         "    caution: from 0.01 to 100; 2 allows half as much visible noise.\n\n"
         "Raises:\n"
@@ -275,7 +275,7 @@ void BindStopper(py::module_& module) {
             "models"_a = py::none(), "block"_a = 200, "pass_spp"_a = 0, "cap"_a = 0,
             "caution"_a = 1.0)
         .def("observe", &Stopper::Observe, "image"_a, "spp"_a, "half"_a = py::none(),
-             "Checks the picture after more samples.\n\n"
+             "Checks the image after more samples.\n\n"
              "Args:\n"
              "    image: an array of height x width x 3, float32 (linear; 1 is white) or uint8\n"
              "        (sRGB), with any strides; stopped blocks are not read.\n"
@@ -289,7 +289,7 @@ void BindStopper(py::module_& module) {
              "        not above the last, or a half that is missing. Nothing has changed then.\n\n"
              "Warns:\n"
              "    UserWarning: of values that are not finite, negative or above white, of further\n"
-             "        channels, and of pictures too far apart for the rule ever to stop.")
+             "        channels, and of images too far apart for the rule ever to stop.")
         .def("observe_block", &Stopper::ObserveBlock, "block"_a, "image"_a, "spp"_a,
              "half"_a = py::none(),
              "Does the same for one block.\n\n"
@@ -302,7 +302,7 @@ void BindStopper(py::module_& module) {
              "    ValueError: as observe(), and for an unknown block.")
         .def("answer", &Stopper::Last,
              "Returns the last answer again.\n\nReturns:\n    An Answer; its spp are 0 before the "
-             "first picture.")
+             "first image.")
         .def_property_readonly("blocks", &Stopper::Blocks,
                                "The rectangles of the blocks: (x, y, width, height), row by row.")
         .def_property_readonly("active", &Stopper::Active,

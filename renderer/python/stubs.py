@@ -42,7 +42,7 @@ class Comparison:
 FUNCTIONS = {"render": ("scene: Path, *, progress: Progress = None", "Rendering"),
              "compare": ("scene: Path | None = None, *, progress: Progress = None", "Comparison"),
              "evaluate": ("*recordings: Path | Sequence[Path]", "list[dict[str, Any]]"),
-             "entropy": ("*pictures: Path | Sequence[Path]", "list[dict[str, Any]]")}
+             "entropy": ("*images: Path | Sequence[Path]", "list[dict[str, Any]]")}
 
 
 def type_of(option):

@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
         settings.width = image.width, settings.height = image.height;
         if (!stopper && lull_stopper_create(&settings, &stopper) != LULL_OK)
             return Fail(file, lull_error_message());
-        lull_picture picture = {};
+        lull_image picture = {};
         picture.width = image.width, picture.height = image.height;
         picture.format = LULL_SRGB8, picture.mean = image.pixels.data();
         answers.resize(size_t(lull_stopper_block_count(stopper)));

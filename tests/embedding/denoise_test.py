@@ -29,9 +29,9 @@ class DenoisingTest(unittest.TestCase):
     def test_takes_noise_out(self):
         truth, a, b, albedo = pictures()
         clean = lull.denoise(a, b, albedo=albedo, block=40)
-        self.assertEqual(clean.picture.shape, truth.shape)
-        self.assertEqual(clean.picture.dtype, np.float32)
-        self.assertLess(rms(clean.picture, truth), rms((a + b) / 2, truth) / 4)
+        self.assertEqual(clean.image.shape, truth.shape)
+        self.assertEqual(clean.image.dtype, np.float32)
+        self.assertLess(rms(clean.image, truth), rms((a + b) / 2, truth) / 4)
         self.assertEqual(clean.error.shape, (HEIGHT, WIDTH))
         self.assertEqual(clean.blocks, [(0, 0, 40, 52), (40, 0, 50, 52)])
         self.assertEqual(clean.upper.shape, (1, 2))
@@ -42,11 +42,11 @@ class DenoisingTest(unittest.TestCase):
     def test_reads_any_layout(self):
         _, a, b, albedo = pictures()
         depth = np.ones((HEIGHT, WIDTH), np.float32)
-        plain = lull.denoise(a, b, albedo=albedo, depth=depth).picture
+        plain = lull.denoise(a, b, albedo=albedo, depth=depth).image
         alpha = np.ones((HEIGHT, WIDTH, 1), np.float32)
         other = lull.denoise(np.concatenate([a, alpha], axis=2), b[::-1].copy()[::-1],
                                        albedo=(albedo, np.float64(albedo)), depth=[depth[..., None], depth])
-        np.testing.assert_array_equal(other.picture, plain)
+        np.testing.assert_array_equal(other.image, plain)
 
     def test_says_what_it_is_and_what_counts_as_black(self):
         _, a, b, _ = pictures()

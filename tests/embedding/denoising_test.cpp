@@ -21,8 +21,8 @@ struct Pictures {
     std::vector<float> truth, a, b, albedo;
     std::vector<float> clean = std::vector<float>(3 * kPixels, -1), error = clean;
     lull_block_error block = {10, 5, 60, 50, -1, -1};
-    lull_noisy_picture noisy = {};
-    lull_denoised_picture output = {clean.data(), error.data(), &block, 1};
+    lull_noisy_image noisy = {};
+    lull_denoised_image output = {clean.data(), error.data(), &block, 1};
 
     Pictures() {
         std::mt19937 generator(1);
@@ -73,7 +73,7 @@ TEST(Denoising, ReadsAnyLayout) {
     Pictures plain, other;
     ASSERT_EQ(lull_denoise(&plain.noisy, &plain.output), LULL_OK);
 
-    // Channel by channel, from the bottom up, and only the picture wanted.
+    // Channel by channel, from the bottom up, and only the image wanted.
     const auto turned = [](const std::vector<float>& image) {
         std::vector<float> planes(image.size());
         for (size_t c = 0; c < 3; ++c)

@@ -11,7 +11,7 @@ namespace {
 
 TEST(Entropies, AreThoseOfTheLibrary) {
     const BlockImage image = ImageAt(40, 60, 50);
-    const lull_picture picture = PictureOf(image, false);
+    const lull_image picture = PictureOf(image, false);
     std::array<lull_entropy, 25> entropies;
     ASSERT_EQ(lull_svd_entropy(&picture, 25, entropies.data()), LULL_OK) << lull_error_message();
     const std::vector<double> lightness = LightnessOf(image.mean);
@@ -28,7 +28,7 @@ TEST(Entropies, AreThoseOfTheLibrary) {
 
 TEST(Entropies, RefuseWhatTheyCannotMeasure) {
     const BlockImage image = ImageAt(40);
-    lull_picture picture = PictureOf(image);
+    lull_image picture = PictureOf(image);
     std::array<lull_entropy, 100> entropies;
     double attributes[26];
     for (const int parts : {0, -4, 99}) {
@@ -56,7 +56,7 @@ TEST(Warnings, TellOfPicturesTooFarApart) {
     EXPECT_STREQ(lull_stopper_warning(nullptr), "");
     for (int spp = 64; spp <= 1024; spp *= 2) Show(doubling, PictureOf(ImageAt(spp), false), spp);
     EXPECT_HAS(lull_stopper_warning(doubling.get()),
-               "pictures at 64, 128 and 256 spp lie too far apart")
+               "images at 64, 128 and 256 spp lie too far apart")
         << lull_stopper_warning(doubling.get());
     for (double spp = 64; spp <= 1024; spp *= 1.4)
         Show(nearer, PictureOf(ImageAt(int(spp)), false), int(spp));
@@ -65,7 +65,7 @@ TEST(Warnings, TellOfPicturesTooFarApart) {
 
 TEST(Warnings, TellOfAFourthChannel) {
     const std::vector<float> rgba(60 * 50 * 4, 0.5f);
-    lull_picture picture = {};
+    lull_image picture = {};
     picture.width = 60, picture.height = 50;
     picture.mean = rgba.data();
     picture.pixel_stride = 4 * sizeof(float);
@@ -76,7 +76,7 @@ TEST(Warnings, TellOfAFourthChannel) {
 
 TEST(Pictures, HaveRowsThatDoNotOverlap) {
     const std::vector<float> pixels(60 * 50 * 3, 0.5f);
-    lull_picture picture = {};
+    lull_image picture = {};
     picture.width = 60, picture.height = 50;
     picture.mean = pixels.data();
     const StopperHandle stopper = MakeStopper(SettingsOf(60, 50, "entropy"));

@@ -56,8 +56,8 @@ TEST(StopperErrors, RefusesBadPicturesAndChangesNothing) {
                         undisturbed = MakeStopper(SettingsOf(60, 50, "lnoise:9"));
     for (int spp = 20; spp <= 60; spp += 20) {
         const BlockImage image = ImageAt(spp);
-        const lull_picture good = PictureOf(image);
-        auto refuse = [&](lull_picture picture, int atSpp, const std::string& part) {
+        const lull_image good = PictureOf(image);
+        auto refuse = [&](lull_image picture, int atSpp, const std::string& part) {
             lull_answer answer = {};
             answer.votes = 77;
             ExpectError(LULL_BAD_ARGUMENT,
@@ -68,12 +68,12 @@ TEST(StopperErrors, RefusesBadPicturesAndChangesNothing) {
             EXPECT_EQ(answer.votes, 77);
         };
         const std::vector<float> copy = image.mean;
-        std::pair<lull_picture, const char*> bad[] = {{good, "59x50"},
-                                                      {good, "LULL_SRGB8"},
-                                                      {good, "mean is null"},
-                                                      {good, "half buffer"},
-                                                      {good, "the half buffer equals the mean"},
-                                                      {good, "the half buffer equals the mean"}};
+        std::pair<lull_image, const char*> bad[] = {{good, "59x50"},
+                                                    {good, "LULL_SRGB8"},
+                                                    {good, "mean is null"},
+                                                    {good, "half buffer"},
+                                                    {good, "the half buffer equals the mean"},
+                                                    {good, "the half buffer equals the mean"}};
         bad[0].first.width = 59;
         bad[1].first.format = 7;
         bad[2].first.mean = nullptr;
@@ -103,7 +103,7 @@ TEST(StopperErrors, RefusesValuesThatNoPictureHas) {
     std::vector<float> original = calm.mean;
     const auto refuse = [&](const char* part) {
         lull_answer answers[2] = {};
-        const lull_picture picture = PictureOf(calm);
+        const lull_image picture = PictureOf(calm);
         ExpectError(LULL_BAD_ARGUMENT, lull_stopper_observe(stopper.get(), &picture, 40, answers),
                     part);
         calm.mean = original;
@@ -124,14 +124,14 @@ TEST(StopperErrors, RefusesValuesThatNoPictureHas) {
     for (size_t i = 0; i < calm.mean.size(); ++i)
         if (i / 3 % 120 >= 80) calm.mean[i] *= 100;
     lull_answer answers[2] = {};
-    const lull_picture picture = PictureOf(calm);
+    const lull_image picture = PictureOf(calm);
     EXPECT_EQ(lull_stopper_observe(stopper.get(), &picture, 40, answers), LULL_OK)
         << lull_error_message();
     EXPECT_EQ(answers[1].spp, 40);
     BlockImage bright = ImageAt(4000);
     for (std::vector<float>* image : {&bright.mean, &bright.halfMean})
         for (float& v : *image) v *= 100;
-    const lull_picture window = PictureOf(bright);
+    const lull_image window = PictureOf(bright);
     lull_answer answer = {};
     EXPECT_EQ(lull_stopper_observe_block(undisturbed.get(), 0, &window, 40, &answer), LULL_OK)
         << lull_error_message();
@@ -141,7 +141,7 @@ TEST(StopperErrors, RefusesNullPointers) {
     const StopperHandle owner = MakeStopper(SettingsOf(60, 50, "entropy"));
     lull_stopper *stopper = owner.get(), *made = nullptr;
     const BlockImage image = ImageAt(20);
-    const lull_picture picture = PictureOf(image);
+    const lull_image picture = PictureOf(image);
     const lull_settings settings = SettingsOf(60, 50, "entropy");
     lull_rect rect;
     lull_answer answer;

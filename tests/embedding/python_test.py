@@ -170,7 +170,7 @@ class StopperTest(unittest.TestCase):
                     try:
                         stopper.observe(picture(int(spp))[0], int(spp))
                     except UserWarning as warning:
-                        self.assertRegex(str(warning), r"^pictures at \d+, \d+ and %d spp lie" % int(spp))
+                        self.assertRegex(str(warning), r"^images at \d+, \d+ and %d spp lie" % int(spp))
                         return k
                     spp *= ratio
 

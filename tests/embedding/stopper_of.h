@@ -31,8 +31,8 @@ inline lull_settings SettingsOf(int width, int height, const char* rule, int pas
     return settings;
 }
 
-inline lull_picture PictureOf(const BlockImage& image, bool withHalf = true) {
-    lull_picture picture = {};
+inline lull_image PictureOf(const BlockImage& image, bool withHalf = true) {
+    lull_image picture = {};
     picture.width = image.width;
     picture.height = image.height;
     picture.mean = image.mean.data();
@@ -40,15 +40,15 @@ inline lull_picture PictureOf(const BlockImage& image, bool withHalf = true) {
     return picture;
 }
 
-// Shows the only block of a picture; its answer.
-inline lull_answer Show(const StopperHandle& stopper, const lull_picture& picture, int spp) {
+// Shows the only block of an image; its answer.
+inline lull_answer Show(const StopperHandle& stopper, const lull_image& picture, int spp) {
     lull_answer answer = {};
     EXPECT_EQ(lull_stopper_observe(stopper.get(), &picture, spp, &answer), LULL_OK)
         << lull_error_message();
     return answer;
 }
 
-// A picture of so many samples: the same whenever it is asked for.
+// An image of so many samples: the same whenever it is asked for.
 inline BlockImage ImageAt(int spp, int width = 60, int height = 50, double noise = 0.5) {
     return NoisyBlock(width, height, noise, spp, unsigned(spp));
 }

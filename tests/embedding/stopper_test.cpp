@@ -1,4 +1,4 @@
-// Answers to other programs: the same as lull's own, whatever the layout of their pictures.
+// Answers to other programs: the same as lull's own, whatever the layout of their images.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -114,7 +114,7 @@ TEST(Stopper, ReadsAnyStrides) {
                        x] = (h ? image.halfMean : image.mean)[3 * i + c];
             }
     }
-    lull_picture picture = PictureOf(image);
+    lull_image picture = PictureOf(image);
     const size_t lastRow = size_t(image.height - 1) * size_t(row);
     picture.mean = &planes[0][lastRow];
     picture.half = &planes[1][lastRow];
@@ -156,7 +156,7 @@ TEST(Stopper, TakesEightBitsForTheColoursThatTheyStandFor) {
     const StopperHandle eight = MakeStopper(SettingsOf(60, 50, "entropy")),
                         real = MakeStopper(SettingsOf(60, 50, "entropy"));
     for (int k = 0; k < 2; ++k) {
-        lull_picture picture = PictureOf(linear[k], false);
+        lull_image picture = PictureOf(linear[k], false);
         const lull_answer expected = Show(real, picture, 100 * (k + 1));
         picture.format = LULL_SRGB8;
         picture.mean = codes[k].data();
@@ -227,12 +227,12 @@ TEST(Stopper, LetsSmallBlocksFollowTheirNeighbour) {
                         x < 60 ? image.halfMean[size_t(3 * (60 * y + x) + c)] : float(x % 2);
                 }
         lull_answer answers[2], piece;
-        const lull_picture picture = PictureOf(wider);
+        const lull_image picture = PictureOf(wider);
         ASSERT_EQ(lull_stopper_observe(whole.get(), &picture, spp, answers), LULL_OK);
         EXPECT_TRUE(SameAnswer(answers[0], answers[1]));
         EXPECT_TRUE(SameAnswer(answers[0], Show(alone, PictureOf(image), spp)));
         for (const int block : {0, 1}) {
-            lull_picture part = picture;
+            lull_image part = picture;
             part.width = block == 0 ? 60 : 30;
             part.row_stride = 90 * 3 * sizeof(float);
             part.mean = wider.Mean(60 * block, 0);
@@ -259,7 +259,7 @@ TEST(Stopper, TakesLargePictures) {
     EXPECT_EQ(lull_stopper_done(stopper.get()), 0);
 }
 
-// Half of the picture has no noise, and stops first; then its pixels are not read.
+// Half of the image has no noise, and stops first; then its pixels are not read.
 TEST(Stopper, StopsEachBlockByItself) {
     lull_settings settings = SettingsOf(100, 50, "lnoise:1");
     settings.block = 50;
@@ -270,14 +270,14 @@ TEST(Stopper, StopsEachBlockByItself) {
             for (int i = 0; i < 150; ++i)
                 image.Mean(0, y)[i] = image.HalfMean(0, y)[i] = spp > 60 ? float(i % 7) : 0.3f;
         lull_answer answers[2], piece;
-        const lull_picture picture = PictureOf(image);
+        const lull_image picture = PictureOf(image);
         ASSERT_EQ(lull_stopper_observe(whole.get(), &picture, spp, answers), LULL_OK);
         EXPECT_EQ(answers[0].stop, spp >= 60);
         EXPECT_EQ(answers[0].spp, std::min(spp, 60));
         EXPECT_EQ(answers[0].checked, spp <= 60);
         EXPECT_EQ(answers[1].stop, 0);
         for (int block = 0; block < 2; ++block) {
-            lull_picture part = picture;
+            lull_image part = picture;
             part.width = 50;
             part.row_stride = 100 * 3 * sizeof(float);
             part.mean = image.Mean(50 * block, 0);
@@ -299,7 +299,7 @@ TEST(Stopper, AnswersAnyNumberOfThreadsTheSame) {
     std::vector<lull_answer> answers(16);
     for (int spp = 50; spp <= 250; spp += 50) {
         const BlockImage image = ImageAt(spp, 200, 200);
-        const lull_picture picture = PictureOf(image, false);
+        const lull_image picture = PictureOf(image, false);
         ASSERT_EQ(lull_stopper_observe(together.get(), &picture, spp, answers.data()), LULL_OK);
         std::vector<std::thread> threads;
         for (int t = 0; t < 3; ++t)
@@ -307,7 +307,7 @@ TEST(Stopper, AnswersAnyNumberOfThreadsTheSame) {
                 for (int i = t; i < 16; i += 3) {
                     lull_rect rect;
                     lull_stopper_block_rect(apart.get(), i, &rect);
-                    lull_picture part = picture;
+                    lull_image part = picture;
                     part.width = rect.width;
                     part.height = rect.height;
                     part.row_stride = 200 * 3 * sizeof(float);

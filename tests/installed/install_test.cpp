@@ -174,7 +174,7 @@ TEST(Install, ExampleWatchesPicturesAgainstTheInstalledLibrary) {
     };
     expect("paper room7", 1, "p.png: has no number of samples");
     expect("watch_pngs tex_60.png tex_120.png tex_240.png", 0,
-           "tex_240.png: pictures at 60, 120 and 240 spp lie too far");
+           "tex_240.png: images at 60, 120 and 240 spp lie too far");
     expect("watch_pngs tex_60.png nowhere_80.png", 1, "nowhere_80.png");
     WritePng(tree.File("small_20.png"), std::vector<Rgb>(20 * 20, Rgb(1, 1, 1)), 20, 20);
     expect("watch_pngs small_20.png", 1, "20x20");

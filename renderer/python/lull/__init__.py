@@ -5,7 +5,7 @@
     r.image, r.spp, r.blocks, r.seconds
 
 Options are those of the command of the same name, with _ for -: `lull render --help`. `python -m
-lull` is the program itself. Decisions of a Stopper go to the logger "lull.stopper": pictures with
+lull` is the program itself. Decisions of a Stopper go to the logger "lull.stopper": images with
 the level INFO, blocks with DEBUG.
 """
 from ._lull import *  # noqa: F401,F403

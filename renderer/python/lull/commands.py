@@ -145,11 +145,11 @@ def evaluate(*recordings, **options):
     return _rows("evaluate", recordings, options)
 
 
-def entropy(*pictures, **options):
+def entropy(*images, **options):
     """Computes the SVD-entropies of images, of their blocks and sub-blocks.
 
     Args:
-        *pictures: image files, each by itself or all in a list.
+        *images: image files, each by itself or all in a list.
         **options: options of `lull entropy`, with _ for -: images="images/kitchen", block=200,
             sub_blocks=100, values=True, attributes=True.
 
@@ -160,7 +160,7 @@ def entropy(*pictures, **options):
     Raises:
         TypeError, ValueError, lull.Error, FileNotFoundError: as render().
     """
-    return _rows("entropy", pictures, options)
+    return _rows("entropy", images, options)
 
 
 def _rows(command, inputs, options):

@@ -114,6 +114,10 @@ TEST(GltfMeshes, ReplaceSparseIndices) {
         file.View(std::vector<uint16_t>{3});
     EXPECT_EQ(kFolder.ErrorOf(file),
               "scene.gltf: /accessors/0: index 3 is out of range: there are 3 vertices");
+    file.root["accessors"][size_t(full)]["sparse"]["indices"]["bufferView"] =
+        file.View(std::vector<uint8_t>{3});
+    EXPECT_EQ(kFolder.ErrorOf(file),
+              "scene.gltf: /accessors/0: sparse index 3 is out of range: there are 3 elements");
 }
 
 // Some exporters write a stride of 0 for elements that follow each other.
