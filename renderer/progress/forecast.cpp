@@ -84,6 +84,7 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
         double slope = Bounded(trend, std::lerp(usualSlope, line.slope, own));
         // Before the asymptote: the mean of the observed slope and the final one.
         if (trend.Rule().saturates) slope = (slope - 0.5) / 2;
+        if (trend.Rule().power != 0) slope = trend.Rule().power;
         stop = trend.SppAt(trend.Abscissa(stop) +
                            std::min(std::min(line.level, certain) / -slope, 50.0));
     }

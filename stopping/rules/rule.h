@@ -113,6 +113,8 @@ struct RuleTrend {
     double nearness = 0.5;
     // Whether it falls more slowly where there is much noise, as falls of entropies do.
     bool saturates = false;
+    // The power of the spp that it follows, < 0, where that is the same in all blocks; 0: fitted.
+    double power = 0;
     // Quantiles, 9 and 91 %, of the exponents of forecasts (RangeOfRest() of forecast.h).
     std::array<double, 2> exponents = {0.86, 1.19};
 };

@@ -72,6 +72,16 @@ TEST(PredictStops, BeginsWithTheUsualPower) {
     EXPECT_FALSE(PredictStops(std::vector{StopTrend()}, LiveBlocks(std::vector{StopTrend()}), 99));
 }
 
+// What a block has shown for a while does not count where the power is known.
+TEST(PredictStops, FollowsAKnownPower) {
+    const RuleTrend rule{.power = -0.75};
+    for (const double shown : {0.0, 0.2, 2.0}) {
+        const auto value = [=](int spp) { return 2 * kThreshold * std::pow(1000.0 / spp, shown); };
+        EXPECT_NEAR(PredictOne(Follow(rule, 1000, value)), 1000 * std::pow(2, 1 / 0.75), 30)
+            << shown;
+    }
+}
+
 // The odds of a network fall as a power, too, but nobody knows which; and it is certain at first.
 TEST(PredictStops, FollowsTheOddsOfAProbability) {
     const RuleTrend rule{.kind = RuleTrend::Probability, .votes = 1};
@@ -154,6 +164,7 @@ TEST(RangeOfRest, HoldsThePredictionAndNarrowsTowardsTheEnd) {
         last = most / least;
     }
     EXPECT_EQ(RangeOfRest(1000, 0), (std::array<double, 2>{0, 0}));
+    EXPECT_EQ(RangeOfRest(1, 3, {0.5, 2}), (std::array<double, 2>{1, 15}));
 }
 
 TEST(PredictStops, CountsTheVotesThatAreMissing) {

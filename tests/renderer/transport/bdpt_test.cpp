@@ -128,6 +128,19 @@ TEST(BdptHardCases, CameraInsideGlass) {
             8, 32, "camera inside glass", kWays);
 }
 
+// Paths from lights scatter at shading normals as those from the camera do. (After more bounces
+// these miss light from between the planes of both normals, as pbrt-v3's.)
+TEST(BdptHardCases, TiltedNormals) {
+    Compare(BothOf(kLamp + R"(Material "matte" "rgb Kd" [.5 .6 .7]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-2 -1 -2 2 -1 -2 2 -1 2 -2 -1 2]
+"normal N" [.7 .7 0 .7 .7 0 -.7 .7 0 -.7 .7 0]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-2 -1 2 2 -1 2 2 2 2 -2 2 2]
+"normal N" [0 .7 -.7 0 .7 -.7 0 -.7 -.7 0 -.7 -.7]
+)",
+                   32, 1),
+            16, 32, "tilted normals", kWays);
+}
+
 TEST(BdptHardCases, RoomOfMirrors) {
     Compare(BothOf(kLamp + "Material \"matte\" \"rgb Kd\" [.5 .6 .7]\n"
                            "Shape \"sphere\" \"float radius\" [.5]\n"
