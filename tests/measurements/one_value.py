@@ -72,7 +72,7 @@ QUANTITIES = [
     ('shortest time by --denoise, s', (*TIMES, min), 'after # to [0-9]+ s of CPU time'),
     ('longest of all, s', (*TIMES, max), 'after 135 to # s in seven'),
     ('shortest time of a still by --denoise, min', (*ESTIMATE, lambda s: BLOCKS_OF_STILL * min(s) / 60), '# to 22 min'),
-    ('longest time of a still by --denoise, h', (*TIMES, lambda s: BLOCKS_OF_STILL * max(s) / 3600), r'\| 3\.5 to # h'),
+    ('longest time of a still by --denoise, h', (*ESTIMATE, lambda s: BLOCKS_OF_STILL * max(s) / 3600), r'\| 2\.6 to # h'),
     ('scenes compared with pbrt-v3', RENDERER, "with pbrt-v3's, # scenes", 'on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),
