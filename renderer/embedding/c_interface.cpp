@@ -226,7 +226,7 @@ Halves ReadFeatures(const lull_noisy_image& noisy, int y0, int y1) {
     return rows;
 }
 
-// Throws where colours cannot be those of an image, or its halves not judge each other.
+// Throws for colours that no image has, and for half buffers that cannot judge each other.
 void CheckColours(const Halves& colour) {
     for (const Planes* half : {&colour.a, &colour.b}) {
         PictureValues values;

@@ -73,6 +73,15 @@ struct Stop {
     bool isLeast = true;  // more than that is not to be told
 };
 
+// Returns the slope from a block's last level on, where `usual` is that of the others.
+double SlopeAhead(const StopTrend& trend, const StopTrend::Line& line, double usual) {
+    if (trend.Rule().power != 0) return trend.Rule().power;
+    const double own = line.slope == 0 ? 0 : line.points / (line.points + kPointsOfOthers);
+    const double slope = Bounded(trend, std::lerp(usual, line.slope, own));
+    // Before the asymptote: the mean of the observed slope and the final one.
+    return trend.Rule().saturates ? (slope - 0.5) / 2 : slope;
+}
+
 Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
     if (trend.LastSpp() == 0) return {};
     if (trend.Rule().kind == RuleTrend::Samples) return {trend.Threshold(), false};
@@ -80,11 +89,7 @@ Stop PredictStop(const StopTrend& trend, double usualSlope, double certain) {
     double stop = trend.LastSpp();
     if (line.level > 0) {
         if (usualSlope == 0) return {stop, true};
-        const double own = line.slope == 0 ? 0 : line.points / (line.points + kPointsOfOthers);
-        double slope = Bounded(trend, std::lerp(usualSlope, line.slope, own));
-        // Before the asymptote: the mean of the observed slope and the final one.
-        if (trend.Rule().saturates) slope = (slope - 0.5) / 2;
-        if (trend.Rule().power != 0) slope = trend.Rule().power;
+        const double slope = SlopeAhead(trend, line, usualSlope);
         stop = trend.SppAt(trend.Abscissa(stop) +
                            std::min(std::min(line.level, certain) / -slope, 50.0));
     }

@@ -48,7 +48,7 @@ inline lull_answer Show(const StopperHandle& stopper, const lull_image& picture,
     return answer;
 }
 
-// An image of so many samples: the same whenever it is asked for.
+// Returns the image at a sample count, equal at each call.
 inline BlockImage ImageAt(int spp, int width = 60, int height = 50, double noise = 0.5) {
     return NoisyBlock(width, height, noise, spp, unsigned(spp));
 }

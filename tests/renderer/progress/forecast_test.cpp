@@ -72,7 +72,7 @@ TEST(PredictStops, BeginsWithTheUsualPower) {
     EXPECT_FALSE(PredictStops(std::vector{StopTrend()}, LiveBlocks(std::vector{StopTrend()}), 99));
 }
 
-// What a block has shown for a while does not count where the power is known.
+// A known power counts, not the slope of the block's own values.
 TEST(PredictStops, FollowsAKnownPower) {
     const RuleTrend rule{.power = -0.75};
     for (const double shown : {0.0, 0.2, 2.0}) {
@@ -156,14 +156,14 @@ TEST(PredictStops, FollowsTheNearnessOfAReference) {
 TEST(RangeOfRest, HoldsThePredictionAndNarrowsTowardsTheEnd) {
     double last = 1e9;
     for (const double left : {20000., 2000., 200., 20.}) {
-        const auto [least, most] = RangeOfRest(1000, left);
+        const auto [least, most] = RangeOfRest(1000, left, RuleTrend().exponents);
         EXPECT_GT(least, 0);
         EXPECT_LT(least, left);
         EXPECT_GT(most, left);
         EXPECT_LT(most / least, last);
         last = most / least;
     }
-    EXPECT_EQ(RangeOfRest(1000, 0), (std::array<double, 2>{0, 0}));
+    EXPECT_EQ(RangeOfRest(1000, 0, {0.5, 2}), (std::array<double, 2>{0, 0}));
     EXPECT_EQ(RangeOfRest(1, 3, {0.5, 2}), (std::array<double, 2>{1, 15}));
 }
 

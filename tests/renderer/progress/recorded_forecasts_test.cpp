@@ -132,7 +132,8 @@ int PercentHeld(const std::vector<Forecast>& forecasts, const Which& which) {
 // often as tests/measurements/models.md says.
 TEST(RecordedForecasts, AreHeldByTheirRanges) {
     std::vector<Forecast> forecasts = ForecastsOfRecordings();
-    const auto [least, most] = RangeOfRest(1, std::exp(1.) - 1);  // e^exponent - 1
+    const auto [least, most] =
+        RangeOfRest(1, std::exp(1.) - 1, RuleTrend().exponents);  // e^exponent - 1
     EXPECT_NEAR(std::log1p(least), QuantileOf(forecasts, kTail), 0.01);
     EXPECT_NEAR(std::log1p(most), QuantileOf(forecasts, 1 - kTail), 0.01);
 

@@ -7,8 +7,7 @@
 namespace lull {
 namespace {
 
-// Carries out everything that is ready now, but at most so many tiles, and lists it; `stop` says
-// where blocks stop.
+// Carries out the tiles that are ready, at most `most`, and returns them; `stop` decides on blocks.
 template <typename Stop>
 std::vector<Tile> RunAll(Schedule& schedule, const Stop& stop, size_t most = 1 << 30) {
     std::vector<Tile> tiles;

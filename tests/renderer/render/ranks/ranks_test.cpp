@@ -339,7 +339,7 @@ TEST(Ranks, EndByTheClockWithoutOneThatSleeps) {
     }
 }
 
-// Light paths, and what is learned of them, are the same with any number of ranks, too.
+// Light paths and their shares are the same with any number of ranks.
 
 // A render that is interrupted, goes on, or loses a rank.
 struct Part {
