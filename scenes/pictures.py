@@ -2,9 +2,9 @@
 """Makes the pictures of the documents in scenes/pictures.
 
 pictures.py NAME...: strip, caution, remedies, gallery, report, room (by day and by night), decision, observed (stops.png and
-night-block.jpg, of scenes in ../shared or $LULL_SHARED). Renders stay in out/pictures; existing ones are not rendered again.
-Needs what tests/measurements/measure.py needs, Pillow (Debian: python3-pil) and, for the report, chromium. Pictures of the
-add-on are taken in a Blender where it is installed, F12 with lull on the PATH:
+night-block.jpg) and early (early-blocks.jpg), of scenes in ../shared or $LULL_SHARED. Renders stay in out/pictures; existing ones
+are not rendered again. Needs what tests/measurements/measure.py needs, Pillow (Debian: python3-pil) and, for the report,
+chromium. Pictures of the add-on are taken in a Blender where it is installed, F12 with lull on the PATH:
 
 xvfb-run -s "-screen 0 560x820x24" blender --factory-startup --window-geometry 0 0 560 820 --python scenes/pictures.py -- panel
 xvfb-run -s "-screen 0 960x640x24" blender --factory-startup --window-geometry 0 0 960 640 --python scenes/pictures.py -- f12
@@ -194,19 +194,41 @@ def stairs_sheet(images, denoised):
                   [([f"difference, {GAIN} times"], difference(image, reference)) for _, image in shown]])
 
 
+def observed_images(name, counts, scene, **options):
+    """Returns images as the observers saw them, by sample count, each rendered on from the one with fewer."""
+    return {spp: render(f"{name}-{spp}", SHARED / scene, resolution="800x800", estimator="pbrt-v3", sampler="random", spp=spp,
+                        threads=1, checkpoint=OUT / f"{name}.h5", keep_checkpoint=True, resume=True, **options)[1]
+            for spp in counts}
+
+
 def observed():
     """A quarter of block 5 of staircase2, and 150x110 pixels of block 15 of pavilion by night, brighter."""
-    def images(name, counts, scene, **options):  # as for the observers, each on from fewer samples
-        return {spp: render(f"{name}-{spp}", SHARED / scene, resolution="800x800", estimator="pbrt-v3", sampler="random",
-                            spp=spp, threads=1, checkpoint=OUT / f"{name}.h5", keep_checkpoint=True, resume=True,
-                            **options)[1] for spp in counts}
-    stairs = images("stairs", STAIRS, "staircase2/scene.pbrt", crop="0.3125,0.4375,0.275,0.4")
+    stairs = observed_images("stairs", STAIRS, "staircase2/scene.pbrt", crop="0.3125,0.4375,0.275,0.4")
     report, block = render("stairs-denoised", SHARED / "staircase2/scene.pbrt", resolution="800x800", crop="0.25,0.5,0.25,0.5",
                            denoise=True)
     stairs_sheet(stairs, (report["blocks"][0]["spp"], block.crop((50, 20, 150, 120)))).save(PICTURES / "stops.png", optimize=True)
-    images("wall", WALL, "pavilion/night-view2.pbrt", substitute=True, crop="0.75,0.9375,0.75,0.8875")
+    observed_images("wall", WALL, "pavilion/night-view2.pbrt", substitute=True, crop="0.75,0.9375,0.75,0.8875")
     sheet([[([f"{spp:,} spp: {WALL[spp]}"], brightened(OUT / f"wall-{spp}.exr")) for spp in WALL]]
           ).save(PICTURES / "night-block.jpg", quality=92)
+
+
+EARLY = [("arcsphere", 8, 1900, 4866), ("arcsphere", 0, 1140, 2733), ("pavilion/day-view2", 15, 260, 753),
+         ("coffee-splash", 3, 980, 1602), ("staircase2", 0, 2340, 3686)]  # block, stop, human threshold
+
+
+def early():
+    """The middles of blocks that stop long before their human thresholds: at both, and denoised at the stop of --denoise."""
+    rows = []
+    for scene, block, stop, human in EARLY:
+        x, y = 200 * (block % 4) + 50, 200 * (block // 4) + 60
+        name = f"{pathlib.Path(scene).name}-{block}"
+        options = dict(crop=f"{x / 800},{(x + 100) / 800},{y / 800},{(y + 80) / 800}", substitute="pavilion" in scene)
+        file = scene + (".pbrt" if "/" in scene else "/scene.pbrt")
+        at = observed_images(name, (stop, human), file, **options)
+        report, denoised = render(f"{name}-denoised", SHARED / file, resolution="800x800", threads=1, denoise=True, **options)
+        rows.append([([name, f"stop: {stop:,} spp"], at[stop]), (["", f"human threshold: {human:,} spp"], at[human]),
+                     (["", f"--denoise: {report['blocks'][0]['spp']:,} spp"], denoised)])
+    sheet(rows).save(PICTURES / "early-blocks.jpg", quality=90)
 
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 420, 300, 60, 24, 12, 44  # of decision.svg and its margins, in pixels
@@ -333,7 +355,8 @@ def panel():
 
 
 if __name__ == "__main__":
-    makers = {maker.__name__: maker for maker in (strip, caution, remedies, gallery, report, room, decision, observed, panel, f12)}
+    makers = {maker.__name__: maker
+              for maker in (strip, caution, remedies, gallery, report, room, decision, observed, early, panel, f12)}
     names = sys.argv[sys.argv.index("--") + 1 if "--" in sys.argv else 1:]
     if not names or set(names) - set(makers):
         sys.exit(__doc__)
