@@ -23,7 +23,6 @@ MODELS, RENDERER = (f'tests/measurements/{name}.md' for name in ('models', 'rend
 RULES, PAPER, TRAINING = (f'stopping/docs/{name}.md' for name in ('entropy', 'paper', 'training'))
 REFERENCE, RENDERING, BLENDER = (f'renderer/docs/{name}.md' for name in ('reference', 'rendering', 'blender'))
 SPEED = 'tests/measurements/pbrt_speed.csv', 'samples_per_second'
-TIMES = 'tests/measurements/denoising_halves.csv', 'cpu_seconds'
 ESTIMATE = 'tests/measurements/denoising_estimate.csv', 'cpu_seconds'
 BLOCKS_OF_STILL = decimal.Decimal(1920 * 1080) / 128**2
 
@@ -69,10 +68,10 @@ QUANTITIES = [
     ('bytes of a pixel, denoised', RENDERING, 'checkpoints need; # with', 'of which the film has #'),
     ('bytes of a pixel', RENDERING, 'A pixel of the film takes # bytes', 'of which the film takes # or 48'),
     ('bytes of a pixel with a half buffer', RENDERING, 'film takes 24 bytes; # with', 'of which the film takes 24 or #'),
-    ('shortest time by --denoise, s', (*TIMES, min), 'after # to [0-9]+ s of CPU time'),
-    ('longest of all, s', (*TIMES, max), 'after 135 to # s in seven'),
-    ('shortest time of a still by --denoise, min', (*ESTIMATE, lambda s: BLOCKS_OF_STILL * min(s) / 60), '# to 22 min'),
-    ('longest time of a still by --denoise, h', (*ESTIMATE, lambda s: BLOCKS_OF_STILL * max(s) / 3600), r'\| 2\.6 to # h'),
+    ('shortest time by --denoise, s', (*ESTIMATE, min), 'after # to [0-9.]+ s of CPU time'),
+    ('longest of all, s', (*ESTIMATE, max), 'after 47.8 to # s in seven'),
+    ('shortest time of a still by --denoise, min', (*ESTIMATE, lambda s: BLOCKS_OF_STILL * min(s) / 60), '# to 19 min'),
+    ('longest time of a still by --denoise, h', (*ESTIMATE, lambda s: BLOCKS_OF_STILL * max(s) / 3600), r'\| 1\.7 to # h'),
     ('scenes compared with pbrt-v3', RENDERER, "with pbrt-v3's, # scenes", 'on # whole scenes'),
     ('slowest scene, samples/s', (*SPEED, min), 'a core takes # to'),
     ('fastest scene, samples/s', (*SPEED, max), 'a core takes [0-9,]+ to # samples'),
