@@ -58,6 +58,7 @@ QUANTITIES = [
     ('epochs', TRAINING, r'epochs \| #, samples', '# epochs, no dropout'),
     ('rate of RMSprop', TRAINING, 'RMSprop with a rate of #, ρ', 'viewpoints balanced; batches of 64, RMSprop, rate #'),
     ('published error', PAPER, r'svd-entropy-rnn 40 640 0 0 # ', 'blocks of the published # %'),
+    ('part of the estimated error', RENDERER, '; # on 16 at stops', 'without # of such an error'),
     ('threshold of denoised', RULES, r'the true one is below T \(#\)', 'the true image is below #', 'below T, by default #',
      'without the worst, #, was the best', 'of --denoise, #', 'seed 1, threshold #', r'estimate.max\(\) > #'),
     ('cap, spp', REFERENCE, r'Stop every block at N spp at the latest # \(', r'--max-spp, # spp by default', r'block, # by default \(--max-spp'),
