@@ -212,18 +212,18 @@ def observed():
           ).save(PICTURES / "night-block.jpg", quality=92)
 
 
-EARLY = [("arcsphere", 8, 1900, 4866), ("arcsphere", 0, 1140, 2733), ("pavilion/day-view2", 15, 260, 753),
-         ("coffee-splash", 3, 980, 1602), ("staircase2", 0, 2340, 3686)]  # block, stop, human threshold
+EARLY = [("arcsphere", "arcsphere/scene.pbrt", 8, 1900, 4866), ("arcsphere", "arcsphere/scene.pbrt", 0, 1140, 2733),
+         ("day-view2", "pavilion/day-view2.pbrt", 15, 260, 753), ("coffee-splash", "coffee-splash/scene.pbrt", 3, 980, 1602),
+         ("staircase2", "staircase2/scene.pbrt", 0, 2340, 3686)]  # name, file, block, stop, human threshold
 
 
 def early():
     """The middles of blocks that stop long before their human thresholds: at both, and denoised at the stop of --denoise."""
     rows = []
-    for scene, block, stop, human in EARLY:
+    for scene, file, block, stop, human in EARLY:
         x, y = 200 * (block % 4) + 50, 200 * (block // 4) + 60
-        name = f"{pathlib.Path(scene).name}-{block}"
-        options = dict(crop=f"{x / 800},{(x + 100) / 800},{y / 800},{(y + 80) / 800}", substitute="pavilion" in scene)
-        file = scene + (".pbrt" if "/" in scene else "/scene.pbrt")
+        name = f"{scene}-{block}"
+        options = dict(crop=f"{x / 800},{(x + 100) / 800},{y / 800},{(y + 80) / 800}", substitute="pavilion" in file)
         at = observed_images(name, (stop, human), file, **options)
         report, denoised = render(f"{name}-denoised", SHARED / file, resolution="800x800", threads=1, denoise=True, **options)
         rows.append([([name, f"stop: {stop:,} spp"], at[stop]), (["", f"human threshold: {human:,} spp"], at[human]),

@@ -10,11 +10,10 @@ estimates it, from the mean of such renders with --truths seeds, less their own 
 
 import argparse
 import math
-import subprocess
 
 import numpy as np
 
-from measure import Renders, read
+from measure import Renders, read, visible_differences
 
 DISPLAY = '100cd,40ppd,250lux'
 
@@ -25,10 +24,8 @@ FIGURES = {'visibleDifference': ('visible difference', '.1f'), 'rmseLightness': 
 def true_difference(o, scene, name, spp):
     """Returns the visible difference of an image from the mean of the truths, whose error falls as spp^-0.75."""
     truth = np.mean([read(scene.file(truth_name(k))) for k in range(o.truths)], 0)
-    pictures = b''.join(picture.astype('<f4').tobytes() for picture in (truth, read(scene.file(name))))
-    size = [str(side) for side in (truth.shape[1], truth.shape[0])]
-    out = subprocess.run([o.metric, 'without', DISPLAY, *size], input=pictures, stdout=subprocess.PIPE, check=True).stdout
-    return float(out) / math.sqrt(1 + (spp / o.truth) ** 1.5 / o.truths)
+    difference, = visible_differences(o.metric, DISPLAY, [truth, read(scene.file(name))], 'without')
+    return difference / math.sqrt(1 + (spp / o.truth) ** 1.5 / o.truths)
 
 
 def truth_name(k):

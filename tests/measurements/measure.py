@@ -41,6 +41,18 @@ def run(*command, **how):
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **how)
 
 
+def visible_differences(program, viewing, pictures, *how):
+    """Returns the visible differences of pictures from the first, by the target `visible_difference`.
+
+    `how` is the side of its blocks, or 'without' for differences without the worst pixels.
+    """
+    height, width, _ = pictures[0].shape
+    words = [*how, viewing, width, height] if 'without' in how else [viewing, width, height, *how]
+    out = subprocess.run([program, *map(str, words)], input=np.stack(pictures).astype(np.float32).tobytes(),
+                         stdout=subprocess.PIPE, check=True).stdout.decode()
+    return [float(line.split()[0]) for line in out.splitlines()]
+
+
 class Renders:
     """Pictures of a scene in a folder, NAME.exr. Those that are there are not rendered again."""
 

@@ -24,7 +24,7 @@ import subprocess
 import numpy as np
 
 import published
-from measure import read
+from measure import read, visible_differences
 
 CAP, PASS, SIDE = 10000, 20, 200
 LADDER = [250, 500, 1000, 2000, 4000, 7000, 9500]
@@ -99,11 +99,7 @@ def curve(o, viewing, block):
     """Returns the logarithms of the visible differences from the clean picture of a block at the spp of LADDER."""
     _, _, _, clean, sample = block
     pictures = [clean + sample * np.sqrt(1 / n - 1 / CAP) for n in LADDER]
-    height, width, _ = clean.shape
-    words = ['without', viewing, width, height] if o.without_worst else [viewing, width, height, SIDE]
-    out = subprocess.run([o.program, *map(str, words)], input=np.stack([clean, *pictures]).astype(np.float32).tobytes(),
-                         stdout=subprocess.PIPE, check=True).stdout.decode()
-    return np.log([float(line.split()[0]) for line in out.splitlines()])
+    return np.log(visible_differences(o.program, viewing, [clean, *pictures], 'without' if o.without_worst else SIDE))
 
 
 def deviation(spp):
